@@ -289,6 +289,27 @@ fn duplicate_coefficient_names_of_different_unit_are_refused() {
     );
 }
 
+/// A unit that is none of the coefficient's: of what is known, of its uncertainty, of a prior, of what is fixed.
+#[test]
+fn a_coefficient_that_is_stated_in_another_unit_is_refused_with_its_place() {
+    let law = "[[identify.model]]\nname = \"m\"\nf_x = \"-A*v_x_dot - D*v_x*abs(v_x)\"\n";
+    let table = "v_x [m/s],v_x_dot [m/s^2],f_x [N]\n0.1,0.1,-0.5\n0.2,0.1,-1.1\n0.3,0,-0.9\n0.4,0.2,-3.2\n0.5,0,-2.4\n";
+    let stated = |kind: &str, value: &str, u: &str| {
+        format!("[[identify.{kind}]]\ncoefficient = \"A\"\nvalue = {value}\nstandard_uncertainty = {u}\n")
+    };
+    for (text, place, unit) in [
+        (stated("known", "\"10 kg/m\"", "\"1 kg\""), "c.toml:9:9", "kg/m"),
+        (stated("known", "\"10 kg\"", "\"2 m\""), "c.toml:10:24", "m"),
+        (stated("prior", "\"10 s\"", "1"), "c.toml:9:9", "s"),
+        ("[identify.fixed]\nA = \"10 s\"\n".to_owned(), "c.toml:8:5", "s"),
+    ] {
+        let message = format!(
+            "{place}: A of m is in kg, and is stated in {unit}: write it in its unit (a standard uncertainty also in %)"
+        );
+        refuses(&[("c.toml", &format!("{CAMPAIGN}{text}{law}")), ("t.csv", table)], "c.toml", &message);
+    }
+}
+
 #[test]
 fn an_output_folder_that_cannot_be_made_is_reported_and_nothing_is_left() {
     let folder = tempfile::tempdir().unwrap();

@@ -164,7 +164,9 @@ pub enum FitError {
     },
 
     /// Cluster covariance without clusters.
-    #[error("cluster-robust covariance needs a cluster for every row, and none are given")]
+    #[error(
+        "cluster-robust covariance needs a cluster for every row, and none are given: name the column that has them, group = \"run\" say"
+    )]
     NoClusters,
 
     /// Too few clusters for an interval that means anything.
@@ -184,8 +186,9 @@ pub enum FitError {
 
     /// One cluster alone determines some coefficient.
     #[error(
-        "without cluster {cluster} component {component:?} no longer determines its \
-         coefficients; the cluster jackknife (CR3) needs every one determined by the others"
+        "without its {}. cluster in order of appearance component {component:?} no longer determines its \
+         coefficients; the cluster jackknife (CR3) needs every one determined by the others (offsets of the clusters are determined by none)",
+        cluster + 1
     )]
     ClusterDecides {
         /// The cluster.

@@ -12,12 +12,14 @@
 use froude_records::campaign::{Campaign, KeepValue, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::nearest;
+use froude_records::number::plain;
 use froude_records::table::known_dimension;
 use froude_records::units::Dimension;
 use indexmap::IndexSet;
 
 use crate::dataset::{Dataset, LOADS};
 use crate::law::{ForceLaw, Kind, aliased};
+use crate::lint::repeats::REPEATS_WITHIN;
 use crate::validation::{STD_ITERATIVE, STD_NUMERICAL};
 
 /// Columns that say which run a row is, or in which water; and the motion, which is velocity at once or compared with it.
@@ -227,7 +229,7 @@ fn doubt(
         ));
     }
     let is_noise = low.abs().max(high.abs()) < noise_of(dimension);
-    (is_motion(name) && !is_noise).then(|| {
+    (is_motion(name) && !is_noise && !is_carried_along(name, [low, high], laws)).then(|| {
         let loads: IndexSet<&str> = laws.iter().flat_map(|law| &law.responses).map(String::as_str).collect();
         let of = loads.into_iter().collect::<Vec<_>>().join(", ");
         format!(
@@ -235,6 +237,13 @@ fn doubt(
              it ([[identify.model]]), or keep the rows where it is zero"
         )
     })
+}
+
+/// Whether a speed across the fitted loads is the same in all rows, as well as rigs hold it: the carriage's in a test of sway, of which the coefficients are functions.
+fn is_carried_along(name: &str, [low, high]: [f64; 2], laws: &[ForceLaw]) -> bool {
+    let along = name.replacen("v_", "f_", 1);
+    let is_across = name.starts_with("v_") && !name.ends_with("_dot") && !is_in(&along, laws);
+    is_across && high - low <= REPEATS_WITHIN * low.abs().max(high.abs())
 }
 
 /// A velocity of the body, or its derivative.
@@ -379,7 +388,15 @@ fn proposal(name: &str, dimension: Dimension, data: &Dataset) -> String {
         _ if matches!(name, "kinematic_viscosity" | "amplitude" | "period") => {
             " (for Reynolds and Keulegan–Carpenter numbers, with body.reference_length)"
         }
-        _ if is_motion(name) => " (no law has it, and it is zero or as small as noise)",
+        _ if is_motion(name) => match data.values(name).map(range) {
+            Some((low, high)) if low.abs().max(high.abs()) > noise_of(dimension) => {
+                return format!(
+                    " (no law has it; coefficients hold at the {} {dimension} of all rows)",
+                    plain(high, 4)
+                );
+            }
+            _ => " (no law has it, and it is zero or as small as noise)",
+        },
         Dimension::FORCE => " (if a load of the fluid on the body: f_x, f_y or f_z)",
         Dimension::MOMENT => " (if a load of the fluid on the body: m_x, m_y or m_z)",
         Dimension::SPEED if has(data, "speed") => " (if the motion: v_z)",

@@ -88,8 +88,10 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     let name = &model.law.name;
     let mut out = Vec::new();
     let (outlying, rows) = outlying_rows(model, data);
-    out.extend(scatter_tests::findings(model, data, &outlying));
-    out.extend(misfit::findings(model, data, d, &outlying));
+    let scatter = scatter_tests::findings(model, data, &outlying);
+    out.extend(scatter.iter().map(|(_, finding)| finding.clone()));
+    out.extend(misfit::findings(model, data, d, (&scatter, &outlying)));
+    out.extend(no_better_than_nothing(model));
     out.extend(decided_by_one(model, data));
     out.extend(added_mass_sign(model, data));
     out.extend(rows);
@@ -134,6 +136,22 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     out.extend(negative_drag(model));
     out.extend(drag_coefficients(model, data, campaign));
     out
+}
+
+/// A load of which the law leaves more than there is.
+fn no_better_than_nothing(model: &ModelFit) -> Vec<Finding> {
+    let worse = model.fit.components.iter().filter(|c| c.relative_residual > 1.0);
+    worse
+        .map(|c| {
+            let text = format!(
+                "{}, {}: the law leaves {} of the load (root mean square): it is no better than none; check the sign of the load and the values that are held",
+                model.law.name,
+                c.name,
+                percent(c.relative_residual)
+            );
+            Finding::new(Severity::Warning, "no-better-than-nothing", text)
+        })
+        .collect()
 }
 
 /// How |residual| goes with speed.

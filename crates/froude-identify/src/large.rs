@@ -3,8 +3,8 @@
 //! A law that is linear in its coefficients needs of its rows no more than the triangle of `[X | y]`: coefficients, bounds, priors, F tests,
 //! AICc, classical and cluster-robust covariance follow from it as from the rows. So the table is read four times, a chunk at a time:
 //!
-//! 1. how many rows, the ends of every channel, a sample (`facts`);
-//! 2. the ends among the rows that move, and what the lints count;
+//! 1. how many rows, the ends of every channel, a sample (`facts`), how long each group moves;
+//! 2. the ends among the rows that move, what the lints count, and which groups repeat a motion;
 //! 3. the triangles of every law (`fold`);
 //! 4. Durbin–Watson and the largest leverage, from the residuals.
 //!
@@ -33,6 +33,7 @@ use rows::table_of;
 use crate::dataset::{Dataset, Drawn};
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
+use crate::motions::Motions;
 use crate::reduce::{fitted_loads, kept_rows, left_out, observed, one_unit, zero_drift};
 use crate::regression::{Condensed, ModelFit, Scatter, Settings, regress};
 use crate::result::{ReadFile, SourceResult};
@@ -61,26 +62,39 @@ pub(crate) fn identify_source(
         return Err(refused_above(MOST_AT_ONCE, source, what));
     }
     progress("the ranges of a long table");
-    let mut facts = Facts::new(limits.sample);
-    each(campaign, source, true, &mut |chunk| facts.take(chunk, source))?;
+    let (mut facts, mut motions) = (Facts::new(limits.sample), Motions::default());
+    let has_motions = merges_motions(campaign, source);
+    each(campaign, source, true, &mut |chunk| {
+        facts.take(chunk, source)?;
+        if has_motions {
+            motions.span(&chunk.data);
+        }
+        Ok(())
+    })?;
     if facts.n_used == 0 {
         return Err(IdentifyError::NothingKept { source_name: source.name.clone(), n_read: facts.n_read });
     }
-    let (mut seconds, mut motions) = (Seconds::default(), facts.motions());
+    let mut seconds = Seconds::default();
     each(campaign, source, true, &mut |chunk| {
         seconds.take(chunk, &facts, campaign);
         motions.probe(&chunk.data);
         Ok(())
     })?;
     let mut few = Few::of(&facts, &seconds, campaign, source)?;
-    let mut reduced = reduced(campaign, source, &facts, &seconds, &few)?;
-    if let Some(clusters) = motions.clusters().filter(|_| merges_motions(campaign, &reduced.scatter)) {
-        reduced.findings.push(motions::merged(&clusters).of_source(&source.name));
-        for data in [&mut few.ends, &mut reduced.data] {
-            motions::rename(data, &clusters);
-        }
-        facts.merge(&clusters);
+    let mut laws = laws(campaign, source, &few.ends)?;
+    if nobody_asked(campaign, source) {
+        laws.retain(|law| !law.is_nonlinear());
     }
+    if let Some(clusters) = motions.clusters(&laws) {
+        few.findings.push(motions::found(&clusters));
+        if motions::is_enough(&clusters) {
+            for data in [&mut few.ends, &mut few.sample] {
+                motions::rename(data, &clusters);
+            }
+            facts.merge(&clusters);
+        }
+    }
+    let reduced = reduced(campaign, source, &facts, &seconds, &few, laws)?;
     if let Some(what) = weighs_all(&reduced) {
         let is_kept = facts.n_read <= MOST_AT_ONCE;
         return if is_kept { Ok(None) } else { Err(refused_above(MOST_AT_ONCE, source, &what)) };
@@ -209,6 +223,7 @@ fn reduced(
     facts: &Facts,
     seconds: &Seconds,
     few: &Few,
+    laws: Vec<ForceLaw>,
 ) -> Result<Reduced, IdentifyError> {
     let Few { table, ends, keep, sample, .. } = few;
     let mut findings = few.findings.clone();
@@ -218,13 +233,9 @@ fn reduced(
     one_unit(table, sample, &fitted_loads(campaign, source, ends))?;
     let (validity, found) = validity::ranges(ends, campaign);
     findings.extend(found);
-    findings.extend(seconds.findings(facts, ends));
     findings.extend(lint::of_ends(ends, campaign));
     findings.extend(no_budget(source, false));
-    let mut laws = laws(campaign, source, ends)?;
-    if nobody_asked(campaign, source) {
-        laws.retain(|law| !law.is_nonlinear());
-    }
+    findings.extend(seconds.findings(facts, ends, &laws));
     check_budget(source, ends)?;
     findings.extend(columns::unused(ends, campaign, source, &laws));
     let scatter = scatter(campaign, source, ends, &mut findings)?;

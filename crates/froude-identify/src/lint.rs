@@ -205,8 +205,17 @@ fn distinct_speeds(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
     data.values("speed")?;
     // The laws are odd in the speed: ahead and astern are one.
     let distinct = |name: &str| Some(distinct_count(&data.values(name)?.iter().map(|u| u.abs()).collect::<Vec<_>>()));
-    let is_motion = |name: &str| name == "speed" || name.starts_with("v_") && !name.ends_with("_dot");
-    few_speeds(laws.iter().flat_map(ForceLaw::channels).filter(|name| is_motion(name)).filter_map(distinct).max()?)
+    few_speeds(of_speeds(laws).flat_map(ForceLaw::channels).filter(|name| is_speed(name)).filter_map(distinct).max()?)
+}
+
+fn is_speed(name: &str) -> bool {
+    name == "speed" || name.starts_with("v_") && !name.ends_with("_dot")
+}
+
+/// The laws in speeds alone: one that also reads a tip speed ratio, say, has its terms in that.
+pub(crate) fn of_speeds(laws: &[ForceLaw]) -> impl Iterator<Item = &ForceLaw> {
+    let is_known = |name: &str| is_speed(name) || matches!(name, "angle" | "density" | "n_links");
+    laws.iter().filter(move |law| law.channels().into_iter().all(is_known))
 }
 
 /// Whether so many speeds are too few.

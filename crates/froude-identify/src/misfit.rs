@@ -2,11 +2,14 @@
 //!
 //! **Against repeats of a setting:** F of what the law leaves of their means over their scatter; it sees any error of the law, and few of any one.
 //!
-//! **Against a bend:** Tukey's one degree of freedom, r·v/(|v| s) of Student's t, v being what the law leaves of f √|f|, and f the fitted load. Where the load is the square of a speed,
-//! f √|f| is its cube: the next term. It needs no repeats, and sees an error that is smooth in the load.
+//! **Against a bend:** one degree of freedom of Tukey's kind, r·v/(|v| s) of Student's t, v being what the law leaves of f √|f|, and f the fitted load. Where the load is the square of a
+//! speed, f √|f| is its cube: the next term. It needs no repeats, and sees an error that is smooth in the load.
 //!
-//! **Source.** Cook & Weisberg (1982), 2.3; Tukey (1949), Biometrics 5, 232 (given the fitted loads the residuals are independent of them, so that t is exact for normal errors of
-//! one size); Ramsey (1969), J. Royal Stat. Soc. B 31, 350.
+//! Given the fitted loads the residuals are independent of them, so that t is exact for independent normal errors of one size. It is not asked where these are not: of rows in time, of
+//! setups with offsets, of scatter that is uneven, of a row that lies apart, beside a prior, or beside a declared error that is no factor. Where successive rows are alike the finding says that
+//! this may be it.
+//!
+//! **Source.** Cook & Weisberg (1982), 2.3; Tukey (1949), Biometrics 5, 232; Milliken & Graybill (1970), J. Am. Stat. Assoc. 65, 797 (any function of the fitted loads).
 
 use froude_fit as fit;
 use froude_fit::distribution::t_two_sided;
@@ -16,6 +19,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number::p_equation;
 
 use crate::dataset::Dataset;
+use crate::motions;
 use crate::regression::{ModelFit, Scatter};
 use crate::scatter_tests::{ALARM, declares_groups};
 
@@ -24,12 +28,12 @@ const FEWEST_ROWS: usize = 8;
 /// What the law leaves of a bend that it has itself is rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The loads that a law does not describe; `outlying` names those with a row that lies apart, which bends a fit.
+/// The loads that a law does not describe. `scatter` has what was found of the scatter of each load, `outlying` the loads with a row that lies apart.
 pub(crate) fn findings(
     model: &ModelFit,
     data: &Dataset,
     diagnostics: &Diagnostics,
-    outlying: &[(String, usize)],
+    (scatter, outlying): (&[(String, Finding)], &[(String, usize)]),
 ) -> Vec<Finding> {
     // Errors that rows of a run or a setup share are no misfit.
     if declares_groups(model) {
@@ -39,17 +43,28 @@ pub(crate) fn findings(
     let loads = model.law.responses.len() as f64;
     let mut out = Vec::new();
     for load in &model.law.responses {
+        let has = |code: &str| scatter.iter().any(|(of, finding)| of == load && finding.code == code);
+        let is_sound = !has("uneven-scatter") && !has("setup-offset") && !outlying.iter().any(|(of, _)| of == load);
         let of_repeats = diagnostics.lack_of_fit_p.get(load).copied();
-        let of_bend = bends.iter().find(|(of, _)| of == load && !outlying.iter().any(|(apart, _)| apart == load));
+        let of_bend = bends.iter().find(|(of, _)| of == load && is_sound).map(|(_, p)| *p);
         let level = ALARM / loads / if of_repeats.is_some() && of_bend.is_some() { 2.0 } else { 1.0 };
-        let said = if let Some(p) = of_repeats.filter(|p| *p < level) {
+        let repeats = of_repeats.filter(|p| *p < level).map(|p| {
             format!("the lack of fit is larger than the scatter of repeats of the same setting ({})", p_equation(p))
-        } else if let Some((_, p)) = of_bend.filter(|(_, p)| *p < level) {
-            format!("the residuals bend with the fitted load ({})", p_equation(*p))
-        } else {
+        });
+        let bend = of_bend.filter(|p| *p < level).map(|p| {
+            let or = if has("serial-correlation") { ", unless that is what makes successive rows alike" } else { "" };
+            format!("the residuals bend with the fitted load ({}){or}", p_equation(p))
+        });
+        let said: Vec<String> = repeats.into_iter().chain(bend).collect();
+        if said.is_empty() {
             continue;
-        };
-        let text = format!("{}, {load}: {said}: the model is wrong somewhere in the range", model.law.name);
+        }
+        let text = format!(
+            "{}, {load}: {}: the model is wrong somewhere in the range, and its intervals do not cover that; write a law with another term \
+             ([[identify.model]]), or leave out a part of the range (`keep`)",
+            model.law.name,
+            said.join("; ")
+        );
         out.push(Finding::new(Severity::Warning, "lack-of-fit", text));
     }
     out
@@ -62,39 +77,62 @@ fn bends(model: &ModelFit, data: &Dataset) -> Vec<(String, f64)> {
         && !model.in_variables
         && !model.law.in_logarithms()
         && model.options.loss == fit::Loss::Squares
-        && data.sample.is_none();
+        && model.options.priors.is_empty()
+        && data.sample.is_none()
+        && !motions::is_in_time(data)
+        && model
+            .budget
+            .iter()
+            .all(|part| part.in_scatter || !part.kind.is_type_b() || is_factor(model, &part.covariance));
     let Ok(fitted) = model.law.predict(data, model.law_coefficients()) else { return Vec::new() };
     if !is_plain {
         return Vec::new();
     }
     let residuals = Residuals::of(&model.problem, &model.options, &model.fit);
-    let named = model.law.responses.iter().zip(&residuals).zip(&model.fit.components);
+    let named = model.law.responses.iter().zip(&model.fit.components).enumerate();
     named
-        .filter(|(_, component)| {
-            component.sigma.is_some_and(|sigma| sigma > 0.0 && component.relative_residual > ROUNDING)
+        .filter(|(_, (_, component))| {
+            component.sigma.is_some_and(|s| s > 0.0) && component.relative_residual > ROUNDING
         })
-        .filter_map(|((load, residuals), _)| Some((load.clone(), bend(model, residuals, &fitted)?)))
+        .filter_map(|(r, (load, _))| Some((load.clone(), bend(model, &residuals, r, &fitted)?)))
         .collect()
 }
 
-/// p of the bend of one load.
-fn bend(model: &ModelFit, residuals: &Residuals, fitted: &[f64]) -> Option<f64> {
-    let Residuals { rows, residual, q } = residuals;
-    let dof = rows.len() as f64 - residuals.leverage().iter().sum::<f64>() - 1.0;
-    if rows.len() < FEWEST_ROWS || dof < 1.0 {
+/// Whether an error changes all coefficients by one factor, and so no shape: a gain.
+fn is_factor(model: &ModelFit, covariance: &fit::faer::Mat<f64>) -> bool {
+    let of =
+        |j: usize| model.fit.coefficients[j].value.filter(|v| *v != 0.0).map(|v| covariance[(j, j)].sqrt() / v.abs());
+    let parts: Vec<f64> = (0..covariance.nrows()).filter_map(of).collect();
+    let most = parts.iter().copied().fold(0.0, f64::max);
+    parts.iter().all(|part| most - part <= ROUNDING * most)
+}
+
+/// p of the bend of one load; where loads share coefficients, what it leaves in the others counts too.
+fn bend(model: &ModelFit, residuals: &[Residuals], load: usize, fitted: &[f64]) -> Option<f64> {
+    let of = residuals.get(load)?;
+    if of.rows.len() < FEWEST_ROWS {
         return None;
     }
     let weight = |row: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[row]);
-    let z: Vec<f64> = rows.iter().map(|&row| fitted[row] * fitted[row].abs().sqrt() * weight(row).sqrt()).collect();
-    let onto: Vec<f64> = (0..q.ncols()).map(|k| z.iter().enumerate().map(|(i, z)| q[(i, k)] * z).sum()).collect();
-    let left = |i: usize| z[i] - onto.iter().enumerate().map(|(k, c)| q[(i, k)] * c).sum::<f64>();
-    let v: Vec<f64> = (0..z.len()).map(left).collect();
+    let z: Vec<f64> = of.rows.iter().map(|&row| fitted[row] * fitted[row].abs().sqrt() * weight(row).sqrt()).collect();
+    let onto: Vec<f64> = (0..of.q.ncols()).map(|k| z.iter().enumerate().map(|(i, z)| of.q[(i, k)] * z).sum()).collect();
     let squares = |of: &[f64]| of.iter().map(|x| x * x).sum::<f64>();
-    let (own, all) = (squares(&v), squares(residual));
-    if own <= ROUNDING * squares(&z) {
+    let size = squares(&z);
+    let (mut own, mut along, mut all, mut dof) = (0.0, 0.0, 0.0, -1.0);
+    for (r, part) in residuals.iter().enumerate() {
+        let taken = |i: usize| onto.iter().enumerate().map(|(k, c)| part.q[(i, k)] * c).sum::<f64>();
+        let v: Vec<f64> = (0..part.rows.len()).map(|i| if r == load { z[i] } else { 0.0 } - taken(i)).collect();
+        if r != load && squares(&v) <= ROUNDING * size {
+            continue;
+        }
+        own += squares(&v);
+        along += v.iter().zip(&part.residual).map(|(v, r)| v * r).sum::<f64>();
+        all += squares(&part.residual);
+        dof += part.rows.len() as f64 - part.leverage().iter().sum::<f64>();
+    }
+    if own <= ROUNDING * size || dof < 1.0 {
         return None;
     }
-    let along = v.iter().zip(residual).map(|(v, r)| v * r).sum::<f64>().powi(2) / own;
-    let rest = (all - along).max(0.0);
-    Some(t_two_sided((along * dof / rest).sqrt(), dof))
+    let share = along * along / own;
+    Some(t_two_sided((share * dof / (all - share).max(0.0)).sqrt(), dof))
 }

@@ -3,134 +3,242 @@
 //! What a law leaves of a motion it leaves of the same motion again: repeated runs show how well a rig repeats, and not whether the law holds. As clusters of their own they
 //! make an interval too narrow; so all runs of a motion are one cluster.
 //!
-//! Two runs are of one motion where they last as long and, at [`PROBES`] times since their start, move alike in every velocity. Of tables of means nothing is merged: days of a
-//! tank repeat the speeds of other days on purpose, and are independent all the same.
+//! | of two groups | alike where |
+//! | --- | --- |
+//! | configuration | the same |
+//! | duration | within 2 % |
+//! | every velocity, and every channel of a law, at [`PROBES`] times since the start | root mean square of the difference within √((0.05 s)² + (0.01 m)² + 2 · 1.6 n²) |
+//!
+//! s: the smaller standard deviation of the channel in a run; m: its mean; n: its noise, √(Σ(Δ⁴x)²/70) of fourth differences, in which a motion that is sampled eight times a period leaves 0.04 s.
+//!
+//! A group is a run in time where its times rise and some of these channels varies within it by more than noise. Others stay clusters of their own: days of a tank repeat the speeds of
+//! other days on purpose, and so do tows at constant speed.
 
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 use indexmap::IndexMap;
 
-use crate::dataset::{Dataset, GroupedBy};
+use crate::dataset::{Dataset, GroupedBy, LOADS};
+use crate::law::ForceLaw;
 
-/// Times of a run at which its velocities are compared.
+/// Times of a run at which its channels are compared.
 const PROBES: usize = 64;
-/// Root mean square of the difference of two runs, over the standard deviation of the channel over all of them, below which they move alike: a start that is 0.1 s late moves a
-/// period of 10 s by 0.06.
-const ALIKE: f64 = 0.1;
+/// Part of a standard deviation within which two runs move alike: a start that is late by 1/130 of a period.
+const ALIKE: f64 = 0.05;
+/// Part of a mean within which it is repeated.
+const AS_FAST: f64 = 0.01;
+/// Twice the variance of the noise of a run, and three standard deviations of a sum of squares of [`PROBES`] differences.
+const BY_NOISE: f64 = 2.0 * 1.6;
 /// Difference of two durations over the longer one, below which they are equal.
 const AS_LONG: f64 = 0.02;
-/// Standard deviation of a velocity over the largest of its kind, below which it is constant in all runs.
-const CONSTANT: f64 = 0.02;
+/// Standard deviations of noise, and part of the mean, beyond which a channel varies.
+const VARIES: [f64; 2] = [3.0, 0.02];
 /// Rows that a run in time has at least: a day of means that were taken one after the other has fewer.
 const FEWEST_ROWS: usize = 50;
+/// Motions that CR3 needs; fewer stay as they are, and a warning says for what their intervals hold.
+const FEWEST_MOTIONS: usize = 3;
 
-/// Velocities of a body.
 const VELOCITIES: [&str; 6] = ["v_x", "v_y", "v_z", "w_x", "w_y", "w_z"];
 
 /// The motions of the groups of a table, which is read twice: [`Self::span`], then [`Self::probe`].
 #[derive(Debug, Default)]
 pub(crate) struct Motions {
-    velocities: Vec<&'static str>,
+    channels: Vec<String>,
     of_group: IndexMap<String, Motion>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Motion {
     configuration: String,
-    first_s: f64,
-    last_s: f64,
+    span_s: [f64; 2],
     rows: usize,
-    rises: bool,
-    /// The velocities at each probe, once its time has come.
+    falls: bool,
+    channels: Vec<Channel>,
+    /// Time and values of the row before, of the second reading.
+    before: Option<(f64, Vec<f64>)>,
+    /// The channels at each probe.
     probes: Vec<Vec<f64>>,
 }
 
+/// What a run says of one channel.
+#[derive(Debug, Default)]
+struct Channel {
+    count: f64,
+    mean: f64,
+    /// Σ(x − mean)².
+    squares: f64,
+    last: [f64; 4],
+    /// Σ(Δ⁴x)².
+    fourth: f64,
+}
+
+impl Channel {
+    fn take(&mut self, x: f64) {
+        self.count += 1.0;
+        let from_mean = x - self.mean;
+        self.mean += from_mean / self.count;
+        self.squares += from_mean * (x - self.mean);
+        if self.count > 4.0 {
+            let [a, b, c, d] = self.last;
+            self.fourth += (a - 4.0 * b + 6.0 * c - 4.0 * d + x).powi(2);
+        }
+        self.last = [self.last[1], self.last[2], self.last[3], x];
+    }
+
+    fn std(&self) -> f64 {
+        (self.squares / self.count).sqrt()
+    }
+
+    fn noise(&self) -> f64 {
+        (self.fourth / (70.0 * (self.count - 4.0).max(1.0))).sqrt()
+    }
+
+    fn varies(&self) -> bool {
+        let [of_noise, of_mean] = VARIES;
+        self.std() > of_noise * self.noise() && self.std() > of_mean * self.mean.abs()
+    }
+}
+
 impl Motions {
-    /// Takes in when each group begins and ends.
+    /// Takes in when each group begins and ends, and how its channels vary.
     pub(crate) fn span(&mut self, data: &Dataset) {
         let (Some(time), Some(group)) = (data.values("time"), &data.group) else { return };
-        self.velocities = VELOCITIES.into_iter().filter(|name| data.channels.contains_key(*name)).collect();
+        let is_motion = |name: &str| {
+            let is_of = |prefix: &str| name.starts_with(prefix);
+            !LOADS.contains(&name)
+                && !["std_", "zero_"].into_iter().any(is_of)
+                && !matches!(
+                    name,
+                    "time"
+                        | "repeat"
+                        | "temperature"
+                        | "density"
+                        | "kinematic_viscosity"
+                        | "n_links"
+                        | "speed"
+                        | "angle"
+                )
+        };
+        self.channels = data.channels.keys().filter(|name| is_motion(name)).cloned().collect();
+        let channels: Vec<&[f64]> = self.channels.iter().filter_map(|name| data.values(name)).collect();
         for (i, (&at_s, group)) in time.iter().zip(group).enumerate() {
-            if let Some(motion) = self.of_group.get_mut(group) {
-                motion.rises &= at_s > motion.last_s;
-                motion.last_s = at_s;
-                motion.rows += 1;
-            } else {
+            if !self.of_group.contains_key(group) {
                 let configuration = data.configuration.get(i).cloned().unwrap_or_default();
-                let motion =
-                    Motion { configuration, first_s: at_s, last_s: at_s, rows: 1, rises: true, probes: Vec::new() };
-                self.of_group.insert(group.clone(), motion);
+                let span_s = [at_s; 2];
+                self.of_group.insert(group.clone(), Motion { configuration, span_s, ..Motion::default() });
+            }
+            let Some(motion) = self.of_group.get_mut(group) else { continue };
+            motion.rows += 1;
+            // Equal times are those of a clock of few digits; NaN is none.
+            motion.falls |= at_s.partial_cmp(&motion.span_s[1]).is_none_or(std::cmp::Ordering::is_lt);
+            motion.span_s[1] = at_s;
+            motion.channels.resize_with(channels.len(), Channel::default);
+            for (channel, values) in motion.channels.iter_mut().zip(&channels) {
+                channel.take(values[i]);
             }
         }
     }
 
-    /// Takes in the velocities of each group at its probes.
+    /// Takes in the channels of each group at its probes, between its rows.
     pub(crate) fn probe(&mut self, data: &Dataset) {
         let (Some(time), Some(group)) = (data.values("time"), &data.group) else { return };
-        let channels: Vec<&[f64]> = self.velocities.iter().filter_map(|name| data.values(name)).collect();
+        let channels: Vec<&[f64]> = self.channels.iter().filter_map(|name| data.values(name)).collect();
         for (i, (&at_s, group)) in time.iter().zip(group).enumerate() {
-            let Some(motion) = self.of_group.get_mut(group) else { continue };
-            let part = (at_s - motion.first_s) / (motion.last_s - motion.first_s);
-            while motion.probes.len() < PROBES && part >= motion.probes.len() as f64 / (PROBES - 1) as f64 {
-                motion.probes.push(channels.iter().map(|values| values[i]).collect());
+            if let Some(motion) = self.of_group.get_mut(group) {
+                motion.probe(at_s, channels.iter().map(|values| values[i]).collect());
             }
         }
     }
 
-    /// The cluster of each group, called after the first run of its motion; `None` where rows are not in time, or no motion is repeated.
-    pub(crate) fn clusters(&self) -> Option<IndexMap<String, String>> {
-        let is_run = |m: &Motion| m.rises && m.rows >= FEWEST_ROWS && m.probes.len() == PROBES;
-        if self.velocities.is_empty() || self.of_group.len() < 2 || !self.of_group.values().all(is_run) {
-            return None;
-        }
-        let scales: Vec<f64> = (0..self.velocities.len()).map(|k| self.scale(k)).collect();
+    /// The cluster of each group, called after the first run of its motion; `None` where no motion is repeated.
+    pub(crate) fn clusters(&self, laws: &[ForceLaw]) -> Option<IndexMap<String, String>> {
+        let is_read = |name: &String| {
+            VELOCITIES.contains(&name.as_str()) || laws.iter().any(|law| law.channels().contains(&name.as_str()))
+        };
+        let read: Vec<usize> = (0..self.channels.len()).filter(|&k| is_read(&self.channels[k])).collect();
         let mut first: Vec<(&String, &Motion)> = Vec::new();
         let mut out = IndexMap::new();
         for (name, motion) in &self.of_group {
-            let known = first.iter().find(|(_, other)| motion.is_like(other, &scales));
-            let of = known.map_or(name, |(of, _)| of);
-            if of == name {
+            let is_run = motion.is_run(&read);
+            let known = first.iter().find(|(_, other)| is_run && motion.is_like(other, &read));
+            out.insert(name.clone(), known.map_or(name, |(of, _)| of).clone());
+            if known.is_none() && is_run {
                 first.push((name, motion));
             }
-            out.insert(name.clone(), of.clone());
         }
-        (first.len() < self.of_group.len()).then_some(out)
-    }
-
-    /// Standard deviation of a velocity over all probes, infinite where it is constant.
-    fn scale(&self, k: usize) -> f64 {
-        let of = |k: usize| self.of_group.values().flat_map(move |m| m.probes.iter().map(move |at| at[k]));
-        let is_alike = |name: &&str| name.starts_with('w') == self.velocities[k].starts_with('w');
-        let alike = (0..self.velocities.len()).filter(|&j| is_alike(&self.velocities[j]));
-        let largest = alike.flat_map(of).fold(0.0_f64, |m, v| m.max(v.abs()));
-        let n = of(k).count() as f64;
-        let mean = of(k).sum::<f64>() / n;
-        let std = (of(k).map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt();
-        if std > CONSTANT * largest { std } else { f64::INFINITY }
+        out.iter().any(|(name, of)| name != of).then_some(out)
     }
 }
 
 impl Motion {
-    fn is_like(&self, other: &Self, scales: &[f64]) -> bool {
-        let [a, b] = [self, other].map(|m| m.last_s - m.first_s);
-        let is_near = |(k, scale): (usize, &f64)| {
-            let squares = self.probes.iter().zip(&other.probes).map(|(p, q)| (p[k] - q[k]).powi(2));
-            (squares.sum::<f64>() / PROBES as f64).sqrt() <= ALIKE * scale
+    fn probe(&mut self, at_s: f64, values: Vec<f64>) {
+        let [first_s, last_s] = self.span_s;
+        while self.probes.len() < PROBES {
+            let probe_s = first_s + (last_s - first_s) * self.probes.len() as f64 / (PROBES - 1) as f64;
+            if probe_s > at_s {
+                break;
+            }
+            let between = |(before, x): (f64, f64), part: f64| before + part * (x - before);
+            let there = match &self.before {
+                Some((before_s, before)) if at_s > *before_s => {
+                    let part = (probe_s - before_s) / (at_s - before_s);
+                    before.iter().copied().zip(values.iter().copied()).map(|pair| between(pair, part)).collect()
+                }
+                _ => values.clone(),
+            };
+            self.probes.push(there);
+        }
+        self.before = Some((at_s, values));
+    }
+
+    fn is_run(&self, read: &[usize]) -> bool {
+        let [first_s, last_s] = self.span_s;
+        !self.falls
+            && self.rows >= FEWEST_ROWS
+            && last_s > first_s
+            && self.probes.len() == PROBES
+            && read.iter().any(|&k| self.channels[k].varies())
+    }
+
+    fn is_like(&self, other: &Self, read: &[usize]) -> bool {
+        let [a, b] = [self, other].map(|m| m.span_s[1] - m.span_s[0]);
+        let is_near = |&k: &usize| {
+            let [p, q] = [self, other].map(|m| &m.channels[k]);
+            let apart = self.probes.iter().zip(&other.probes).map(|(p, q)| (p[k] - q[k]).powi(2)).sum::<f64>();
+            let alike = (ALIKE * p.std().min(q.std())).powi(2)
+                + (AS_FAST * p.mean.abs().max(q.mean.abs())).powi(2)
+                + BY_NOISE * p.noise().max(q.noise()).powi(2);
+            apart / PROBES as f64 <= alike
         };
-        self.configuration == other.configuration
-            && (a - b).abs() <= AS_LONG * a.max(b)
-            && scales.iter().enumerate().all(is_near)
+        self.configuration == other.configuration && (a - b).abs() <= AS_LONG * a.max(b) && read.iter().all(is_near)
     }
 }
 
-/// The groups of rows in time, those that repeat a motion merged, with a note that says so.
-pub(crate) fn merge(data: &mut Dataset) -> Option<Finding> {
+/// Whether all rows follow each other in time, as those of a log do.
+pub(crate) fn is_in_time(data: &Dataset) -> bool {
+    let rises = |time: &[f64]| time.windows(2).all(|pair| pair[1] >= pair[0]);
+    data.rows >= FEWEST_ROWS && data.values("time").is_some_and(rises)
+}
+
+/// The groups of rows in time, those that repeat a motion merged, and what is said of it.
+pub(crate) fn merge(data: &mut Dataset, laws: &[ForceLaw]) -> Option<Finding> {
     let mut motions = Motions::default();
     motions.span(data);
     motions.probe(data);
-    let clusters = motions.clusters()?;
-    rename(data, &clusters);
-    Some(merged(&clusters))
+    let clusters = motions.clusters(laws)?;
+    if is_enough(&clusters) {
+        rename(data, &clusters);
+    }
+    Some(found(&clusters))
+}
+
+fn count(clusters: &IndexMap<String, String>) -> usize {
+    clusters.iter().filter(|(name, of)| name == of).count()
+}
+
+/// Whether there are motions enough to be clusters.
+pub(crate) fn is_enough(clusters: &IndexMap<String, String>) -> bool {
+    count(clusters) >= FEWEST_MOTIONS
 }
 
 /// Puts the cluster of each row in the place of its group.
@@ -142,83 +250,33 @@ pub(crate) fn rename(data: &mut Dataset, clusters: &IndexMap<String, String>) {
     }
     data.grouped_by = GroupedBy::Motion;
     if let Some(all) = &mut data.sample {
-        all.clusters = clusters.iter().filter(|(name, of)| name == of).count();
+        all.clusters = count(clusters);
     }
 }
 
-/// How many groups are how many motions.
-pub(crate) fn merged(clusters: &IndexMap<String, String>) -> Finding {
-    let motions = clusters.iter().filter(|(name, of)| name == of).count();
+/// How many groups are how many motions, and what that does to intervals.
+pub(crate) fn found(clusters: &IndexMap<String, String>) -> Finding {
+    let motions = count(clusters);
     let example = clusters.iter().find(|(name, of)| name != of);
     let example = example.map_or_else(String::new, |(name, of)| format!(" ({name:?} that of {of:?})"));
-    let text = format!(
-        "{} of the {} in time repeat the motion of another{example}: clusters are the {}, since what a law leaves of a motion it leaves of its repeats too",
+    let repeated = format!(
+        "{} of the {} in time repeat the motion of another{example}",
         clusters.len() - motions,
-        counted(clusters.len(), "group", "groups"),
-        counted(motions, "motion", "motions"),
+        counted(clusters.len(), "group", "groups")
     );
-    Finding::new(Severity::Note, "repeated-motions", text)
+    if is_enough(clusters) {
+        let text = format!(
+            "{repeated}: clusters are the {motions} motions, since what a law leaves of a motion it leaves of its repeats too"
+        );
+        return Finding::new(Severity::Note, "repeated-motions", text);
+    }
+    let text = format!(
+        "{repeated}, and {} too few for clusters: the intervals by groups say how well the rig repeats, for {} alone; record other motions",
+        counted(motions, "motion is", "motions are"),
+        if motions == 1 { "this motion" } else { "these motions" }
+    );
+    Finding::new(Severity::Warning, "repeated-motions", text)
 }
 
 #[cfg(test)]
-mod tests {
-    use froude_records::units::Dimension;
-
-    use super::*;
-
-    /// Runs of a sway of 10 s: amplitude m/s, how late the log begins, s.
-    fn runs(of: &[(f64, f64)]) -> Dataset {
-        let mut data = Dataset::default();
-        let (mut time, mut u, mut v, mut group) = (vec![], vec![], vec![], vec![]);
-        for (k, (amplitude, late_s)) in of.iter().enumerate() {
-            for i in 0..400 {
-                let t = 0.05 * f64::from(i);
-                time.push(100.0 * k as f64 + t);
-                u.push(1.0 + 0.001 * f64::from(i % 3));
-                v.push(amplitude * (std::f64::consts::TAU * 0.1 * (t + late_s)).sin() + 0.002 * f64::from(i % 2));
-                group.push(format!("run {k}"));
-            }
-        }
-        data.rows = time.len();
-        data.configuration = vec![String::new(); data.rows];
-        data.put("time", time, Dimension::ONE);
-        data.put("v_x", u, Dimension::SPEED);
-        data.put("v_y", v, Dimension::SPEED);
-        data.group = Some(group);
-        data
-    }
-
-    fn clusters(data: &Dataset) -> Vec<String> {
-        crate::dataset::distinct(data.group.as_ref().unwrap())
-    }
-
-    #[test]
-    fn runs_of_one_motion_are_one_cluster() {
-        let mut data = runs(&[(0.2, 0.0), (0.3, 0.0), (0.2, 0.05), (0.3, 0.0), (0.2, 2.5)]);
-        let said = merge(&mut data).unwrap();
-        // The last begins a quarter of a period later.
-        assert_eq!(clusters(&data), ["run 0", "run 1", "run 4"]);
-        assert!(
-            said.message
-                .starts_with("2 of the 5 groups in time repeat the motion of another (\"run 2\" that of \"run 0\")")
-        );
-        assert_eq!(data.grouped_by, GroupedBy::Motion);
-    }
-
-    #[test]
-    fn means_other_bodies_and_other_durations_are_not_merged() {
-        let alike = [(0.2, 0.0), (0.2, 0.0)];
-        let mut means = runs(&alike);
-        means.channels.shift_remove("time");
-        assert!(merge(&mut means).is_none());
-        let mut bodies = runs(&alike);
-        bodies.configuration = (0..bodies.rows).map(|i| format!("H{}LT", i / 400)).collect();
-        assert!(merge(&mut bodies).is_none());
-        let all = runs(&alike);
-        let shorter: Vec<usize> = (0..all.rows).filter(|i| i % 400 < 350 || *i < 400).collect();
-        assert!(merge(&mut all.subset(&shorter)).is_none());
-        // Rows that do not follow each other.
-        let back: Vec<usize> = (0..all.rows).rev().collect();
-        assert!(merge(&mut all.subset(&back)).is_none());
-    }
-}
+mod tests;

@@ -2,7 +2,7 @@
 //!
 //! In a row the law gives F = F(x; β) with Cov(F) = X·Cov(β)·Xᵀ, X = ∂F/∂β: scatter and every declared error of the record. A single measurement scatters about it by s: its own standard uncertainty where the table states one (`std_f_x`), and else the residual standard deviation of the record, which holds what the law itself misses. The band is that of the law, F ± k u_law; the error e = measured − F has u² = u_law² + s², and E_n = e/(k u), beyond ±1 in one row of twenty by chance. k is Student's at the degrees of freedom of Welch and Satterthwaite.
 //!
-//! Rows of one record err together: a coefficient that is too large is so in all of them. So one number judges all rows, χ² = eᵀ(X Cov(β) Xᵀ + diag s²)⁻¹e, which has a mean of as many as there are rows. Where s was estimated, χ²/n is compared with F(n, ν) and not with χ².
+//! Rows of one record err together: a coefficient that is too large is so in all of them. So one number judges all rows, χ² = eᵀ(X Cov(β) Xᵀ + diag s²)⁻¹e, which has a mean of as many as there are rows. Where s was estimated, χ²/n is compared with F(n, ν) and not with χ². A record whose scatter is that of clusters has no such p.
 //!
 //! An error that the table has too (the same balance, the same tank) is counted as if it had none: the record cannot know it.
 //!
@@ -78,8 +78,8 @@ pub struct Joint {
     pub n: usize,
     /// Degrees of freedom of the scatter, least of the loads; infinite where the table states it.
     pub dof: f64,
-    /// How often chance alone gives as much.
-    pub p: f64,
+    /// How often chance alone gives as much; `None` of a record whose scatter is that of clusters: rows of one err alike, and are not so many errors.
+    pub p: Option<f64>,
 }
 
 /// A record's law on the rows of a data set.
@@ -138,7 +138,8 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
     }
     let joint = chi_squared(slopes.as_ref(), &inside).map(|chi_squared| {
         let n = inside.len();
-        Joint { chi_squared, n, dof, p: f_upper(chi_squared / n as f64, n as f64, dof) }
+        let p = estimate.clusters.is_none().then(|| f_upper(chi_squared / n as f64, n as f64, dof));
+        Joint { chi_squared, n, dof, p }
     });
     Ok(Predicted { id: estimate.id.clone(), law: estimate.law.name.clone(), rows, joint })
 }

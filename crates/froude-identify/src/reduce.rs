@@ -7,6 +7,7 @@ use std::path::Path;
 use froude_hydro::fluid::Water;
 use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Source};
 use froude_records::finding::{Finding, Severity};
+use froude_records::nearest::meant;
 use froude_records::plausible;
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration, read_table};
 use froude_records::text::counted;
@@ -225,7 +226,10 @@ fn dataset(table: &Table, source: &Source, has_speed: bool) -> Result<Dataset, I
         if !table.columns.iter().any(|c| &c.name == group) {
             return Err(IdentifyError::Campaign {
                 place: source.place.to_string(),
-                what: format!("group = {group:?}: the table has no such column"),
+                what: format!("group = {group:?}: the table has no such column{}", {
+                    let names = table.columns.iter().map(|c| c.name.as_str());
+                    meant(group, names).map_or_else(String::new, |advice| format!("; {advice}"))
+                }),
             });
         }
         let group = text(group);

@@ -11,7 +11,7 @@
 //!
 //! # Source
 //!
-//! Durbin & Watson (1951), Biometrika 38, 159; Evans & King (1985), J. Econometrics 27, 387 (the ratio is the locally best invariant test of a variance that goes with z);
+//! Durbin & Watson (1951), Biometrika 38, 159; King & Hillier (1985), J. Royal Stat. Soc. B 47, 98 (the ratio is the locally best invariant test of a variance that goes with z);
 //! probabilities by Imhof (1961), see [`froude_fit::ratio`].
 
 use froude_fit as fit;
@@ -41,7 +41,7 @@ const MOST_WORK: usize = 100_000_000;
 const ROUNDING: f64 = 1e-9;
 
 /// What contradicts the scatter that the intervals assume.
-pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, usize)]) -> Vec<Finding> {
+pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, usize)]) -> Vec<(String, Finding)> {
     // Huber's loss answers for rows that do not fit in.
     if data.rows < FEWEST_ROWS || model.in_variables || model.options.loss != fit::Loss::Squares {
         return Vec::new();
@@ -63,11 +63,13 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, us
             continue;
         }
         let load = &model.law.responses[r];
-        out.extend(serial(model, data, load, residuals, loads));
+        let mut found = Vec::new();
+        found.extend(serial(model, data, load, residuals, loads));
         // One row that lies apart is that, and no scatter that grows: the others are asked.
         let apart = outlying.iter().find(|(of, _)| of == load).map(|(_, row)| *row);
-        out.extend(uneven(model, data, load, (&without(residuals, apart), predicted), loads));
-        out.extend(offset(model, data, load, residuals, loads));
+        found.extend(uneven(model, data, load, (&without(residuals, apart), predicted), loads));
+        found.extend(offset(model, data, load, residuals, loads));
+        out.extend(found.into_iter().map(|finding| (load.clone(), finding)));
     }
     out
 }
@@ -127,10 +129,14 @@ fn serial(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
     (p < ALARM_OF_FEW / loads).then(|| {
         let text = format!(
             "{}, {load}: residuals of successive rows are alike (Durbin–Watson {statistic:.2}, 2 where independent, {}): intervals assume \
-             independent rows and are too narrow. covariance = \"blocks\" takes four contiguous blocks of rows for independent instead; a law that \
-             follows the drift removes it",
+             independent rows and are too narrow. {} for independent instead; a law that follows the drift removes it",
             model.law.name,
-            p_equation(p)
+            p_equation(p),
+            if data.group.is_some() {
+                "covariance = \"cluster\" takes the groups"
+            } else {
+                "covariance = \"blocks\" takes four contiguous blocks of rows"
+            }
         );
         Finding::new(Severity::Warning, "serial-correlation", text)
     })

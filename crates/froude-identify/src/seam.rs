@@ -8,12 +8,14 @@ pub(crate) mod reduced;
 
 use std::fmt::Write as _;
 
-use froude_records::campaign::Identify;
+use froude_records::campaign::{Identify, StatedUnit};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::significant;
+use froude_records::units::parse_unit;
 
 use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
+use crate::law::ForceLaw;
 use crate::regression::formula_of::as_formula;
 use crate::regression::{FormulaOf, ModelFit, Settings, regress};
 use crate::result::{NotFitted, SourceResult};
@@ -45,6 +47,7 @@ pub(crate) fn conclude(
     fitted: Vec<Result<ModelFit, (String, IdentifyError)>>,
     progress: &dyn Fn(&str),
 ) -> Result<SourceResult, IdentifyError> {
+    check_units(identify, &reduced.laws)?;
     let mut findings = std::mem::take(&mut reduced.findings);
     let (data, settings) = (&reduced.data, reduced.settings(identify));
     let (mut models, mut failed) = (Vec::new(), Vec::new());
@@ -116,6 +119,24 @@ pub(crate) fn conclude(
         validity: reduced.validity,
         files: reduced.files,
     })
+}
+
+/// Refuses a value of a coefficient in a unit that is none of its own.
+fn check_units(identify: &Identify, laws: &[ForceLaw]) -> Result<(), IdentifyError> {
+    for StatedUnit { coefficient, model, unit, place } in &identify.stated_units {
+        for law in laws.iter().filter(|law| model.as_ref().is_none_or(|model| *model == law.name)) {
+            let Some(spec) = law.coefficients.iter().find(|spec| spec.name == *coefficient) else { continue };
+            // Units of a power law have an exponent that is not known before.
+            if parse_unit(&spec.unit).is_ok_and(|own| own.dimension != unit.dimension) {
+                let what = format!(
+                    "{coefficient} of {} is in {}, and is stated in {}: write it in its unit (a standard uncertainty also in %)",
+                    law.name, spec.unit, unit.text
+                );
+                return Err(IdentifyError::Campaign { place: place.to_string(), what });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Widens the smaller law that the data support to a formula of the recommended one, and says how far it is from that.

@@ -60,10 +60,10 @@ pub fn identify_observations(
     }
     in_blocks(campaign, &mut observations.data);
     let laws = laws(campaign, source, &observations.data)?;
-    let scatter = scatter(campaign, source, &observations.data, &mut findings)?;
-    if merges_motions(campaign, &scatter) {
-        findings.extend(motions::merge(&mut observations.data));
+    if merges_motions(campaign, source) {
+        findings.extend(motions::merge(&mut observations.data, &laws));
     }
+    let scatter = scatter(campaign, source, &observations.data, &mut findings)?;
     let observations = Observations { findings: [observations.findings, findings].concat(), ..observations };
     identify_laws(
         campaign,

@@ -104,6 +104,12 @@ fn of_load(load: &'static str, f: &[f64], data: &Dataset, settings: &[Vec<usize>
         if gap(&cut) < APART || !is_tight(low) || !is_tight(high) || (is_thin && cause(factor).is_none()) {
             return None;
         }
+        // A zero that nobody subtracted, as large as the load of the slowest row.
+        if let [(_, alone)] = low
+            && near_zero(high, *alone, f, &u)
+        {
+            return None;
+        }
         let pairs = high.iter().flat_map(|(_, i)| low.iter().map(move |(_, j)| [*i, *j]));
         let apart = |[i, j]: &[usize; 2]| (u(*i) / u(*j)).ln().abs();
         let rows = pairs.min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
@@ -118,6 +124,16 @@ fn of_load(load: &'static str, f: &[f64], data: &Dataset, settings: &[Vec<usize>
         }
         Some(TwoUnits { load, rows, factor })
     })
+}
+
+/// Whether the other rows of a setting, by a square of the speed and a zero, foretell less than half of what their |f|/U² does.
+fn near_zero(others: &[(f64, usize)], row: usize, f: &[f64], u: &dyn Fn(usize) -> f64) -> bool {
+    let n = others.len() as f64;
+    let mean = |of: &dyn Fn(usize) -> f64| others.iter().map(|(_, i)| of(*i)).sum::<f64>() / n;
+    let (x, y) = (mean(&|i| u(i) * u(i)), mean(&|i| f[i]));
+    let slope = mean(&|i| (u(i) * u(i) - x) * (f[i] - y)) / mean(&|i| (u(i) * u(i) - x).powi(2));
+    let foretold = (y + slope * (u(row) * u(row) - x)).abs();
+    foretold < 0.5 * others[others.len() / 2].0 * u(row) * u(row)
 }
 
 /// Median |ln| of the ratio of neighbours in speed.
@@ -213,6 +229,22 @@ mod tests {
             let milli = table(seed, 0.02, 2, &[0.0], |i| if i % 2 == 0 { 1e3 } else { 1.0 });
             assert_eq!(found(&milli, &LOADS).unwrap().cause(), "some rows lack a prefix (N and mN, kN and N)");
         }
+    }
+
+    /// The zero of a setup takes the load of its slowest row nearly away: by chance a hundredth is left.
+    #[test]
+    fn a_zero_is_no_unit() {
+        let mut data = table(1, 0.0, 1, &[0.0], |_| 1.0);
+        let speed = data.values("speed").unwrap().to_vec();
+        let load = |zero: f64| speed.iter().map(|u| -5.0 * u * u + zero).collect::<Vec<f64>>();
+        let slow = 5.0 * speed[3] * speed[3];
+        data.put("f_x", load(0.99 * slow), Dimension::FORCE);
+        let fast: Vec<usize> = (3..10).collect();
+        assert_eq!(found(&data.subset(&fast), &["f_x"]), None);
+        let mut one = load(0.0);
+        one[3] *= 0.01;
+        data.put("f_x", one, Dimension::FORCE);
+        assert!(found(&data.subset(&fast), &["f_x"]).is_some());
     }
 
     /// Two mounts of one body may load a sensor a hundredfold differently.

@@ -22,7 +22,7 @@ use crate::excited_response::{ExcitedPlan, ExcitedSpec};
 use crate::oscillation::{OscillationPlan, OscillationSpec};
 use crate::rotation::{RotationPlan, RotationSpec};
 use crate::steady::SteadySpec;
-use crate::units::Dimension;
+use crate::units::{Dimension, Unit};
 use crate::weight_tow::{WeightPlan, WeightTowSpec};
 
 pub use crate::body_axis::BodyAxis;
@@ -390,6 +390,8 @@ pub struct Identify {
     pub known: Vec<PriorSpec>,
     /// Covariance of the known coefficients, in their order (SI).
     pub known_covariance: Vec<Vec<f64>>,
+    /// Units in which values of coefficients are written, for the laws to check.
+    pub stated_units: Vec<StatedUnit>,
     /// `classical`, `HC3`, `cluster` or `blocks`; `None` to choose by the data.
     pub covariance: Option<String>,
     /// Whether rows are weighted by a variance that is fitted to the residuals (`weights = "fitted"`).
@@ -412,6 +414,19 @@ pub struct Identify {
     pub user_models: Vec<UserModel>,
     /// Whether speed and angle are uncertain too (`errors_in_variables = true`).
     pub errors_in_variables: bool,
+}
+
+/// The unit in which a value of a coefficient, or its uncertainty, is written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StatedUnit {
+    /// The coefficient.
+    pub coefficient: String,
+    /// The model; `None` for all that have the coefficient.
+    pub model: Option<String>,
+    /// As it is written.
+    pub unit: Unit,
+    /// Where it stands in the campaign.
+    pub place: Place,
 }
 
 /// Bounds of coefficients.

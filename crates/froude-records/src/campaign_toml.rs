@@ -13,7 +13,8 @@ use crate::body::link;
 use crate::body_axis::BodyAxis;
 use crate::campaign::{
     AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, PlanBlock,
-    PriorRecord, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
+    PriorRecord, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, StatedUnit, Tank, Tare,
+    Truth, UserModel,
 };
 use crate::carriage_toml::carriage;
 use crate::cfd::cfd;
@@ -31,7 +32,7 @@ use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::section_values::{at_most, count, one_of, series};
 use crate::steady::steady;
 use crate::table::known_dimension;
-use crate::units::Dimension;
+use crate::units::{Dimension, Unit};
 use crate::weight_tow::{weight_plan, weight_tow};
 
 /// Kinds of covariance that can be asked for.
@@ -444,16 +445,27 @@ fn bounds(s: &Section<'_>) -> Result<BoundsSpec, RecordError> {
     Ok(out)
 }
 
-/// A value of a coefficient: a plain number in SI, or a quantity in quotes.
-fn coefficient_value<'a>(s: &Section<'a>, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<f64, RecordError> {
-    if value.get_ref().is_str() { s.as_quantity(key, value).map(|q| q.value_si) } else { s.as_number(key, value) }
+/// A value of a coefficient: a plain number in SI, or a quantity in quotes, with its unit.
+fn coefficient_value<'a>(
+    s: &Section<'a>,
+    key: &str,
+    value: &'a Spanned<DeValue<'a>>,
+) -> Result<(f64, Option<Unit>), RecordError> {
+    if value.get_ref().is_str() {
+        s.as_quantity(key, value).map(|q| (q.value_si, Some(q.unit)))
+    } else {
+        Ok((s.as_number(key, value)?, None))
+    }
 }
 
 fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
-    let mut fixed = IndexMap::new();
+    let (mut fixed, mut stated_units) = (IndexMap::new(), Vec::new());
     if let Some(table) = s.section("fixed")? {
         for (name, _, value) in table.entries() {
-            fixed.insert(name.to_owned(), coefficient_value(&table, name, value)?);
+            let (held, unit) = coefficient_value(&table, name, value)?;
+            fixed.insert(name.to_owned(), held);
+            let place = table.source.place(value.span().start);
+            stated_units.extend(unit.map(|unit| StatedUnit { coefficient: name.to_owned(), model: None, unit, place }));
         }
     }
     let angle_offset =
@@ -466,8 +478,9 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
         model_places,
         bounds: bounds(s)?,
         exclude: s.texts("exclude")?,
-        prior: s.sections("prior")?.iter().map(prior).collect::<Result<_, _>>()?,
-        known: known(s, &fixed)?,
+        prior: s.sections("prior")?.iter().map(|s| prior(s, &mut stated_units)).collect::<Result<_, _>>()?,
+        known: known(s, &fixed, &mut stated_units)?,
+        stated_units,
         fixed,
         // It follows when the records are read.
         known_covariance: Vec::new(),
@@ -488,10 +501,14 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
 }
 
 /// Known coefficients, each held once.
-fn known(s: &Section<'_>, fixed: &IndexMap<String, f64>) -> Result<Vec<PriorSpec>, RecordError> {
+fn known(
+    s: &Section<'_>,
+    fixed: &IndexMap<String, f64>,
+    stated_units: &mut Vec<StatedUnit>,
+) -> Result<Vec<PriorSpec>, RecordError> {
     let mut out: Vec<PriorSpec> = Vec::new();
     for section in s.sections("known")? {
-        let one = prior(&section)?;
+        let one = prior(&section, stated_units)?;
         let is_twice = out.iter().any(|other| {
             other.coefficient == one.coefficient
                 && (other.model == one.model || other.model.is_none() || one.model.is_none())
@@ -510,7 +527,8 @@ fn known(s: &Section<'_>, fixed: &IndexMap<String, f64>) -> Result<Vec<PriorSpec
     Ok(out)
 }
 
-fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
+/// A value with its standard uncertainty, in its unit or in per cent of the value.
+fn prior(s: &Section<'_>, stated_units: &mut Vec<StatedUnit>) -> Result<PriorSpec, RecordError> {
     s.only(&[
         "coefficient",
         "value",
@@ -546,19 +564,25 @@ fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
     if let Some((key, value)) = ["select", "entry", "volume", "model_form"].iter().find_map(|k| Some((*k, s.get(k)?))) {
         return Err(s.wrong(key, value, "belongs to a value of a record: write record = \"estimate.json\" beside it"));
     }
-    let need = |key: &'static str| -> Result<f64, RecordError> {
+    let mut need = |key: &'static str, percent_of: Option<f64>| -> Result<f64, RecordError> {
         let value =
             s.get(key).ok_or_else(|| s.missing(key, "coefficient, value and standard_uncertainty are needed"))?;
-        coefficient_value(s, key, value)
+        let (si, unit) = coefficient_value(s, key, value)?;
+        match (unit, percent_of) {
+            (Some(unit), Some(whole)) if unit.text.trim() == "%" => return Ok(si * whole.abs()),
+            (Some(unit), _) => stated_units.push(StatedUnit {
+                coefficient: coefficient.clone(),
+                model: model.clone(),
+                unit,
+                place: s.source.place(value.span().start),
+            }),
+            _ => {}
+        }
+        Ok(si)
     };
-    let out = PriorSpec {
-        coefficient,
-        value: need("value")?,
-        standard_uncertainty: need("standard_uncertainty")?,
-        dof: None,
-        model,
-        record: None,
-    };
+    let value = need("value", None)?;
+    let standard_uncertainty = need("standard_uncertainty", Some(value))?;
+    let out = PriorSpec { coefficient, value, standard_uncertainty, dof: None, model, record: None };
     if out.standard_uncertainty <= 0.0 {
         return Err(RecordError::Value {
             place: s.place(),
@@ -613,7 +637,7 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
                 model.ok_or_else(|| s.missing("model", "name the force model that the coefficients belong to"))?;
             let values = table
                 .entries()
-                .map(|(name, _, v)| Ok((name.to_owned(), coefficient_value(&table, name, v)?)))
+                .map(|(name, _, v)| Ok((name.to_owned(), coefficient_value(&table, name, v)?.0)))
                 .collect::<Result<_, RecordError>>()?;
             Ok(Truth::Coefficients { model: model.to_owned(), values })
         })

@@ -380,7 +380,8 @@ pub fn coefficient_expanded(c: &Coefficient) -> String {
             return plus_minus(value, half);
         }
     }
-    usable(c.standard_uncertainty).map_or_else(|| plain(value, 5), |u| plus_minus(value, 2.0 * u))
+    // Without an interval there is none to halve, whatever the standard uncertainty.
+    usable(c.standard_uncertainty).map_or_else(|| plain(value, 5), |u| short_form(value, u))
 }
 
 #[cfg(test)]
@@ -483,7 +484,7 @@ mod tests {
         c.status = Status::Free;
         c.value = Some(0.0133);
         c.standard_uncertainty = Some(0.0012);
-        assert_eq!(coefficient_expanded(&c), "0.0133 ± 0.0024");
+        assert_eq!(coefficient_expanded(&c), "0.0133(12)");
         c.interval_95 = Some([0.0107, 0.0159]);
         assert_eq!(coefficient_expanded(&c), "0.0133 ± 0.0026");
         c.interval_95 = Some([0.0, 0.0159]);

@@ -171,7 +171,7 @@ impl Page<'_> {
                 @if !self.report.sources.is_empty() {
                     p class="legend" {
                         "± is the expanded uncertainty: half of the 95 % interval. Digits in brackets, as in 0.0133(12), are \
-                         the standard uncertainty in the last digits of the value. (bound): the constrained fit lies on a \
+                         the standard uncertainty in the last digits of the value, of which no interval is given where they stand alone. (bound): the constrained fit lies on a \
                          bound. —: the data do not determine the coefficient. †: no uncertainty is stated."
                     }
                 }

@@ -177,7 +177,7 @@ impl Prediction {
             ))
         };
         let loads: Vec<String> = by_load(predicted).iter().filter_map(of).collect();
-        let is_contradicted = predicted.joint.is_some_and(|joint| joint.p < CONTRADICTED);
+        let is_contradicted = predicted.joint.and_then(|joint| joint.p).is_some_and(|p| p < CONTRADICTED);
         let (severity, code) =
             if is_contradicted { (Severity::Warning, "validation-fails") } else { (Severity::Note, "validation") };
         let number = predicted.joint.as_ref().map_or_else(|| "no scatter is known, and so no χ²".to_owned(), joint);
@@ -334,20 +334,23 @@ impl Prediction {
 
 fn joint(found: &Joint) -> String {
     let Joint { chi_squared, n, dof: of_scatter, p } = found;
+    let number = format!(
+        "χ² = {} over {}, with the covariance between rows",
+        significant(*chi_squared, 4),
+        counted(*n, "load in a row", "loads in rows")
+    );
+    let Some(p) = p else {
+        return format!("{number}; no p, since the scatter of the record is that of clusters, in which rows err alike");
+    };
     let verdict = if *p < CONTRADICTED {
         "the record does not hold here: its errors and its scatter together do not explain what was measured"
     } else {
-        "no more than its errors and its scatter together explain (below 1 % it would be more)"
+        "no more than its errors and its scatter together explain (a p below 1 % would say more)"
     };
     let with = if of_scatter.is_finite() {
         format!("F({n}, {}), as the scatter was estimated", dof(*of_scatter))
     } else {
         format!("χ²({n})")
     };
-    format!(
-        "χ² = {} over {}, with the covariance between rows; {} by {with}: {verdict}",
-        significant(*chi_squared, 4),
-        counted(*n, "load in a row", "loads in rows"),
-        p_equation(*p)
-    )
+    format!("{number}; {} by {with}: {verdict}", p_equation(*p))
 }

@@ -142,8 +142,8 @@ fn what_decides_a_coefficient_alone_is_named() {
     let error = fit(&problem, &with(CovarianceKind::Cr3)).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "without cluster 9 component \"y\" no longer determines its coefficients; the cluster \
-         jackknife (CR3) needs every one determined by the others"
+        "without its 10. cluster in order of appearance component \"y\" no longer determines its coefficients; the cluster \
+         jackknife (CR3) needs every one determined by the others (offsets of the clusters are determined by none)"
     );
 }
 

@@ -100,7 +100,7 @@ fn options_that_cannot_be() {
     );
     with(
         Options { covariance: CovarianceKind::Cr3, ..Options::default() },
-        "cluster-robust covariance needs a cluster for every row, and none are given",
+        "cluster-robust covariance needs a cluster for every row, and none are given: name the column that has them, group = \"run\" say",
     );
     with(
         Options { equalities: vec![Constraint { row: vec![f64::NAN, 0.0], value: 0.0 }], ..Options::default() },

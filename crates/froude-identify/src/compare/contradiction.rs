@@ -1,6 +1,6 @@
 //! What two estimates say that cannot both be so, or that is not tied to one axis, one density, one constant.
 
-use froude_records::estimate::Estimate;
+use froude_records::estimate::{Estimate, Status};
 use froude_records::finding::{Finding, Severity};
 
 use super::independence::is_one_source;
@@ -8,7 +8,12 @@ use crate::compare::named::Named;
 
 /// Two records of the same source and model that say different things, with what looks like a slip.
 pub(super) fn contradiction(a: &Named<'_>, b: &Named<'_>) -> Option<Finding> {
-    let value = |n: &Named<'_>, name: &str| n.estimate.coefficients.get(name).and_then(|c| c.value);
+    // What one of them holds at a value is no estimate.
+    let is_held = |name: &str| {
+        [a, b].iter().any(|n| n.estimate.coefficients.get(name).is_some_and(|c| c.status == Status::Fixed))
+    };
+    let value =
+        |n: &Named<'_>, name: &str| n.estimate.coefficients.get(name).filter(|_| !is_held(name)).and_then(|c| c.value);
     let differing: Vec<(&String, f64, f64)> = a
         .estimate
         .coefficients

@@ -15,9 +15,9 @@ use super::rows::{End, Ends, Row, Sample, without_rows};
 use crate::dataset::{Dataset, LOADS};
 use crate::error::IdentifyError;
 use crate::large::limits::{MOST_CLUSTERS, MOST_CONFIGURATIONS, refusal};
+use crate::law::ForceLaw;
 use crate::lint;
 use crate::lint::motion::Pushed;
-use crate::motions::Motions;
 use crate::reduce::{conditioned, kept_rows, zeros_of};
 use crate::source::models::MOMENTS;
 use crate::validity::{self, AT_REST, off_axis, per_observation};
@@ -80,7 +80,6 @@ pub(super) struct Facts {
     groups: IndexSet<String>,
     /// The cluster of each group, where that is not itself.
     merged: IndexMap<String, String>,
-    motions: Motions,
     pub(super) squares: IndexMap<String, f64>,
     density: f64,
 }
@@ -98,7 +97,6 @@ impl Facts {
             configurations: IndexSet::new(),
             groups: IndexSet::new(),
             merged: IndexMap::new(),
-            motions: Motions::default(),
             squares: IndexMap::new(),
             density: 0.0,
         }
@@ -154,7 +152,6 @@ impl Facts {
         for &i in keep {
             self.sample.take(table, i);
         }
-        self.motions.span(data);
         // Where the table names none, all rows are of the one without a name.
         let is_named = table.columns.iter().any(|column| column.name == "configuration");
         let configurations =
@@ -166,11 +163,6 @@ impl Facts {
     /// Whether no row can be a copy of another: a column rises from each to the next.
     pub(super) fn has_no_copies(&self) -> bool {
         !self.rising.is_empty()
-    }
-
-    /// The motions of the groups, of which only the spans are known.
-    pub(super) fn motions(&mut self) -> Motions {
-        std::mem::take(&mut self.motions)
     }
 
     /// Puts clusters in the place of groups.
@@ -351,11 +343,12 @@ impl Seconds {
     }
 
     /// The lints that count rows; `data` says which channels there are.
-    pub(super) fn findings(&self, facts: &Facts, data: &Dataset) -> Vec<Finding> {
+    pub(super) fn findings(&self, facts: &Facts, data: &Dataset, laws: &[ForceLaw]) -> Vec<Finding> {
         let mut out = lint::motion::along_motion(&self.pushed, facts.n_used, data);
         out.extend(facts.saturation());
         out.extend(has(data, "angle").then(|| lint::in_radians(self.angles.count(), facts.largest("angle"))).flatten());
-        out.extend(has(data, "speed").then(|| lint::few_speeds(self.speeds.count())).flatten());
+        let asks_speeds = has(data, "speed") && lint::of_speeds(laws).next().is_some();
+        out.extend(asks_speeds.then(|| lint::few_speeds(self.speeds.count())).flatten());
         out
     }
 }

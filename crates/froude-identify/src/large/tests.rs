@@ -153,7 +153,7 @@ fn keep_clusters_bounds_and_drag_models_are_the_same_from_rows_and_from_chunks()
     check(&written(folder.path(), source, "models = [\"f4\"]\nbounds = \"non-negative\"\ndissipative = true"));
 }
 
-/// Runs of two bodies that sway by six amplitudes, each twice.
+/// Runs of a body that sways by six amplitudes, each twice.
 fn repeated() -> String {
     let mut rng = Pcg64::new(7, 0);
     let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };

@@ -49,10 +49,25 @@ pub(crate) fn in_blocks(campaign: &Campaign, data: &mut Dataset) {
     }
 }
 
-/// Whether runs that repeat a motion are one cluster: wherever groups are clusters, and not offsets or blocks.
-pub(crate) fn merges_motions(campaign: &Campaign, scatter: &Scatter) -> bool {
-    let is_blocks = campaign.identify.covariance.as_deref() == Some("blocks");
-    *scatter == Scatter::Cluster && !is_blocks && !campaign.identify.group_offset
+/// Whether runs that repeat a motion are one cluster: wherever groups may be clusters, and are no offsets.
+pub(crate) fn merges_motions(campaign: &Campaign, source: &Source) -> bool {
+    let is_asked = match campaign.identify.covariance.as_deref() {
+        Some(kind) => kind.eq_ignore_ascii_case("cluster") || kind.eq_ignore_ascii_case("cr3"),
+        None => source.kind == SourceKind::Cfd,
+    };
+    is_asked && !campaign.identify.group_offset
+}
+
+/// That groups are named and change no interval, where nobody said how they count.
+fn group_not_used(campaign: &Campaign, source: &Source) -> Option<Finding> {
+    let identify = &campaign.identify;
+    let is_open = identify.covariance.is_none() && !identify.group_offset && source.kind != SourceKind::Cfd;
+    let group = source.group.as_ref().filter(|_| is_open)?;
+    let text = format!(
+        "group = {group:?} is named, and rows are taken for independent all the same: write covariance = \"cluster\" in [identify] where the rows of a group err alike, or group_offset = \"estimate\" where \
+         each has an offset of its own"
+    );
+    Some(Finding::new(Severity::Note, "group-not-used", text))
 }
 
 /// The scatter that the campaign asks for, else what suits the source: residuals of a computation are model error, alike within a configuration.
@@ -72,7 +87,10 @@ pub(crate) fn scatter(
                 what: format!("covariance = {other:?} is not known; use classical, HC3, cluster or blocks"),
             });
         }
-        None if source.kind != SourceKind::Cfd => return Ok(Scatter::Classical),
+        None if source.kind != SourceKind::Cfd => {
+            findings.extend(group_not_used(campaign, source));
+            return Ok(Scatter::Classical);
+        }
         None => {}
     }
     let clusters = data.clusters();

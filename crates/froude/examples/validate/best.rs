@@ -1,10 +1,10 @@
-//! The best tests of a fault: 80 % points that no test can go below, given what it does not know.
+//! The best tests of a fault: their 80 % points, given what they do not know.
 //!
 //! | of | knows | source |
 //! | --- | --- | --- |
 //! | [`known`] | the direction of the fault, and σ | Neyman & Pearson (1933) |
 //! | [`one_row`] | neither the row nor σ | Ferguson (1961), 4th Berkeley Symp. 1, 253 |
-//! | [`of_covariance`] | the covariance of the errors under the fault, neither σ nor the coefficients | King (1980), J. Royal Stat. Soc. B 42, 100 |
+//! | [`of_covariance`] | the covariance of the errors under the fault, neither σ nor the coefficients | King (1987), Econometric Reviews 6, 169 |
 
 use froude::fit::distribution::{coverage_factor, normal_quantile};
 use froude::fit::faer::linalg::solvers::Solve;

@@ -47,7 +47,12 @@ pub fn all(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
             ROOM,
             what,
             "p of one χ² over all rows; |E_n| beyond 1 in one of twenty by chance",
-            format!("{}: p = {:.3}, |E_n| > 1 in {beyond} of {} rows", first.law, joint.p, counted.len()),
+            format!(
+                "{}: p = {:.3}, |E_n| > 1 in {beyond} of {} rows",
+                first.law,
+                joint.p.ok_or("no p")?,
+                counted.len()
+            ),
             Verdict::Measured,
         );
     }
