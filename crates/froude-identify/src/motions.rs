@@ -266,7 +266,7 @@ pub(crate) fn found(clusters: &IndexMap<String, String>) -> Finding {
     );
     if is_enough(clusters) {
         let text = format!(
-            "{repeated}: clusters are the {motions} motions, since what a law leaves of a motion it leaves of its repeats too"
+            "{repeated}: clusters are the {motions} motions, because repeats of a motion leave the same residuals"
         );
         return Finding::new(Severity::Note, "repeated-motions", text);
     }

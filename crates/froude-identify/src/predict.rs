@@ -17,6 +17,7 @@ use froude_records::units::Dimension;
 use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
+use crate::regression::FEWEST_CLUSTER_DOF;
 
 /// Of the water, and not of the motion: no law is extrapolated in it.
 const OF_WATER: &str = "temperature";
@@ -49,7 +50,7 @@ pub struct Row {
     pub predicted: f64,
     /// Standard uncertainty of F; `None` where the record states no covariance.
     pub u_law: Option<f64>,
-    /// Half-width of the 95 % band of F.
+    /// Half-width of the 95 % band of F; `None` also where a coefficient that it goes with has fewer than two degrees of freedom over clusters.
     pub half_width_95: Option<f64>,
     /// What was measured.
     pub measured: Option<f64>,
@@ -113,11 +114,16 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
             let scatter = stated.map(|stated| stated[row]).or_else(|| sigma(forces[place])).filter(|s| *s > 0.0);
             let parts = slopes.as_ref().map(|slopes| slopes.parts(place));
             let u_law = parts.as_ref().map(|parts| combined(parts).0);
+            // One cluster decides: as for a coefficient, there is no quantile.
+            let has_quantile = estimate.clusters.is_none()
+                || parts.iter().flatten().next().is_none_or(|(_, dof)| *dof >= FEWEST_CLUSTER_DOF);
             let measured = measured.get(row).copied().filter(|v| v.is_finite());
             let outside = outside(estimate, data, row);
             let own = (scatter.unwrap_or(0.0), if stated.is_some() { f64::INFINITY } else { of_sigma });
             let (u, all_dof) = combined(&[parts.clone().unwrap_or_default(), vec![own]].concat());
-            let e_n = measured.filter(|_| u > 0.0).map(|m| (m - forces[place]) / (coverage_factor(0.95, all_dof) * u));
+            let e_n = measured
+                .filter(|_| u > 0.0 && has_quantile)
+                .map(|m| (m - forces[place]) / (coverage_factor(0.95, all_dof) * u));
             if measured.is_some() && scatter.is_some() && outside.is_empty() {
                 inside.push((place, measured.unwrap_or_default() - forces[place], own.0));
                 dof = dof.min(own.1);
@@ -128,7 +134,10 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
                 unit: unit_text(data, load),
                 predicted: forces[place],
                 u_law,
-                half_width_95: parts.map(|parts| combined(&parts)).map(|(u, dof)| coverage_factor(0.95, dof) * u),
+                half_width_95: parts
+                    .filter(|_| has_quantile)
+                    .map(|parts| combined(&parts))
+                    .map(|(u, dof)| coverage_factor(0.95, dof) * u),
                 measured,
                 scatter,
                 e_n,

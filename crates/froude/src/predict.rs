@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use froude_identify::dataset::Dataset;
 use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate};
 use froude_identify::reduce::rows_of;
+use froude_identify::regression::FEWEST_CLUSTER_DOF;
 use froude_records::csv_table::csv_bytes;
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
@@ -60,7 +61,8 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
     let record = read_estimates(&job.record)?;
     let (data, findings) = rows_of(&job.table, job.sidecar.as_deref())?;
     let chosen = chosen(&record.estimates, &job.laws).map_err(|what| refused(&job.record, what))?;
-    let mut out = Prediction { findings, ..of_rows(&chosen, data)? };
+    let mut out = of_rows(&chosen, data)?;
+    out.findings = [findings, out.findings].concat();
     if let Some(folder) = &job.out {
         std::fs::create_dir_all(folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
         for predicted in &out.estimates {
@@ -79,8 +81,26 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
 /// A law that reads what the rows lack.
 pub fn of_rows(estimates: &[&Estimate], data: Dataset) -> Result<Prediction, Error> {
     let of = |estimate: &&Estimate| of_estimate(estimate, &with_density(&data, estimate));
+    let findings = estimates.iter().filter_map(|estimate| without_bands(estimate)).collect();
     let estimates = estimates.iter().map(of).collect::<Result<_, _>>()?;
-    Ok(Prediction { estimates, findings: Vec::new(), written: Vec::new(), data })
+    Ok(Prediction { estimates, findings, written: Vec::new(), data })
+}
+
+/// That one cluster decides a coefficient, and what follows for forces.
+fn without_bands(estimate: &Estimate) -> Option<Finding> {
+    let clusters = estimate.clusters.as_ref()?;
+    let own = estimate.type_a.as_ref()?;
+    let few = own.names.iter().zip(&own.dof).filter(|(_, dof)| dof.is_some_and(|dof| dof < FEWEST_CLUSTER_DOF));
+    let names: Vec<&str> = few.map(|(name, _)| name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        let text = format!(
+            "{}: {} with fewer than two degrees of freedom over its {}: forces that go with them have no band and no E_n",
+            estimate.id,
+            names.join(", "),
+            counted(clusters.n, &clusters.by, &format!("{}s", clusters.by))
+        );
+        Finding::new(Severity::Warning, "no-band", text)
+    })
 }
 
 fn refused(record: &Path, what: String) -> Error {
@@ -225,9 +245,9 @@ impl Prediction {
             ]
         };
         if !worst.is_empty() {
-            let head = ["row", "load", "measured", "predicted", "± 95 %", "error", "E_n", "outside in"];
+            let head = ["row", "load", "measured", "predicted", "± 95 %", "error", "E_n", "outside its range of"];
             tables.push(TextTable {
-                caption: "predicted worst".to_owned(),
+                caption: "rows with the largest |E_n|".to_owned(),
                 head: head.map(str::to_owned).to_vec(),
                 rows: worst.iter().take(SHOWN).map(line).collect(),
             });
@@ -345,7 +365,7 @@ fn joint(found: &Joint) -> String {
     let verdict = if *p < CONTRADICTED {
         "the record does not hold here: its errors and its scatter together do not explain what was measured"
     } else {
-        "no more than its errors and its scatter together explain (a p below 1 % would say more)"
+        "no more than its errors and its scatter together explain"
     };
     let with = if of_scatter.is_finite() {
         format!("F({n}, {}), as the scatter was estimated", dof(*of_scatter))

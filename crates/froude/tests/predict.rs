@@ -93,6 +93,36 @@ fn a_law_in_logarithms_scatters_by_a_part_of_its_force() {
     assert!(part.iter().all(|p| (p / part[0] - 1.0).abs() < 1e-12 && (0.01..0.3).contains(p)), "{part:?}");
 }
 
+/// Rows of a day err alike: of a record by days χ² has no p, and where one day decides the law there is no band either.
+#[test]
+fn a_record_of_clusters_has_no_p_and_no_band_where_one_cluster_decides() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    let mut rng = Pcg64Mcg::seed_from_u64(11);
+    for (sizes, has_band) in [([6; 6], true), ([40, 4, 4, 4, 4, 4], false)] {
+        let mut text = "speed [m/s],f_x [N],day\n".to_owned();
+        for (day, n) in sizes.iter().enumerate() {
+            let z: f64 = rng.sample(StandardNormal);
+            for i in 0..*n {
+                let u = 0.2 + (f64::from(i) + 0.5) / f64::from(*n);
+                let own: f64 = rng.sample(StandardNormal);
+                writeln!(text, "{u},{},day {day}", -TRUTH[1] * u * u + z + 0.1 * own).unwrap();
+            }
+        }
+        std::fs::write(place("days.csv"), text).unwrap();
+        let campaign = "schema = 1\nname = \"days\"\n[[source]]\nname = \"tank\"\nkind = \"towing\"\ntable = \"days.csv\"\ngroup = \"day\"\n\
+                        models = [\"quadratic\"]\n[identify]\ncovariance = \"cluster\"\n";
+        std::fs::write(place("days.toml"), campaign).unwrap();
+        identify(&Job { out: Some(place("days")), ..Job::new(&place("days.toml")) }, &|_| {}).unwrap();
+        table(&place("new.csv"), &[0.5, 0.9], 2, &mut rng);
+        let found = predict(&asked(place("days").join("estimate.json"), place("new.csv"))).unwrap();
+        assert!(found.estimates[0].joint.is_some() && joint_p(&found).is_none());
+        let rows = &found.estimates[0].rows;
+        assert!(rows.iter().all(|row| row.half_width_95.is_some() == has_band && row.e_n.is_some() == has_band));
+        assert_eq!(found.findings.iter().any(|f| f.code == "no-band"), !has_band, "{:?}", found.findings);
+    }
+}
+
 fn joint_p(found: &Prediction) -> Option<f64> {
     found.estimates[0].joint.and_then(|joint| joint.p)
 }

@@ -13,7 +13,7 @@ use crate::law::{CoefficientSpec, ForceLaw};
 use crate::uncertainty::{SharedError, coverage_factor};
 
 /// Fewest degrees of freedom of an interval by clusters; two equal ones less one would have one.
-const FEWEST_DOF: f64 = 2.0 - 1e-6;
+pub const FEWEST_CLUSTER_DOF: f64 = 2.0 - 1e-6;
 /// Chance of calling a bound contradicted that holds, over all bounds of a law.
 const BOUND_ALARM: f64 = 0.01;
 
@@ -153,7 +153,7 @@ impl ModelFit {
     /// Whether the interval of a coefficient is refused: of clusters that give it less than two degrees of freedom, where one of them decides.
     #[must_use]
     pub fn is_refused(&self, j: usize) -> bool {
-        self.scatter == Scatter::Cluster && self.fit.coefficients[j].dof.is_some_and(|dof| dof < FEWEST_DOF)
+        self.scatter == Scatter::Cluster && self.fit.coefficients[j].dof.is_some_and(|dof| dof < FEWEST_CLUSTER_DOF)
     }
 
     /// Which bound the data put a coefficient outside of; at most 1 % of laws whose coefficients lie within all of theirs have one.
