@@ -113,7 +113,7 @@ fn a_record_of_clusters_has_no_p_and_no_band_where_one_cluster_decides() {
         let campaign = "schema = 1\nname = \"days\"\n[[source]]\nname = \"tank\"\nkind = \"towing\"\ntable = \"days.csv\"\ngroup = \"day\"\n\
                         models = [\"quadratic\"]\n[identify]\ncovariance = \"cluster\"\n";
         std::fs::write(place("days.toml"), campaign).unwrap();
-        identify(&Job { out: Some(place("days")), ..Job::new(&place("days.toml")) }, &|_| {}).unwrap();
+        identify(&Job { out: Some(place("days")), ..Job::new(place("days.toml")) }, &|_| {}).unwrap();
         table(&place("new.csv"), &[0.5, 0.9], 2, &mut rng);
         let found = predict(&asked(place("days").join("estimate.json"), place("new.csv"))).unwrap();
         assert!(found.estimates[0].joint.is_some() && joint_p(&found).is_none());

@@ -27,11 +27,12 @@ pub(crate) fn of_table(
 }
 
 /// That no error of an instrument is declared, where none is.
-pub(crate) fn no_budget(source: &Source, has_tare: bool) -> Option<Finding> {
+pub(crate) fn no_budget(campaign: &Campaign, source: &Source, has_tare: bool) -> Option<Finding> {
     source.uncertainty.is_empty().then(|| {
         let tare = if has_tare { ", that of the tare" } else { "" };
+        let known = if campaign.identify.known.is_empty() { "" } else { ", that of what is known" };
         let text = format!(
-            "no uncertainty of an instrument is declared: the intervals include the scatter of the observations{tare} and nothing else \
+            "no uncertainty of an instrument is declared: the intervals include the scatter of the observations{tare}{known} and nothing else \
              (a calibration error does not appear in the scatter)"
         );
         Finding::new(Severity::Note, "no-budget", text)
