@@ -11,6 +11,8 @@
 
 use std::collections::BTreeMap;
 
+use froude_fit::distribution::coverage_factor;
+
 use crate::dataset::{Dataset, labels};
 use crate::lint::motion::SIGN_MATTERS_ABOVE;
 use crate::lint::repeats::{is_outcome, within};
@@ -33,6 +35,8 @@ const SCATTER: f64 = 0.2;
 const MANY_ROWS: usize = 6;
 /// A single row may be wild for any reason, and few rows by chance; by a unit's own factor, within this, it is probably the unit.
 const NEAR_A_UNIT: std::ops::Range<f64> = 0.75..1.33;
+/// One row is in another unit where the others scatter about it with a chance below what is left of this.
+const SURE: f64 = 0.9999;
 /// A setting that is repeated is repeated this well, as part of the largest.
 const SETTING_WITHIN: f64 = 0.01;
 
@@ -126,14 +130,21 @@ fn of_load(load: &'static str, f: &[f64], data: &Dataset, settings: &[Vec<usize>
     })
 }
 
-/// Whether the other rows of a setting, by a square of the speed and a zero, foretell less than half of what their |f|/U² does.
+/// Whether the other rows of a setting, by a square of the speed and a zero, foretell such a load: less than half of what their |f|/U² does, or within what they scatter.
 fn near_zero(others: &[(f64, usize)], row: usize, f: &[f64], u: &dyn Fn(usize) -> f64) -> bool {
     let n = others.len() as f64;
     let mean = |of: &dyn Fn(usize) -> f64| others.iter().map(|(_, i)| of(*i)).sum::<f64>() / n;
     let (x, y) = (mean(&|i| u(i) * u(i)), mean(&|i| f[i]));
-    let slope = mean(&|i| (u(i) * u(i) - x) * (f[i] - y)) / mean(&|i| (u(i) * u(i) - x).powi(2));
-    let foretold = (y + slope * (u(row) * u(row) - x)).abs();
-    foretold < 0.5 * others[others.len() / 2].0 * u(row) * u(row)
+    let variance = mean(&|i| (u(i) * u(i) - x).powi(2));
+    // At one speed there is no slope.
+    let varies = variance.sqrt() > SETTING_WITHIN * x;
+    let slope = if varies { mean(&|i| (u(i) * u(i) - x) * (f[i] - y)) / variance } else { 0.0 };
+    let by_speed = |i: usize| y + slope * (u(i) * u(i) - x);
+    let dof = n - if varies { 2.0 } else { 1.0 };
+    let scatter = (n * mean(&|i| (f[i] - by_speed(i)).powi(2)) / dof).sqrt();
+    let foretold = by_speed(row);
+    foretold.abs() < 0.5 * others[others.len() / 2].0 * u(row) * u(row)
+        || (foretold - f[row]).abs() < coverage_factor(SURE, dof) * (1.0 + 1.0 / n).sqrt() * scatter
 }
 
 /// Median |ln| of the ratio of neighbours in speed.
@@ -245,6 +256,20 @@ mod tests {
         one[3] *= 0.01;
         data.put("f_x", one, Dimension::FORCE);
         assert!(found(&data.subset(&fast), &["f_x"]).is_some());
+    }
+
+    /// A load that passes through zero at one speed, as that of a sway does: by chance a hundredth is left of one row.
+    #[test]
+    fn a_load_within_its_scatter_is_no_unit() {
+        let mut data = table(1, 0.0, 1, &[0.0], |_| 1.0);
+        data.put("speed", vec![1.0; 10], Dimension::SPEED);
+        let load = |of: [f64; 7]| {
+            let mut data = data.subset(&(0..7).collect::<Vec<_>>());
+            data.put("f_x", of.to_vec(), Dimension::FORCE);
+            found(&data, &["f_x"])
+        };
+        assert_eq!(load([-0.89, -0.8, -0.7, -0.65, -0.75, -0.6, -0.0075]), None);
+        assert!(load([-0.89, -0.88, -0.9, -0.885, -0.895, -0.89, -0.0089]).is_some());
     }
 
     /// Two mounts of one body may load a sensor a hundredfold differently.

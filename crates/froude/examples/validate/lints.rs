@@ -169,8 +169,10 @@ pub fn clean(claims: &mut Claims, tables: u64) -> Result<(), Box<dyn Error>> {
                     let (folder, campaign) = room.as_ref().map_err(Clone::clone)?;
                     let text = table(&mut Pcg64::new(u128::from(seed), 900 + k as u128));
                     std::fs::write(folder.path().join("table.csv"), text).map_err(|e| e.to_string())?;
-                    let found =
-                        identify_source(campaign, &campaign.sources[0], &|_| {}).map_err(|e| format!("{name}: {e}"))?;
+                    // A sound table that is refused is an error too.
+                    let Ok(found) = identify_source(campaign, &campaign.sources[0], &|_| {}) else {
+                        return Ok(vec![("refused".to_owned(), Severity::Error)]);
+                    };
                     let mut codes: Vec<(String, Severity)> = found
                         .findings
                         .iter()
