@@ -90,7 +90,7 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     let (outlying, rows) = outlying_rows(model, data);
     let scatter = scatter_tests::findings(model, data, &outlying);
     out.extend(scatter.iter().map(|(_, finding)| finding.clone()));
-    out.extend(misfit::findings(model, data, d, (&scatter, &outlying)));
+    out.extend(misfit::findings(model, data, d, campaign, (&scatter, &outlying)));
     out.extend(no_better_than_nothing(model));
     out.extend(decided_by_one(model, data));
     out.extend(added_mass_sign(model, data));

@@ -6,7 +6,7 @@
 //! speed, f √|f| is its cube: the next term. It needs no repeats, and sees an error that is smooth in the load.
 //!
 //! Given the fitted loads the residuals are independent of them, so that t is exact for independent normal errors of one size. It is not asked where these are not: of rows in time, of
-//! setups with offsets, of scatter that is uneven, of a row that lies apart, beside a prior, or beside a declared error that is no factor. Where successive rows are alike the finding says that
+//! setups with offsets, of scatter that is uneven, of a row that lies apart, beside a prior, or beside a declared error that is no gain. Where successive rows are alike the finding says that
 //! this may be it.
 //!
 //! **Source.** Cook & Weisberg (1982), 2.3; Tukey (1949), Biometrics 5, 232; Milliken & Graybill (1970), J. Am. Stat. Assoc. 65, 797 (any function of the fitted loads).
@@ -14,14 +14,16 @@
 use froude_fit as fit;
 use froude_fit::distribution::t_two_sided;
 use froude_fit::residuals::Residuals;
+use froude_records::campaign::Campaign;
 use froude_records::estimate::Diagnostics;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::p_equation;
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, LOADS};
 use crate::motions;
 use crate::regression::{ModelFit, Scatter};
 use crate::scatter_tests::{ALARM, declares_groups};
+use crate::uncertainty::in_words;
 
 /// Fewest rows that a bend is looked for in.
 const FEWEST_ROWS: usize = 8;
@@ -33,13 +35,14 @@ pub(crate) fn findings(
     model: &ModelFit,
     data: &Dataset,
     diagnostics: &Diagnostics,
+    campaign: &Campaign,
     (scatter, outlying): (&[(String, Finding)], &[(String, usize)]),
 ) -> Vec<Finding> {
     // Errors that rows of a run or a setup share are no misfit.
     if declares_groups(model) {
         return Vec::new();
     }
-    let bends = bends(model, data);
+    let bends = bends(model, data, &gains(campaign));
     let loads = model.law.responses.len() as f64;
     let mut out = Vec::new();
     for load in &model.law.responses {
@@ -71,7 +74,7 @@ pub(crate) fn findings(
 }
 
 /// The loads in which a bend can be looked for, each with p of its t.
-fn bends(model: &ModelFit, data: &Dataset) -> Vec<(String, f64)> {
+fn bends(model: &ModelFit, data: &Dataset, gains: &[String]) -> Vec<(String, f64)> {
     let is_plain = matches!(model.scatter, Scatter::Classical)
         && model.whitened.is_none()
         && !model.in_variables
@@ -80,10 +83,7 @@ fn bends(model: &ModelFit, data: &Dataset) -> Vec<(String, f64)> {
         && model.options.priors.is_empty()
         && data.sample.is_none()
         && !motions::is_in_time(data)
-        && model
-            .budget
-            .iter()
-            .all(|part| part.in_scatter || !part.kind.is_type_b() || is_factor(model, &part.covariance));
+        && model.budget.iter().all(|part| part.in_scatter || !part.kind.is_type_b() || gains.contains(&part.name));
     let Ok(fitted) = model.law.predict(data, model.law_coefficients()) else { return Vec::new() };
     if !is_plain {
         return Vec::new();
@@ -98,13 +98,11 @@ fn bends(model: &ModelFit, data: &Dataset) -> Vec<(String, f64)> {
         .collect()
 }
 
-/// Whether an error changes all coefficients by one factor, and so no shape: a gain.
-fn is_factor(model: &ModelFit, covariance: &fit::faer::Mat<f64>) -> bool {
-    let of =
-        |j: usize| model.fit.coefficients[j].value.filter(|v| *v != 0.0).map(|v| covariance[(j, j)].sqrt() / v.abs());
-    let parts: Vec<f64> = (0..covariance.nrows()).filter_map(of).collect();
-    let most = parts.iter().copied().fold(0.0, f64::max);
-    parts.iter().all(|part| most - part <= ROUNDING * most)
+/// Errors of a campaign that scale loads or speeds: a law of powers takes these, and no shape is left.
+fn gains(campaign: &Campaign) -> Vec<String> {
+    let is_scaled = |name: &str| LOADS.contains(&name) || matches!(name, "speed" | "v_x" | "v_y" | "v_z" | "density");
+    let entries = campaign.sources.iter().flat_map(|source| &source.uncertainty);
+    entries.filter(|entry| entry.relative && is_scaled(&entry.quantity)).map(in_words).collect()
 }
 
 /// p of the bend of one load; where loads share coefficients, what it leaves in the others counts too.
@@ -135,4 +133,61 @@ fn bend(model: &ModelFit, residuals: &[Residuals], load: usize, fitted: &[f64]) 
     }
     let share = along * along / own;
     Some(t_two_sided((share * dof / (all - share).max(0.0)).sqrt(), dof))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use froude_records::campaign::read_campaign;
+    use rand_distr::{Distribution, StandardNormal};
+    use rand_pcg::Pcg64;
+
+    use crate::source::identify_source;
+
+    /// What is said of a law that lacks something, of 24 speeds with errors of 0.3 N beside a load of some 40.
+    fn said(truth: impl Fn(f64) -> f64, keys: &str) -> Vec<String> {
+        let folder = tempfile::tempdir().unwrap();
+        let mut rng = Pcg64::new(2, 0);
+        let mut text = "speed [m/s],f_x [N]\n".to_owned();
+        for i in 0..24 {
+            let u = 0.3 + 0.07 * f64::from(i);
+            let z: f64 = StandardNormal.sample(&mut rng);
+            let _ = writeln!(text, "{u},{}", -truth(u) + 0.3 * z);
+        }
+        std::fs::write(folder.path().join("t.csv"), text).unwrap();
+        let campaign =
+            format!("schema = 1\nname = \"a\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n{keys}");
+        std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
+        let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
+        let found = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
+        found.findings.into_iter().filter(|f| f.code == "lack-of-fit").map(|f| f.message).collect()
+    }
+
+    const LAW: &str = "models = [\"linear_quadratic\"]\n";
+    const ZERO: &str =
+        "[[source.uncertainty]]\nname = \"zero\"\nquantity = \"f_x\"\nstandard = \"1 N\"\nshared = \"campaign\"\n";
+    const GAIN: &str =
+        "[[source.uncertainty]]\nname = \"gain\"\nquantity = \"f_x\"\nstandard = \"2 %\"\nshared = \"campaign\"\n";
+
+    #[test]
+    fn a_missing_term_is_found_without_repeats_and_a_right_law_is_passed_over() {
+        let cubic = |u: f64| 4.0 * u + 2.0 * u * u + 4.0 * u.powi(3);
+        for keys in [LAW.to_owned(), format!("{LAW}{GAIN}")] {
+            let found = said(cubic, &keys);
+            assert!(
+                found.len() == 1 && found[0].contains("f_x: the residuals bend with the fitted load (p < 0.001)"),
+                "{found:?}"
+            );
+        }
+        assert!(said(|u| 4.0 * u + 9.0 * u * u, LAW).is_empty());
+    }
+
+    /// A zero that is declared bends the residuals of a law without a constant, and is no fault of it.
+    #[test]
+    fn a_declared_zero_is_no_misfit() {
+        let with_zero = |u: f64| 9.0 * u * u + 2.0;
+        assert!(!said(with_zero, "models = [\"quadratic\"]\n").is_empty());
+        assert!(said(with_zero, &format!("models = [\"quadratic\"]\n{ZERO}")).is_empty());
+    }
 }

@@ -159,10 +159,7 @@ pub fn contributions(
         let covariance = &moved * moved.transpose();
         out.push(Part {
             origin: origin(entry, campaign, &moved),
-            name: entry
-                .name
-                .clone()
-                .map_or_else(|| entry.quantity.clone(), |name| format!("{name} ({})", entry.quantity)),
+            name: in_words(entry),
             shared: entry.shared.name(),
             kind: match entry.kind {
                 ErrorKind::B => Kind::B,
@@ -180,6 +177,11 @@ pub fn contributions(
         out.push(shared_error(fit, error)?);
     }
     Ok(out)
+}
+
+/// What an entry is called in a budget.
+pub(crate) fn in_words(entry: &BudgetEntry) -> String {
+    entry.name.clone().map_or_else(|| entry.quantity.clone(), |name| format!("{name} ({})", entry.quantity))
 }
 
 /// An entry that all sources of a campaign share, as one error of unit size.
