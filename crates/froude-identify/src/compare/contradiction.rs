@@ -8,9 +8,10 @@ use crate::compare::named::Named;
 
 /// Two records of the same source and model that say different things, with what looks like a slip.
 pub(super) fn contradiction(a: &Named<'_>, b: &Named<'_>) -> Option<Finding> {
-    // What one of them holds at a value is no estimate.
+    // What one of them holds and the other fits is another fit; published values are held in both.
     let is_held = |name: &str| {
-        [a, b].iter().any(|n| n.estimate.coefficients.get(name).is_some_and(|c| c.status == Status::Fixed))
+        let of = |n: &Named<'_>| n.estimate.coefficients.get(name).is_some_and(|c| c.status == Status::Fixed);
+        of(a) != of(b)
     };
     let value =
         |n: &Named<'_>, name: &str| n.estimate.coefficients.get(name).filter(|_| !is_held(name)).and_then(|c| c.value);
