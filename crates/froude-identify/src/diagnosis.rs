@@ -140,7 +140,9 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
 
 /// A load of which the law leaves more than there is.
 fn no_better_than_nothing(model: &ModelFit) -> Vec<Finding> {
-    let worse = model.fit.components.iter().filter(|c| c.relative_residual > 1.0);
+    // A logarithm is zero at one newton, and no size of a load.
+    let is_worse = |relative: f64| !model.law.in_logarithms() && relative > 1.0 + 1e-9;
+    let worse = model.fit.components.iter().filter(|c| is_worse(c.relative_residual));
     worse
         .map(|c| {
             let text = format!(

@@ -11,13 +11,12 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve as _;
 use froude_fit::distribution::{coverage_factor, f_upper};
-use froude_records::estimate::Estimate;
+use froude_records::estimate::{Coefficient, Estimate, Status};
 use froude_records::units::Dimension;
 
 use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
-use crate::regression::FEWEST_CLUSTER_DOF;
 
 /// Of the water, and not of the motion: no law is extrapolated in it.
 const OF_WATER: &str = "temperature";
@@ -50,7 +49,7 @@ pub struct Row {
     pub predicted: f64,
     /// Standard uncertainty of F; `None` where the record states no covariance.
     pub u_law: Option<f64>,
-    /// Half-width of the 95 % band of F; `None` also where a coefficient that it goes with has fewer than two degrees of freedom over clusters.
+    /// Half-width of the 95 % band of F; `None` also where a coefficient that it goes with has no interval, as one cluster decides it.
     pub half_width_95: Option<f64>,
     /// What was measured.
     pub measured: Option<f64>,
@@ -98,6 +97,7 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
     let values: Vec<f64> = values.collect::<Result<_, _>>()?;
     let forces = law.predict(data, &values)?;
     let slopes = Slopes::of(estimate, &law, &law.regressors(data, &values)?);
+    let refused = refused(estimate);
     let mut rows = Vec::with_capacity(forces.len());
     let mut inside = Vec::new();
     let mut dof = f64::INFINITY;
@@ -115,8 +115,7 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
             let parts = slopes.as_ref().map(|slopes| slopes.parts(place));
             let u_law = parts.as_ref().map(|parts| combined(parts).0);
             // One cluster decides: as for a coefficient, there is no quantile.
-            let has_quantile = estimate.clusters.is_none()
-                || parts.iter().flatten().next().is_none_or(|(_, dof)| *dof >= FEWEST_CLUSTER_DOF);
+            let has_quantile = slopes.as_ref().is_none_or(|slopes| !slopes.moves_with(place, &refused));
             let measured = measured.get(row).copied().filter(|v| v.is_finite());
             let outside = outside(estimate, data, row);
             let own = (scatter.unwrap_or(0.0), if stated.is_some() { f64::INFINITY } else { of_sigma });
@@ -151,6 +150,20 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
         Joint { chi_squared, n, dof, p }
     });
     Ok(Predicted { id: estimate.id.clone(), law: estimate.law.name.clone(), rows, joint })
+}
+
+/// The coefficients of a record of clusters that have a standard uncertainty and no interval: one cluster decides them.
+#[must_use]
+pub fn refused(estimate: &Estimate) -> Vec<&str> {
+    if estimate.clusters.is_none() {
+        return Vec::new();
+    }
+    let is_refused = |c: &Coefficient| {
+        matches!(c.status, Status::Free | Status::Prior)
+            && c.interval_95.is_none()
+            && c.standard_uncertainty.is_some_and(|u| u > 0.0)
+    };
+    estimate.coefficients.iter().filter(|(_, c)| is_refused(c)).map(|(name, _)| name.as_str()).collect()
 }
 
 /// The data with a channel for each load of the law: formulas need its unit, and what was not measured is no number.
@@ -192,6 +205,7 @@ struct Slopes<'a> {
     /// A column per name of the covariance.
     x: Mat<f64>,
     covariance: Mat<f64>,
+    names: Vec<String>,
 }
 
 impl<'a> Slopes<'a> {
@@ -201,7 +215,12 @@ impl<'a> Slopes<'a> {
         let p = places.len();
         let x = Mat::from_fn(regressors.nrows(), p, |i, j| places[j].map_or(0.0, |place| regressors[(i, place)]));
         let covariance = Mat::from_fn(p, p, |i, j| stated.matrix[i][j]);
-        Some(Self { estimate, x, covariance })
+        Some(Self { estimate, x, covariance, names: stated.names.clone() })
+    }
+
+    /// Whether a force goes with one of some coefficients.
+    fn moves_with(&self, row: usize, some: &[&str]) -> bool {
+        self.names.iter().enumerate().any(|(j, name)| self.x[(row, j)] != 0.0 && some.contains(&name.as_str()))
     }
 
     /// Standard uncertainty of a force by its scatter and by each declared error, with their degrees of freedom.
@@ -256,7 +275,7 @@ mod tests {
         let covariance = Mat::from_fn(2, 2, |i, j| [[0.3, 0.1], [0.1, 0.2]][i][j]);
         let rows: Vec<(usize, f64, f64)> = (0..5).map(|i| (i, (i as f64).cos(), 0.2 + 0.1 * i as f64)).collect();
         let estimate = Estimate::default();
-        let slopes = Slopes { estimate: &estimate, x: x.clone(), covariance: covariance.clone() };
+        let slopes = Slopes { estimate: &estimate, x: x.clone(), covariance: covariance.clone(), names: Vec::new() };
         let whole = Mat::from_fn(5, 5, |i, j| {
             let d = if i == j { rows[i].2 * rows[i].2 } else { 0.0 };
             d + (0..2).map(|a| (0..2).map(|b| x[(i, a)] * covariance[(a, b)] * x[(j, b)]).sum::<f64>()).sum::<f64>()

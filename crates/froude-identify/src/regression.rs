@@ -23,7 +23,7 @@ use crate::regression::problem::step;
 use crate::regression::uncertain::Uncertainty;
 use crate::{dissipation, eiv};
 
-pub use crate::regression::fitted::{Condensed, FEWEST_CLUSTER_DOF, ModelFit, Scatter, Settings, Weight};
+pub use crate::regression::fitted::{Condensed, ModelFit, Scatter, Settings, Weight};
 pub use crate::regression::formula_of::FormulaOf;
 
 /// Fits `law` to `data`.

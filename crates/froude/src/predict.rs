@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use froude_identify::dataset::Dataset;
-use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate};
+use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate, refused as refused_intervals};
 use froude_identify::reduce::rows_of;
-use froude_identify::regression::FEWEST_CLUSTER_DOF;
 use froude_records::csv_table::csv_bytes;
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
@@ -89,12 +88,10 @@ pub fn of_rows(estimates: &[&Estimate], data: Dataset) -> Result<Prediction, Err
 /// That one cluster decides a coefficient, and what follows for forces.
 fn without_bands(estimate: &Estimate) -> Option<Finding> {
     let clusters = estimate.clusters.as_ref()?;
-    let own = estimate.type_a.as_ref()?;
-    let few = own.names.iter().zip(&own.dof).filter(|(_, dof)| dof.is_some_and(|dof| dof < FEWEST_CLUSTER_DOF));
-    let names: Vec<&str> = few.map(|(name, _)| name.as_str()).collect();
+    let names = refused_intervals(estimate);
     (!names.is_empty()).then(|| {
         let text = format!(
-            "{}: {} with fewer than two degrees of freedom over its {}: forces that go with them have no band and no E_n",
+            "{}: {} without an interval, as one of its {} decides: forces that go with them have no band and no E_n",
             estimate.id,
             names.join(", "),
             counted(clusters.n, &clusters.by, &format!("{}s", clusters.by))

@@ -13,7 +13,7 @@ use crate::law::{CoefficientSpec, ForceLaw};
 use crate::uncertainty::{SharedError, coverage_factor};
 
 /// Fewest degrees of freedom of an interval by clusters; two equal ones less one would have one.
-pub const FEWEST_CLUSTER_DOF: f64 = 2.0 - 1e-6;
+const FEWEST_CLUSTER_DOF: f64 = 2.0 - 1e-6;
 /// Chance of calling a bound contradicted that holds, over all bounds of a law.
 const BOUND_ALARM: f64 = 0.01;
 
