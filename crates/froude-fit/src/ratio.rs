@@ -131,13 +131,17 @@ fn positive(lambda: &[f64]) -> f64 {
             return 0.0;
         }
         let u = s / (1.0 - s);
-        let (mut theta, mut log) = (0.0, 0.0);
+        // e^(−iθ)/ρ = Π (1 + iλu)^−½, each root that of positive real part: no angle is taken, and nothing is unwrapped.
+        let (mut re, mut im) = (1.0, 0.0);
         for l in lambda {
             let x = l / scale * u;
-            theta += 0.5 * x.atan();
-            log += 0.25 * (x * x).ln_1p();
+            let size = (1.0 + x * x).sqrt();
+            let real = 0.5 * (1.0 + size);
+            let over = 1.0 / (real.sqrt() * size);
+            let (c, d) = (real * over, -0.5 * x * over);
+            (re, im) = (re * c - im * d, re * d + im * c);
         }
-        theta.sin() * (-log).exp() / (u * (1.0 - s).powi(2))
+        -im / (u * (1.0 - s).powi(2))
     };
     let step = 1.0 / INTERVALS as f64;
     let sum: f64 = (0..=INTERVALS)

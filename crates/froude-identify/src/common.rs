@@ -36,11 +36,9 @@ impl<'a> Number<'a> {
         let is_there = names.iter().any(|n| n == name);
         let slopes =
             if is_there { names.iter().map(|n| if n == name { 1.0 } else { 0.0 }).collect() } else { Vec::new() };
-        Self {
-            estimate,
-            slopes,
-            stated: Stated { value: *value, standard: *standard_uncertainty, dof: *effective_dof },
-        }
+        let is_refused = estimate.without_interval().contains(&name);
+        let stated = Stated { value: *value, standard: *standard_uncertainty, dof: *effective_dof, is_refused };
+        Self { estimate, slopes, stated }
     }
 
     /// A number made from the coefficients; `slope` is its derivative by each.
@@ -60,6 +58,7 @@ impl<'a> Number<'a> {
         let all = combine(&side.parts(&|_| true), 0, OUTSIDE_95);
         side.stated.standard = Some(all.standard);
         side.stated.dof = Some(all.dof).filter(|d| d.is_finite());
+        side.stated.is_refused = estimate.without_interval().into_iter().any(|name| slope(name) != 0.0);
         side
     }
 

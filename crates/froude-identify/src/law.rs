@@ -199,6 +199,9 @@ impl ForceLaw {
             Kind::Drag { model, body, cross_term } => {
                 let links = self.channel(data, "n_links")?;
                 let density = self.channel(data, "density")?;
+                let along = data.values("v_x").unwrap_or_default();
+                let across = data.values("v_y").unwrap_or_default();
+                let velocity = |i: usize| [along, across].map(|v| v.get(i).copied().unwrap_or(0.0));
                 let mut row = vec![0.0; p];
                 for i in 0..n {
                     let setting = Setting {
@@ -208,7 +211,7 @@ impl ForceLaw {
                         v_ref_m_s: REFERENCE_SPEED_M_S,
                         cross_term: *cross_term,
                     };
-                    model.regressor(&setting, data.velocity_m_s(i), &mut row);
+                    model.regressor(&setting, velocity(i), &mut row);
                     for (j, info) in model.coefficients().iter().enumerate() {
                         let r = match info.axis {
                             Axis::X => 0,

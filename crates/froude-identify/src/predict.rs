@@ -11,7 +11,7 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve as _;
 use froude_fit::distribution::{coverage_factor, f_upper};
-use froude_records::estimate::{Coefficient, Estimate, Status};
+use froude_records::estimate::Estimate;
 use froude_records::units::Dimension;
 
 use crate::dataset::{Dataset, unit_text};
@@ -97,7 +97,7 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
     let values: Vec<f64> = values.collect::<Result<_, _>>()?;
     let forces = law.predict(data, &values)?;
     let slopes = Slopes::of(estimate, &law, &law.regressors(data, &values)?);
-    let refused = refused(estimate);
+    let refused = estimate.without_interval();
     let mut rows = Vec::with_capacity(forces.len());
     let mut inside = Vec::new();
     let mut dof = f64::INFINITY;
@@ -150,20 +150,6 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
         Joint { chi_squared, n, dof, p }
     });
     Ok(Predicted { id: estimate.id.clone(), law: estimate.law.name.clone(), rows, joint })
-}
-
-/// The coefficients of a record of clusters that have a standard uncertainty and no interval: one cluster decides them.
-#[must_use]
-pub fn refused(estimate: &Estimate) -> Vec<&str> {
-    if estimate.clusters.is_none() {
-        return Vec::new();
-    }
-    let is_refused = |c: &Coefficient| {
-        matches!(c.status, Status::Free | Status::Prior)
-            && c.interval_95.is_none()
-            && c.standard_uncertainty.is_some_and(|u| u > 0.0)
-    };
-    estimate.coefficients.iter().filter(|(_, c)| is_refused(c)).map(|(name, _)| name.as_str()).collect()
 }
 
 /// The data with a channel for each load of the law: formulas need its unit, and what was not measured is no number.

@@ -520,3 +520,26 @@ fn errors_of_an_acceleration_do_not_shrink_the_mass() {
     assert!((plain / 8.0 - 1.0).abs() < 0.05, "{plain}");
     assert!((found - 12.0).abs() < 3.0 * u && u < 0.3, "{found} ± {u}");
 }
+
+/// A law of speed and acceleration is drawn against speed at the median acceleration of the rows, and not at that of whichever row comes first.
+#[test]
+fn a_drawn_line_holds_the_median_of_what_it_does_not_run_against() {
+    let folder = tempfile::tempdir().unwrap();
+    let (table, rows) = accelerated();
+    let result = identify(folder.path(), &table, ACCELERATED);
+    let answer = froude_identify::answer::Answer::Fitted(Box::new(result.clone()));
+    let page = froude_identify::page::section(&answer).unwrap();
+    let curve = page.curves.first().unwrap();
+    let median = |k: usize| {
+        let mut all: Vec<f64> = rows.iter().map(|r| r[k]).collect();
+        all.sort_by(f64::total_cmp);
+        all[all.len() / 2]
+    };
+    let held: Vec<(&str, f64)> = curve.held.iter().map(|h| (h.quantity.as_str(), h.value)).collect();
+    assert_eq!(held, [("v_x_dot", median(1)), ("v_y_dot", median(2))]);
+    let c = |name: &str| result.estimates[0].coefficients[name].value.unwrap();
+    for (v, f) in curve.x.iter().zip(&curve.y) {
+        let expected = -c("D") * v * v.abs() - c("A") * median(1) - c("B") * median(2);
+        assert!((f - expected).abs() < 1e-9, "{v}: {f} {expected}");
+    }
+}

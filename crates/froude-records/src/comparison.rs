@@ -276,6 +276,11 @@ pub fn coverage_note<'a>(id: &str, stated: impl IntoIterator<Item = &'a Side>) -
     if own.is_empty() {
         return format!("{id}: no uncertainty stated");
     }
+    // One cluster decides the others.
+    let own: Vec<&Side> = own.into_iter().filter(|s| s.coverage_factor.is_some()).collect();
+    if own.is_empty() {
+        return format!("{id}: no interval stated");
+    }
     let range = |of: &dyn Fn(&Side) -> Option<f64>, places: usize| {
         let span = |x: f64| format!("{x:.places$}");
         let low = own.iter().filter_map(|s| of(s)).fold(f64::INFINITY, f64::min);

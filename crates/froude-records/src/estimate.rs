@@ -522,6 +522,20 @@ impl Estimate {
         self.type_a.as_ref().map_or("none stated", |a| &a.kind)
     }
 
+    /// The coefficients of a record of clusters that have a standard uncertainty and no interval: one cluster decides them.
+    #[must_use]
+    pub fn without_interval(&self) -> Vec<&str> {
+        if self.clusters.is_none() {
+            return Vec::new();
+        }
+        let is_refused = |c: &Coefficient| {
+            matches!(c.status, Status::Free | Status::Prior)
+                && c.interval_95.is_none()
+                && c.standard_uncertainty.is_some_and(|u| u > 0.0)
+        };
+        self.coefficients.iter().filter(|(_, c)| is_refused(c)).map(|(name, _)| name.as_str()).collect()
+    }
+
     /// Covariance of the coefficients: scatter and all other errors.
     #[must_use]
     pub fn covariance(&self) -> Option<Covariance> {

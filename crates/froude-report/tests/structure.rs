@@ -227,7 +227,7 @@ fn a_published_value_without_uncertainty_is_open_and_says_so() {
     let page = html(&report).unwrap();
     assert!(page.contains("no uncertainty stated"));
     let forest = figures(&report).unwrap().into_iter().find(|f| f.title.contains("model f4")).unwrap();
-    assert!(forest.svg.contains("no uncertainty stated"));
+    assert!(forest.svg.contains("no interval stated"));
     assert!(!page.contains("± 0<") && !page.contains("(0)"));
 }
 
@@ -275,6 +275,7 @@ fn hostile_names_are_escaped_everywhere() {
                 against: Against::Other { quantity: h(), unit: h() },
                 x: vec![0.0, 1.0],
                 y: vec![0.0, 1.0],
+                held: Vec::new(),
                 low: vec![],
                 high: vec![],
             }],
@@ -598,6 +599,7 @@ proptest! {
                     1 => Against::Angle { speed_m_s: values[0] },
                     _ => Against::Other { quantity: "w_x".to_owned(), unit: "rad/s".to_owned() },
                 },
+                held: Vec::new(),
                 x, y,
                 low: band.clone(),
                 high: band,
@@ -667,4 +669,21 @@ fn a_comparison_costs_as_much_as_it_has_pairs() {
     };
     let [half, whole] = [150, 300].map(|n| seconds(&page(n)));
     assert!(whole < 8.0 * half, "{half} s for 150 estimates, {whole} s for 300");
+}
+
+/// A law of speed and acceleration is drawn at one acceleration, and the caption says at which.
+#[test]
+fn a_line_says_what_else_it_holds() {
+    let mut source = sample::report().sources.remove(0);
+    for curve in &mut source.curves {
+        curve.held = vec![Abscissa { quantity: "a_x".to_owned(), unit: "m/s^2".to_owned(), value: 0.125 }];
+    }
+    let report = Report { sources: vec![source.clone()], ..Report::default() };
+    let page = visible_text(&html(&report).unwrap());
+    assert!(page.contains("with its 95 % band, for a_x = 0.125 m/s²."), "{page}");
+    for (i, curve) in source.curves.iter_mut().enumerate() {
+        curve.held[0].value = i as f64;
+    }
+    let page = visible_text(&html(&Report { sources: vec![source], ..Report::default() }).unwrap());
+    assert!(page.contains("for a_x at its median in each panel."), "{page}");
 }

@@ -139,8 +139,14 @@ pub fn gains(drag: &LinkDrag, range_m_s: f64) -> Option<(f64, [f64; 2])> {
     if [drag.along, drag.across, cross].concat().iter().all(|c| *c >= 0.0) {
         return None;
     }
-    froude_hydro::dissipation::VelocityGrid::over(range_m_s)
-        .points()
+    let grid = froude_hydro::dissipation::VelocityGrid::over(range_m_s);
+    // Its levels are the outermost one, drawn in.
+    let outermost: Vec<[f64; 2]> = grid.points().take(grid.n_directions).collect();
+    (0..grid.n_levels)
+        .flat_map(|level| {
+            let part = 10_f64.powf(-(level as f64) / 10.0);
+            outermost.iter().map(move |v| v.map(|x| x * part))
+        })
         .map(|velocity| (drag.power_w(velocity), velocity))
         .filter(|(power, _)| *power > 0.0)
         .max_by(|a, b| a.0.total_cmp(&b.0))

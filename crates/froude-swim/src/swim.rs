@@ -215,8 +215,14 @@ impl Robot {
 
     /// The module that gains the most power from still water at speeds up to one, counted from 1, where it is above `least_w`.
     pub(crate) fn gain(&self, fastest_m_s: f64, least_w: f64) -> Option<(usize, f64)> {
+        // Modules alike follow each other, and what one gains the next one does.
+        let mut last = None;
         let gain = |(i, link): (usize, &crate::chain::Link)| {
-            let (power, _) = gains(&link.drag, fastest_m_s)?;
+            let own = last
+                .filter(|(drag, _)| *drag == link.drag)
+                .map_or_else(|| gains(&link.drag, fastest_m_s), |(_, own)| own);
+            last = Some((link.drag, own));
+            let (power, _) = own?;
             (power > least_w).then_some((i + 1, power))
         };
         self.chain.links.iter().enumerate().filter_map(gain).max_by(|a, b| a.1.total_cmp(&b.1))

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use froude_identify::dataset::Dataset;
-use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate, refused as refused_intervals};
+use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate};
 use froude_identify::reduce::rows_of;
 use froude_records::csv_table::csv_bytes;
 use froude_records::estimate::Estimate;
@@ -88,7 +88,7 @@ pub fn of_rows(estimates: &[&Estimate], data: Dataset) -> Result<Prediction, Err
 /// That one cluster decides a coefficient, and what follows for forces.
 fn without_bands(estimate: &Estimate) -> Option<Finding> {
     let clusters = estimate.clusters.as_ref()?;
-    let names = refused_intervals(estimate);
+    let names = estimate.without_interval();
     (!names.is_empty()).then(|| {
         let text = format!(
             "{}: {} without an interval, as one of its {} decides: forces that go with them have no band and no E_n",

@@ -119,6 +119,8 @@ struct Linear {
     transition: [[f64; STATES]; STATES],
     /// Response of the state to a unit force on the motor and on the load.
     response: [[f64; STATES]; 2],
+    /// Forces on motor and load for a unit change of their own speeds.
+    stopping: [f64; 2],
 }
 
 /// An axis ready to be stepped.
@@ -195,9 +197,11 @@ impl Stepper {
         ];
         let over = |step_s: f64| {
             let whole = exponential(generator.map(|row| row.map(|x| x * step_s)));
+            let response: [[f64; STATES]; 2] = std::array::from_fn(|f| std::array::from_fn(|i| whole[i][STATES + f]));
             Linear {
                 transition: std::array::from_fn(|i| std::array::from_fn(|j| whole[i][j])),
-                response: std::array::from_fn(|f| std::array::from_fn(|i| whole[i][STATES + f])),
+                response,
+                stopping: [response[0][1].recip(), response[1][3].recip()],
             }
         };
         let late = axis.delay_s / sample_s;
@@ -292,7 +296,7 @@ impl Stepper {
 
     /// Transition over a sample, and the response to a unit force on motor and load.
     fn over_a_sample(&self) -> ([[f64; STATES]; STATES], [f64; STATES], [f64; STATES]) {
-        let Linear { transition, response } = &self.step;
+        let Linear { transition, response, .. } = &self.step;
         let through = |x: &[f64; STATES]| -> [f64; STATES] {
             std::array::from_fn(|i| (0..STATES).map(|k| transition[i][k] * x[k]).sum())
         };
@@ -366,9 +370,9 @@ impl Stepper {
         let [mut f_m, mut f_l] = moment.friction_n;
         for _ in 0..2 {
             let v = free[1] - on_load[1] * f_l;
-            f_m = (v / on_motor[1]).max(-motor_limit_n).min(motor_limit_n);
+            f_m = (v * linear.stopping[0]).max(-motor_limit_n).min(motor_limit_n);
             let v = free[3] - on_motor[3] * f_m;
-            f_l = (v / on_load[3]).max(-load_limit_n).min(load_limit_n);
+            f_l = (v * linear.stopping[1]).max(-load_limit_n).min(load_limit_n);
         }
         let side = |f: f64, limit: f64| i8::from(f >= limit) - i8::from(f <= -limit);
         Moment {

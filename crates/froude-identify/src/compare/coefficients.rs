@@ -5,7 +5,6 @@ use froude_records::estimate::{Coefficient, Status};
 
 use crate::common::{Common, Number};
 use crate::compare::named::Named;
-use crate::compare::stated::stated;
 
 /// The text in place of E_n where two estimates come from the same observations.
 pub const SAME_DATA: &str = "same data: not independent, E_n not meaningful";
@@ -31,8 +30,8 @@ pub(super) fn coefficient_rows(
         .iter()
         .filter_map(|(name, x)| b.estimate.coefficients.get(name).map(|y| (name, x, y)))
         .map(|(name, x, y)| {
+            let sides = [Number::of_coefficient(a.estimate, name), Number::of_coefficient(b.estimate, name)];
             let e_n = if x.unit == y.unit {
-                let sides = [Number::of_coefficient(a.estimate, name), Number::of_coefficient(b.estimate, name)];
                 e_n([&sides[0], &sides[1]], common, [first, second], is_same_data).and_then(|e_n| {
                     not_free(x, first)
                         .or_else(|| not_free(y, second))
@@ -48,8 +47,8 @@ pub(super) fn coefficient_rows(
                 coefficient: name.clone(),
                 label: x.label.clone().or_else(|| y.label.clone()),
                 unit: x.unit.clone(),
-                first: stated(x).of(first),
-                second: stated(y).of(second),
+                first: sides[0].stated.of(first),
+                second: sides[1].stated.of(second),
                 e_n,
                 note,
             }
@@ -72,6 +71,11 @@ pub(super) fn not_free(c: &Coefficient, id: &str) -> Option<String> {
     }
 }
 
+/// Why a number has no interval, and with it no E_n.
+pub(super) fn no_interval(id: &str) -> String {
+    format!("{id} gives no interval: one cluster decides it")
+}
+
 /// E_n of two numbers, or why there is none.
 pub(super) fn e_n(
     sides: [&Number<'_>; 2],
@@ -87,6 +91,9 @@ pub(super) fn e_n(
     }
     if is_same_data {
         return Err(SAME_DATA.to_owned());
+    }
+    if let Some((_, id)) = sides.into_iter().zip(ids).find(|(side, _)| side.stated.is_refused) {
+        return Err(no_interval(id));
     }
     let u = common.expanded_difference(sides, a - b);
     if u > 0.0 { Ok((a - b) / u) } else { Err("both uncertainties are zero".to_owned()) }

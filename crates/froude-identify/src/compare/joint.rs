@@ -6,7 +6,7 @@ use froude_fit::distribution::f_upper;
 use froude_records::comparison::JointComparison;
 use froude_records::estimate::{Estimate, Status};
 
-use super::coefficients::{SAME_DATA_JOINTLY, not_free};
+use super::coefficients::{SAME_DATA_JOINTLY, no_interval, not_free};
 use crate::common::Common;
 use crate::compare::named::Named;
 
@@ -37,6 +37,9 @@ pub(super) fn joint(
             let mut constrained = names.iter().filter_map(|name| n.estimate.coefficients.get(*name));
             if let Some(why) = constrained.find_map(|c| not_free(c, id)) {
                 return Err(format!("a coefficient is {why}: χ² is for estimates that are free"));
+            }
+            if n.estimate.without_interval().iter().any(|refused| names.iter().any(|name| name == refused)) {
+                return Err(no_interval(id));
             }
         }
         if names.is_empty() {

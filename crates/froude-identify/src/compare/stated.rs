@@ -1,7 +1,6 @@
-//! A coefficient as its record states it.
+//! A number as its record states it.
 
 use froude_records::comparison::Side;
-use froude_records::estimate::Coefficient;
 
 use crate::uncertainty::coverage_factor;
 
@@ -13,12 +12,15 @@ pub(crate) struct Stated {
     pub standard: Option<f64>,
     /// Effective degrees of freedom of it; `None` where the record states no finite ones.
     pub dof: Option<f64>,
+    /// Whether the record gives no interval, as one cluster decides the number.
+    pub is_refused: bool,
 }
 
 impl Stated {
     /// As a side of a comparison: with the coverage factor k of the 95 % uncertainty U = k·u.
     pub(super) fn of(self, source: &str) -> Side {
-        let coverage_factor = self.standard.map(|_| self.dof.map_or(NORMAL_COVERAGE, coverage_factor));
+        let coverage_factor =
+            self.standard.filter(|_| !self.is_refused).map(|_| self.dof.map_or(NORMAL_COVERAGE, coverage_factor));
         Side {
             source: source.to_owned(),
             value: self.value,
@@ -32,7 +34,3 @@ impl Stated {
 
 /// Coverage factor where no degrees of freedom are stated: two-sided 95 % of the normal distribution.
 pub(super) const NORMAL_COVERAGE: f64 = 1.959_963_984_540_054;
-
-pub(super) fn stated(c: &Coefficient) -> Stated {
-    Stated { value: c.value, standard: c.standard_uncertainty, dof: c.effective_dof }
-}

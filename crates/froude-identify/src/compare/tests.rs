@@ -1,5 +1,5 @@
 use froude_records::comparison::Comparison;
-use froude_records::estimate::{DataFile, ErrorKind, EstimateFile, Range, SharedError, keyed};
+use froude_records::estimate::{Clusters, DataFile, ErrorKind, EstimateFile, Range, SharedError, keyed};
 
 use super::coefficients::SAME_DATA;
 use super::*;
@@ -255,4 +255,20 @@ fn two_reductions_of_one_calibration_are_not_independent() {
     assert_eq!(c.coefficients[0].note, SAME_DATA);
     let c = compared(of("one", "mcd", "t1", 47.8), of("two", "mcd", "t2", 46.9));
     assert_ne!(c.coefficients[0].note, SAME_DATA);
+}
+
+/// One cluster decides D: where its record gives no interval, none is made of its standard uncertainty beside another.
+#[test]
+fn what_has_no_interval_has_no_expanded_uncertainty() {
+    let mut one = record("a", "t1", 10.0, 1.0, Some(1.4));
+    one.estimates[0].clusters = Some(Clusters { by: "run".to_owned(), n: 6 });
+    let c = compared(one, record("b", "t2", 13.0, 1.0, None));
+    let row = &c.coefficients[0];
+    assert_eq!((row.first.expanded_uncertainty, row.first.coverage_factor, row.e_n), (None, None, None));
+    assert_eq!(row.first.standard_uncertainty, Some(1.0));
+    assert_eq!(row.note, "a/quadratic gives no interval: one cluster decides it");
+    assert_eq!(c.joint[0].note, row.note);
+    assert!(!c.loads.is_empty() && c.loads.iter().all(|l| l.e_n.is_none() && l.first.expanded_uncertainty.is_none()));
+    assert_eq!(c.coverage[0], "a/quadratic: no interval stated");
+    assert!(c.verdicts.is_empty());
 }

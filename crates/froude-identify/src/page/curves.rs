@@ -1,6 +1,6 @@
 //! Lines of the recommended law with their 95 % bands.
 
-use froude_records::page::{Against, Curve};
+use froude_records::page::{Abscissa, Against, Curve};
 use froude_records::units::Dimension;
 
 use super::points::abscissa;
@@ -36,26 +36,29 @@ pub(super) fn of(model: &ModelFit, data: &Dataset) -> Result<Vec<Curve>, Identif
                 .map(|&i| v.get(i).copied().unwrap_or(0.0))
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
         };
+        let held = held(model, data, &rows, &["speed", "angle", "v_x", "v_y"]);
         let (slowest, fastest) = range("speed");
         let (least, most) = range("angle");
         for angle in angles {
             let x = line(slowest.min(0.0), fastest.max(0.0));
-            let places = place(data, rows[0], &x, |d, x| {
+            let places = place(data, &rows, &held, &x, |d, x| {
                 d.put("speed", x.to_vec(), Dimension::SPEED);
                 d.put("angle", vec![angle; x.len()], Dimension::ONE);
                 d.velocity_from_speed_and_angle();
             });
-            out.extend(bands(model, &places, &configuration, &x, &Against::Speed { angle_rad: angle })?);
+            let of = Along { configuration: &configuration, x: &x, against: Against::Speed { angle_rad: angle } };
+            out.extend(bands(model, &places, &of, &held)?);
         }
         if most > least {
             for speed in speeds {
                 let x = line(least, most);
-                let places = place(data, rows[0], &x, |d, x| {
+                let places = place(data, &rows, &held, &x, |d, x| {
                     d.put("speed", vec![speed; x.len()], Dimension::SPEED);
                     d.put("angle", x.to_vec(), Dimension::ONE);
                     d.velocity_from_speed_and_angle();
                 });
-                out.extend(bands(model, &places, &configuration, &x, &Against::Angle { speed_m_s: speed })?);
+                let of = Along { configuration: &configuration, x: &x, against: Against::Angle { speed_m_s: speed } };
+                out.extend(bands(model, &places, &of, &held)?);
             }
         }
     }
@@ -71,9 +74,11 @@ fn other_curves(model: &ModelFit, data: &Dataset, channel: &str) -> Result<Vec<C
     let against = Against::Other { quantity: channel.to_owned(), unit: dimension.to_string() };
     let mut out = Vec::new();
     for configuration in data.configurations() {
-        let row = data.configuration.iter().position(|c| *c == configuration).unwrap_or(0);
-        let places = place(data, row, &x, |d, x| d.put(channel, x.to_vec(), dimension));
-        out.extend(bands(model, &places, &configuration, &x, &against)?);
+        let rows: Vec<usize> = (0..data.rows).filter(|&i| data.configuration[i] == configuration).collect();
+        let held = held(model, data, &rows, &[channel]);
+        let places = place(data, &rows, &held, &x, |d, x| d.put(channel, x.to_vec(), dimension));
+        let of = Along { configuration: &configuration, x: &x, against: against.clone() };
+        out.extend(bands(model, &places, &of, &held)?);
     }
     Ok(out)
 }
@@ -82,19 +87,40 @@ fn line(low: f64, high: f64) -> Vec<f64> {
     (0..CURVE_POINTS).map(|k| low + (high - low) * k as f64 / (CURVE_POINTS - 1) as f64).collect()
 }
 
-/// Copies of one observation, moved along a line.
-fn place(data: &Dataset, row: usize, x: &[f64], set: impl Fn(&mut Dataset, &[f64])) -> Dataset {
-    let mut out = data.subset(&vec![row; x.len()]);
+/// The other channels that the law reads and the rows vary in, each at its median.
+fn held(model: &ModelFit, data: &Dataset, rows: &[usize], moved: &[&str]) -> Vec<Abscissa> {
+    let at_median = |name: &str| {
+        let mut own: Vec<f64> = rows.iter().map(|&i| data.values(name).map_or(f64::NAN, |v| v[i])).collect();
+        own.sort_by(f64::total_cmp);
+        let varies = own.last().zip(own.first()).is_some_and(|(most, least)| most > least);
+        varies.then(|| Abscissa { quantity: name.to_owned(), unit: unit_text(data, name), value: own[own.len() / 2] })
+    };
+    model.law.channels().into_iter().filter(|name| !moved.contains(name)).filter_map(at_median).collect()
+}
+
+/// Copies of the first of these observations, moved along a line.
+fn place(data: &Dataset, rows: &[usize], held: &[Abscissa], x: &[f64], set: impl Fn(&mut Dataset, &[f64])) -> Dataset {
+    let mut out = data.subset(&vec![rows.first().copied().unwrap_or(0); x.len()]);
+    for Abscissa { quantity, value, .. } in held {
+        let dimension = data.dimension(quantity).unwrap_or(Dimension::ONE);
+        out.put(quantity, vec![*value; x.len()], dimension);
+    }
     set(&mut out, x);
     out
+}
+
+/// The line that places lie on.
+struct Along<'a> {
+    configuration: &'a str,
+    x: &'a [f64],
+    against: Against,
 }
 
 fn bands(
     model: &ModelFit,
     places: &Dataset,
-    configuration: &str,
-    x: &[f64],
-    against: &Against,
+    along: &Along<'_>,
+    held: &[Abscissa],
 ) -> Result<Vec<Curve>, IdentifyError> {
     let coefficients = model.law_coefficients();
     let y = model.law.predict(places, coefficients)?;
@@ -107,12 +133,13 @@ fn bands(
         let arms: Vec<[f64; 2]> = (0..n).map(|i| model.arms(&row(i), scatter_dof)).collect();
         let y = &y[r * n..(r + 1) * n];
         out.push(Curve {
-            configuration: configuration.to_owned(),
+            configuration: along.configuration.to_owned(),
             component: response.clone(),
             unit: unit_text(places, response),
             model: model.law.name.clone(),
-            against: against.clone(),
-            x: x.to_vec(),
+            against: along.against.clone(),
+            held: held.to_vec(),
+            x: along.x.to_vec(),
             y: y.to_vec(),
             low: y.iter().zip(&arms).map(|(y, [below, _])| y - below).collect(),
             high: y.iter().zip(&arms).map(|(y, [_, above])| y + above).collect(),

@@ -25,7 +25,7 @@ pub struct Point {
     pub fitted: f64,
 }
 
-/// A named abscissa.
+/// A channel at one value: an abscissa, or what a curve holds.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Abscissa {
     /// Name of the channel, e.g. `w_z`.
@@ -75,6 +75,8 @@ pub struct Curve {
     pub model: String,
     /// What `x` is.
     pub against: Against,
+    /// What else the law reads and the observations vary in, at the value that it has all along the curve.
+    pub held: Vec<Abscissa>,
     /// Abscissae, rising.
     pub x: Vec<f64>,
     /// Loads.

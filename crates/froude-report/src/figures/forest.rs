@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use froude_records::estimate::{Coefficient, Estimate, Status};
+use froude_records::estimate::{Estimate, Status};
 use froude_records::number;
 
 use crate::canvas::{Align, Canvas, Ink, shortened, text_width};
@@ -41,9 +41,7 @@ pub(super) fn forest_drawings(report: &Report) -> Vec<Drawing> {
         let coefficients: Vec<&str> =
             distinct(rows.iter().flat_map(|(_, _, e)| e.coefficients.keys().map(String::as_str)))
                 .into_iter()
-                .filter(|name| {
-                    rows.iter().any(|(_, _, e)| e.coefficients.get(*name).is_some_and(|c| mark(c, e).is_some()))
-                })
+                .filter(|name| rows.iter().any(|(_, _, e)| mark(name, e).is_some()))
                 .collect();
         if coefficients.is_empty() {
             continue;
@@ -67,7 +65,7 @@ enum Mark {
     Bound(f64, Option<[f64; 2]>),
     /// Given by the campaign.
     Fixed(f64),
-    /// No uncertainty stated.
+    /// No interval stated.
     Open(f64),
 }
 
@@ -87,14 +85,17 @@ impl Mark {
     }
 }
 
-fn mark(c: &Coefficient, estimate: &Estimate) -> Option<Mark> {
+fn mark(name: &str, estimate: &Estimate) -> Option<Mark> {
+    let c = estimate.coefficients.get(name)?;
     let value = number::finite(c.value).filter(|v| drawable(*v))?;
     if matches!(c.status, Status::Undetermined | Status::Excluded) {
         return None;
     }
+    // Two standard uncertainties of what one cluster decides are no interval.
+    let standard = number::usable(c.standard_uncertainty).filter(|_| !estimate.without_interval().contains(&name));
     let ends = c
         .interval_95
-        .or_else(|| number::usable(c.standard_uncertainty).map(|u| [value - 2.0 * u, value + 2.0 * u]))
+        .or_else(|| standard.map(|u| [value - 2.0 * u, value + 2.0 * u]))
         .filter(|e| drawable(e[0]) && drawable(e[1]) && e[0] <= e[1]);
     Some(match (c.status, ends) {
         (Status::AtBound | Status::BoundContradicted, ends) => Mark::Bound(value, ends),
@@ -115,10 +116,8 @@ fn draw_forest(model: &str, coefficients: &[&str], rows: &[&(String, bool, &Esti
     let (head, foot) = (26.0, 30.0);
     let height = shown.len() as f64 * pitch + 6.0;
     let width = (WIDTH - left - 16.0 - gap * (columns - 1) as f64) / columns as f64;
-    let marks: Vec<Vec<Option<Mark>>> = coefficients
-        .iter()
-        .map(|name| shown.iter().map(|(_, _, e)| e.coefficients.get(*name).and_then(|c| mark(c, e))).collect())
-        .collect();
+    let marks: Vec<Vec<Option<Mark>>> =
+        coefficients.iter().map(|name| shown.iter().map(|(_, _, e)| mark(name, e)).collect()).collect();
     let has = |test: fn(&Mark) -> bool| marks.iter().flatten().flatten().any(test);
     let mut legend = Vec::new();
     let mut name = |is_there: bool, swatch: Swatch, ink: Ink, text: &str| {
@@ -128,7 +127,7 @@ fn draw_forest(model: &str, coefficients: &[&str], rows: &[&(String, bool, &Esti
     };
     name(has(|m| matches!(m, Mark::Known(..))), Swatch::Interval, ACCENT, "value and 95 % interval");
     name(has(|m| matches!(m, Mark::Bound(..))), Swatch::Bound, ACCENT, "at its bound, interval beyond it");
-    name(has(|m| matches!(m, Mark::Open(_))), Swatch::Ring, TEXT, "no uncertainty stated");
+    name(has(|m| matches!(m, Mark::Open(_))), Swatch::Ring, TEXT, "no interval stated");
     name(has(|m| matches!(m, Mark::Fixed(_))), Swatch::Square, MUTED, "fixed by the campaign");
     let legend_tall = legend_height(&legend, left);
     let total = legend_tall + n_rows as f64 * (head + height + foot);

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use froude_records::number;
-use froude_records::page::{Against, Curve, Point, SourceSection};
+use froude_records::page::{Abscissa as Held, Against, Curve, Point, SourceSection};
+use indexmap::IndexMap;
 
 use crate::canvas::{Align, Canvas, Ink, shortened};
 use crate::figures::drawing::{
@@ -17,7 +18,7 @@ use crate::plot::{
     ACCENT, Entry, LABEL_SIZE, MUTED, Panel, Span, Swatch, TEXT, Ticks, WIDTH, chunk_size, degree_ticks, draw_legend,
     drawable, grid_shape, legend_height, level_ink,
 };
-use crate::symbol::{Rich, Style, symbol_and_unit};
+use crate::symbol::{Rich, Style, symbol_and_unit, unit_text};
 use crate::tables::counted;
 
 /// From this many points on a panel shows them as a cloud behind the line, without bars.
@@ -480,6 +481,25 @@ fn draw_content(look: &Look, content: &Content, panel: &Panel, canvas: &mut Canv
     }
 }
 
+/// What all lines hold, with its value where they hold it at one.
+fn held_words<'a>(curves: impl Iterator<Item = &'a Curve>) -> String {
+    let mut all: IndexMap<&str, Vec<&Held>> = IndexMap::new();
+    for held in curves.flat_map(|curve| &curve.held) {
+        all.entry(&held.quantity).or_default().push(held);
+    }
+    let words = all.into_iter().map(|(quantity, held)| {
+        let is_one = held.iter().all(|h| h.value == held[0].value);
+        let unit = if held[0].unit == "1" { String::new() } else { format!(" {}", unit_text(&held[0].unit)) };
+        if is_one {
+            format!("{quantity} = {}{unit}", number::plain(held[0].value, 4))
+        } else {
+            format!("{quantity} at its median in each panel")
+        }
+    });
+    let words: Vec<String> = words.collect();
+    if words.is_empty() { String::new() } else { format!(", for {}", words.join(", ")) }
+}
+
 fn load_caption(look: &Look, contents: &[Content], is_shared: bool, part: &str) -> String {
     let mut out = format!(
         "{} {} against {}, {}{part}.",
@@ -504,7 +524,9 @@ fn load_caption(look: &Look, contents: &[Content], is_shared: bool, part: &str) 
             .iter()
             .any(|c| c.curves.iter().any(|(c, _)| c.model == best && !c.low.is_empty() && !c.high.is_empty()));
         let _ = write!(out, " Lines: model {best}");
-        out.push_str(if has_band { " with its 95 % band." } else { "; no band is known." });
+        out.push_str(if has_band { " with its 95 % band" } else { "; no band is known" });
+        out.push_str(&held_words(contents.iter().flat_map(|c| &c.curves).map(|(curve, _)| *curve)));
+        out.push('.');
     }
     if !is_shared {
         out.push_str(" The panels have their own vertical scales.");

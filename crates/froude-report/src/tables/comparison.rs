@@ -240,14 +240,13 @@ fn prediction_table(places: &[PredictedPlace<'_>], first: &str, others: &[&str],
     let first_states = places.iter().flatten().any(|r| states(&r.first));
     let other_states = |other: &str| of(other).iter().any(|r| states(&r.second));
     let head = |id: &str, is_stated: bool| html! { (id) @if is_stated { ", ± U" } (unit) };
-    // Where a side states no uncertainty, the † says why there is no Eₙ.
+    // Where a side has no uncertainty, the † says why there is no Eₙ.
+    let has_uncertainty = |side: &Side| number::finite(side.standard_uncertainty).is_some();
     let notes: Vec<(&str, &str)> = others
         .iter()
-        .filter(|other| first_states && other_states(other))
         .flat_map(|other| {
-            union(of(other).into_iter().map(|r| &r.note).filter(|n| !n.is_empty()))
-                .into_iter()
-                .map(move |n| (*other, n))
+            let own = of(other).into_iter().filter(|r| has_uncertainty(&r.first) && has_uncertainty(&r.second));
+            union(own.map(|r| &r.note).filter(|n| !n.is_empty())).into_iter().map(move |n| (*other, n))
         })
         .collect();
     let has_dagger = !first_states || others.iter().any(|other| !other_states(other));
@@ -289,7 +288,7 @@ fn prediction_table(places: &[PredictedPlace<'_>], first: &str, others: &[&str],
         }
         @if has_dagger || !notes.is_empty() {
             p class="notes" {
-                @if has_dagger { "† no uncertainty stated, no E" sub { "n" } ". " }
+                @if has_dagger { "† no interval stated, no E" sub { "n" } ". " }
                 @for (other, note) in &notes { (other) ": " (note) ". " }
             }
         }

@@ -248,6 +248,7 @@ fn loads(
                     unit: "N".to_owned(),
                     model: model.to_owned(),
                     against,
+                    held: Vec::new(),
                     low: y.iter().map(|y| y - half(y)).collect(),
                     high: y.iter().map(|y| y + half(y)).collect(),
                     x,

@@ -70,23 +70,20 @@ pub fn balance(
     let begins = ((position_m[first] - position_m[0]) / (time_s[first] - time_s[0])).max(0.0);
     let mut at = near.unwrap_or([1.3 * speed_m_s, position_m[0], begins, SHARE[0]]);
     let scale = [speed_m_s, speed_m_s, speed_m_s, 1.0];
-    let residuals = |p: [f64; 4]| -> Vec<f64> {
-        let mut out: Vec<f64> = path(time_s, p, pull).iter().zip(position_m).map(|(m, x)| (x - m) / noise_m).collect();
-        out.push((SHARE[0] - p[3]) / SHARE[1] + share_off);
-        out
-    };
+    let track = Track { time_s, position_m, noise_m, share_off };
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut left = residuals(at);
+    let [mut left] = track.residuals([at], pull);
     let (mut square, mut damping) = (dot(&left, &left), 1e-3);
     let mut inverse = None;
     for _ in 0..MOST_STEPS {
-        let slopes: Vec<Vec<f64>> = (0..4)
-            .map(|j| {
-                let mut p = at;
-                p[j] += STEP * scale[j];
-                residuals(p).iter().zip(&left).map(|(there, here)| (here - there) / STEP).collect()
-            })
-            .collect();
+        let moved: [[f64; 4]; 4] = std::array::from_fn(|j| {
+            let mut p = at;
+            p[j] += STEP * scale[j];
+            p
+        });
+        let slopes = track
+            .residuals(moved, pull)
+            .map(|own| own.iter().zip(&left).map(|(there, here)| (here - there) / STEP).collect::<Vec<f64>>());
         let gram = Mat::from_fn(4, 4, |i, j| dot(&slopes[i], &slopes[j]));
         let right = Mat::from_fn(4, 1, |i, _| dot(&slopes[i], &left));
         let unit: Vec<f64> = (0..4).map(|i| gram[(i, i)].sqrt()).collect();
@@ -101,7 +98,7 @@ pub fn balance(
         inverse = solved(0.0, Mat::<f64>::identity(4, 4));
         let Some(step) = solved(damping, right) else { return Err(refuse("without any drag")) };
         let next: [f64; 4] = std::array::from_fn(|j| at[j] + scale[j] * step[(j, 0)]);
-        let there = if next[0] > 0.0 { residuals(next) } else { Vec::new() };
+        let there = if next[0] > 0.0 { track.residuals([next], pull).concat() } else { Vec::new() };
         let better = if there.is_empty() { f64::INFINITY } else { dot(&there, &there) };
         if better <= square {
             (at, left, square, damping) = (next, there, better, (0.1 * damping).max(1e-12));
@@ -119,7 +116,7 @@ pub fn balance(
     if at[0] > 20.0 * speed_m_s {
         return Err(refuse("as if there were no drag at all"));
     }
-    let acceleration = |p: [f64; 4]| law(p, pull, speed_m_s);
+    let acceleration = |p: [f64; 4]| Law::of(p, pull).acceleration_m_s2(speed_m_s);
     let here = acceleration(at);
     let slope: [f64; 4] = std::array::from_fn(|j| {
         let mut p = at;
@@ -141,28 +138,64 @@ pub fn balance(
     })
 }
 
-/// v̇ at a speed, m/s².
-fn law([terminal, _, _, share]: [f64; 4], pull: Pull, speed: f64) -> f64 {
-    let u = speed / terminal;
-    pull.force_n / pull.mass_kg * (1.0 - share * u - (1.0 - share) * u * u.abs())
+/// v̇ = a − b v − c v|v|.
+#[derive(Clone, Copy)]
+struct Law {
+    a: f64,
+    b: f64,
+    c: f64,
 }
 
-/// Positions at the times, for terminal speed, start, speed there and linear share.
-fn path(time_s: &[f64], p: [f64; 4], pull: Pull) -> Vec<f64> {
-    let (mut x, mut v) = (p[1], p[2]);
-    let mut out = Vec::with_capacity(time_s.len());
-    out.push(x);
-    for w in time_s.windows(2) {
-        let h = w[1] - w[0];
-        let k1 = law(p, pull, v);
-        let k2 = law(p, pull, v + 0.5 * h * k1);
-        let k3 = law(p, pull, v + 0.5 * h * k2);
-        let k4 = law(p, pull, v + h * k3);
-        x += h * (v + h / 6.0 * (k1 + k2 + k3));
-        v += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-        out.push(x);
+impl Law {
+    fn of([terminal, _, _, share]: [f64; 4], pull: Pull) -> Self {
+        let a = pull.force_n / pull.mass_kg;
+        Self { a, b: a * share / terminal, c: a * (1.0 - share) / (terminal * terminal) }
     }
-    out
+
+    #[inline]
+    fn acceleration_m_s2(self, speed: f64) -> f64 {
+        self.a - (self.b + self.c * speed.abs()) * speed
+    }
+}
+
+/// What was read of a wagon.
+struct Track<'a> {
+    time_s: &'a [f64],
+    position_m: &'a [f64],
+    noise_m: f64,
+    share_off: f64,
+}
+
+impl Track<'_> {
+    /// What motions of these terminal speeds, starts, speeds there and linear shares leave of the track, in its errors, and of s beforehand.
+    ///
+    /// They are stepped side by side, by Runge and Kutta's rule of fourth order: each waits for itself only.
+    fn residuals<const N: usize>(&self, p: [[f64; 4]; N], pull: Pull) -> [Vec<f64>; N] {
+        let laws = p.map(|p| Law::of(p, pull));
+        let (mut x, mut v) = (p.map(|p| p[1]), p.map(|p| p[2]));
+        let n = self.position_m.len();
+        let mut out: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(n + 1));
+        for (k, position) in self.position_m.iter().enumerate() {
+            for (own, x) in out.iter_mut().zip(x) {
+                own.push((position - x) / self.noise_m);
+            }
+            let Some(next) = self.time_s.get(k + 1) else { break };
+            let h = next - self.time_s[k];
+            for j in 0..N {
+                let at = |speed: f64| laws[j].acceleration_m_s2(speed);
+                let k1 = at(v[j]);
+                let k2 = at(v[j] + 0.5 * h * k1);
+                let k3 = at(v[j] + 0.5 * h * k2);
+                let k4 = at(v[j] + h * k3);
+                x[j] += h * (v[j] + h / 6.0 * (k1 + k2 + k3));
+                v[j] += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+            }
+        }
+        for (own, p) in out.iter_mut().zip(p) {
+            own.push((SHARE[0] - p[3]) / SHARE[1] + self.share_off);
+        }
+        out
+    }
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use froude::records::campaign::{Campaign, SensorSpec, Source, read_campaign};
 use rayon::prelude::*;
 
 use crate::claims::Claims;
-use crate::family::Bar;
+use crate::family::{Bar, campaigns_of};
 use crate::steady::{Fitted, judged};
 
 const SECTION: &str = "Accelerated tow: drag and added mass in one run, by its twin";
@@ -83,6 +83,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
             let forecast = case.forecast(factor)?;
             let expected: Vec<(&str, f64, f64)> =
                 forecast.expected.iter().map(|e| (e.name.as_str(), e.value, e.combined.standard)).collect();
+            let seeds = campaigns_of(factor == 1.0, seeds);
             let fits: Vec<Fitted> =
                 (0..seeds).into_par_iter().filter_map(|seed| case.one(factor, 1 + seed as u64).ok()).collect();
             judged(claims, SECTION, &expected, &fits, (words, runs, factor == 1.0, seeds), bar);

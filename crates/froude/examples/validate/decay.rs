@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 use crate::coverage::normal;
-use crate::family::{Bar, covers};
+use crate::family::{Bar, campaigns_of, covers};
 
 const SECTION: &str = "Free decay: releases of the twin, five a campaign";
 
@@ -131,6 +131,7 @@ pub fn mamba(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<d
         let (setup, sensors) = loud(times, correlation_s);
         let plan = forecast(&planned, &setup, truth, &sensors)?;
         peaks(claims, (words, &plan, &planned[0].id), is_judged);
+        let seeds = campaigns_of(is_judged, seeds);
         let fits: Vec<Result<DecayFit, String>> = (0..seeds)
             .into_par_iter()
             .map(|seed| {

@@ -14,7 +14,7 @@ use froude::records::estimate::{Coefficient, Status};
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
-use crate::family::{Bar, covers};
+use crate::family::{Bar, campaigns_of, covers};
 
 const REAL: &str = "Excited response: a ship section in waves (NTNU)";
 const TWIN: &str = "Excited response: held and free runs by their twin";
@@ -161,6 +161,7 @@ fn coverage(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dy
             sensor.noise = sensor.noise.map(|n| factor * n);
         }
         let expected = forecast(&planned, &setup, window_s, &sensors)?;
+        let seeds = campaigns_of(factor == 1.0, seeds);
         let fits: Vec<Vec<AtPeriod>> = (0..seeds)
             .into_par_iter()
             .filter_map(|seed| {

@@ -18,6 +18,11 @@ pub enum Bar {
     AtLeast,
 }
 
+/// Campaigns of a noise: where it is shown and not judged a tenth, and no fewer than thirty.
+pub fn campaigns_of(is_judged: bool, campaigns: usize) -> usize {
+    if is_judged { campaigns } else { campaigns.div_ceil(10).max(campaigns.min(30)) }
+}
+
 /// A line about intervals that each cover 95 %; `is_whole` where every campaign gave all of them.
 pub fn covers(
     claims: &mut Claims,

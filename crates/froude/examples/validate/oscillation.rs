@@ -17,7 +17,7 @@ use froude::records::campaign::{Campaign, Identify, SensorSpec, Source, read_cam
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
-use crate::family::{Bar, covers};
+use crate::family::{Bar, campaigns_of, covers};
 
 const SECTION: &str = "Forced oscillation: Table 4 by its twin";
 const C_A: f64 = 1.277;
@@ -329,6 +329,7 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
             })
             .collect();
         let plan = expected(case, &case.setup, &sensors, &Identify::default())?;
+        let seeds = campaigns_of(factor == 1.0, seeds);
         let fits: Vec<(OscillationFit, Vec<f64>)> = (0..seeds)
             .into_par_iter()
             .filter_map(|seed| {

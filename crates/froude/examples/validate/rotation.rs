@@ -16,7 +16,7 @@ use froude::records::campaign::{Identify, SensorSpec, read_campaign};
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
-use crate::family::{Bar, covers};
+use crate::family::{Bar, campaigns_of, covers};
 
 const SECTION: &str = "Rotation: a link about its own centre by its twin";
 /// C_f^II and C_d^II of the f2 model in the circulation tank, USR Table 9; C_A of the tank, Table 12.
@@ -143,6 +143,7 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
             let found = fit(&runs, &motions, &case.setup, &Identify::default()).ok()?;
             Some(shown(case, &truth, &found, &derived(&found, &case.setup)))
         };
+        let seeds = campaigns_of(factor == 1.0, seeds);
         let all: Vec<Vec<(bool, f64)>> = (0..seeds).into_par_iter().filter_map(one).collect();
         let names: Vec<&str> = plan.expected.iter().map(|e| e.name.as_str()).chain([C_F_DIFFERENCE]).collect();
         let mut counts = vec![Count::default(); names.len()];

@@ -16,7 +16,7 @@ use indexmap::IndexMap;
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
-use crate::family::{Bar, covers};
+use crate::family::{Bar, campaigns_of, covers};
 
 /// The coefficients of a fit: of twenty thousand, nothing else is kept.
 pub type Fitted = IndexMap<String, Coefficient>;
@@ -35,6 +35,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
         };
         let sensors: Vec<SensorSpec> = sensors.iter().map(louder).collect();
         let forecast = expected(&plan, &source, &sensors)?;
+        let seeds = campaigns_of(factor == 1.0, seeds);
         let fits: Vec<Fitted> = (0..seeds)
             .into_par_iter()
             .filter_map(|seed| one(&campaign, &source, &plan, &sensors, seed as u64).ok())
