@@ -1264,6 +1264,7 @@ fn a_coefficient_of_no_law_is_held_by_none_and_said() {
     ] {
         let said = refusal(&[("t.csv", &table), ("c.toml", &campaign(text))], &["identify", "c.toml"]);
         assert!(said.contains(&format!("`{key}` names \"D_x_l\"")) && said.contains("did you mean `D_x_I`"), "{said}");
+        assert!(said.contains(if key == "exclude" { "[identify]" } else { "c.toml:11:" }), "{said}");
     }
     // Of other laws than the campaign's it is a warning: its own have the coefficient.
     let files = [("t.csv", table.as_str()), ("c.toml", &campaign("fixed = { D_x_I = \"3 kg/s\" }"))];

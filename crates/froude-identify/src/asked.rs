@@ -31,8 +31,8 @@ pub fn runs_once(campaign: &Campaign) -> Result<(), IdentifyError> {
     Ok(())
 }
 
-/// What `[identify]` says of a coefficient that none of the laws has, in words: a slip of the keyboard would leave free what is meant to be held.
-pub fn held_by_no_law<'a>(identify: &Identify, estimates: impl Iterator<Item = &'a Estimate>) -> Option<String> {
+/// What `[identify]` says of a coefficient that none of the laws has: where, and in words. A slip of the keyboard would leave free what is meant to be held.
+pub fn held_by_no_law<'a>(identify: &Identify, estimates: impl Iterator<Item = &'a Estimate>) -> Option<[String; 2]> {
     let names: BTreeSet<&str> =
         estimates.flat_map(|estimate| estimate.coefficients.keys()).map(String::as_str).collect();
     let stated = [("prior", &identify.prior), ("known", &identify.known)];
@@ -43,7 +43,9 @@ pub fn held_by_no_law<'a>(identify: &Identify, estimates: impl Iterator<Item = &
     let known = names.iter().copied();
     let advice =
         meant(name, known.clone()).unwrap_or_else(|| format!("they have {}", known.collect::<Vec<_>>().join(", ")));
-    Some(format!("`{key}` names {name:?}, a coefficient of none of the laws that were fitted; {advice}"))
+    let stated = identify.stated_units.iter().find(|stated| stated.coefficient == *name);
+    let place = stated.map_or_else(|| "[identify]".to_owned(), |stated| stated.place.to_string());
+    Some([place, format!("`{key}` names {name:?}, a coefficient of none of the laws that were fitted; {advice}")])
 }
 
 /// Laws of a person that no source is fitted with: a source that names its models is fitted with these alone.

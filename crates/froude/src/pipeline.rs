@@ -77,10 +77,10 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         gathered.validate(source, &campaign, job.purpose)?;
     }
     let nobodys = asked::held_by_no_law(&campaign.identify, gathered.sources.iter().flat_map(Answer::estimates));
-    if let (Some(what), true) = (&nobodys, job.models.is_empty() && !gathered.has_not_fitted()) {
-        return Err(IdentifyError::Campaign { place: "[identify]".to_owned(), what: what.clone() }.into());
+    if let (Some([place, what]), true) = (&nobodys, job.models.is_empty() && !gathered.has_not_fitted()) {
+        return Err(IdentifyError::Campaign { place: place.clone(), what: what.clone() }.into());
     }
-    gathered.findings.extend(nobodys.map(|what| Finding::new(Severity::Warning, "held-by-no-law", what)));
+    gathered.findings.extend(nobodys.map(|[_, what]| Finding::new(Severity::Warning, "held-by-no-law", what)));
     let Gathered { sources, mut summaries, mut blocks, mut exports, published, mut findings, beside, is_part } =
         gathered;
     findings.extend(asked::laws_not_asked(&campaign));
