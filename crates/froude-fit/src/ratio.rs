@@ -252,6 +252,25 @@ mod tests {
     }
 
     /// Of three free numbers (r₂ − r₁)² + (r₃ − r₂)² is symmetric about neither side: eigenvalues 0, 1 and 3 make P(d > 1) = P(2 χ²₁ > χ²₁) by hand.
+    /// Imhof's integral as he prints it, with angles and logarithms.
+    #[test]
+    fn the_product_of_roots_is_the_integrand_as_printed() {
+        let lambda: Vec<f64> = (0..40).map(|i| (1.7 * f64::from(i)).sin() - 0.2).collect();
+        let scale = lambda.iter().map(|l| l * l).sum::<f64>().sqrt();
+        let at = |s: f64| {
+            let u = s / (1.0 - s);
+            let theta = 0.5 * lambda.iter().map(|l| (l / scale * u).atan()).sum::<f64>();
+            let log = 0.25 * lambda.iter().map(|l| (l / scale * u).powi(2).ln_1p()).sum::<f64>();
+            theta.sin() * (-log).exp() / (u * (1.0 - s).powi(2))
+        };
+        let step = 1.0 / INTERVALS as f64;
+        let inner: f64 = (1..INTERVALS).map(|k| if k % 2 == 1 { 4.0 } else { 2.0 } * at(k as f64 * step)).sum();
+        let first = 0.5 * lambda.iter().sum::<f64>() / scale;
+        let expected = 0.5 + (first + inner) * step / 3.0 / std::f64::consts::PI;
+        let found = positive(&lambda);
+        assert!((found - expected).abs() < 1e-13 && (0.01..0.99).contains(&found), "{found} {expected}");
+    }
+
     #[test]
     fn nothing_fitted_leaves_the_errors_themselves() {
         let found = by_inversion(Form::Steps, Mat::zeros(3, 0).as_ref(), 1.0).unwrap();

@@ -142,8 +142,13 @@ impl Dataset {
     /// Velocity of row `i` through the water, m/s, body axes; zero where the table has no motion.
     #[must_use]
     pub fn velocity_m_s(&self, i: usize) -> [f64; 2] {
-        let at = |name| self.values(name).map_or(0.0, |v| v[i]);
-        [at("v_x"), at("v_y")]
+        self.velocities_m_s()(i)
+    }
+
+    /// [`Self::velocity_m_s`] of many rows, the channels looked up once.
+    pub fn velocities_m_s(&self) -> impl Fn(usize) -> [f64; 2] {
+        let channels = ["v_x", "v_y"].map(|name| self.values(name));
+        move |i| channels.map(|v| v.map_or(0.0, |v| v[i]))
     }
 
     /// A copy in which `name` of every row is moved by `shift[row]`, with what depends on it.

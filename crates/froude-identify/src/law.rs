@@ -199,9 +199,7 @@ impl ForceLaw {
             Kind::Drag { model, body, cross_term } => {
                 let links = self.channel(data, "n_links")?;
                 let density = self.channel(data, "density")?;
-                let along = data.values("v_x").unwrap_or_default();
-                let across = data.values("v_y").unwrap_or_default();
-                let velocity = |i: usize| [along, across].map(|v| v.get(i).copied().unwrap_or(0.0));
+                let velocity = data.velocities_m_s();
                 let mut row = vec![0.0; p];
                 for i in 0..n {
                     let setting = Setting {

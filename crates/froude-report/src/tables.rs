@@ -100,7 +100,7 @@ fn is_bare(c: &Coefficient, estimate: &Estimate) -> bool {
 }
 
 fn dagger() -> Markup {
-    html! { span class="mark" title="no uncertainty stated" { "†" } }
+    html! { span class="mark" title="no interval stated" { "†" } }
 }
 
 /// Value ± U with its unit, for the summary; the unit goes with a number only.

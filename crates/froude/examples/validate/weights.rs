@@ -102,7 +102,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
     errors_of_speed(claims, root, seeds)
 }
 
-/// Of a mean shift: eight thousand draws have it to a hundredth.
+/// Of a mean shift: eight thousand draws tell a tenth of the least one.
 const MOST_DRAWN: usize = 400;
 
 /// Errors of the speed of 1, 3 and 5 %, independent by run, on 39 runs of H1LT: f_y by a law with a linear and a quadratic part.
