@@ -420,6 +420,7 @@ fn residual(estimate: &Estimate) -> String {
 
 fn beside(claims: &mut Claims, number: &Validation) {
     let Validation {
+        simulation,
         quantity,
         data,
         ratio,
@@ -434,7 +435,7 @@ fn beside(claims: &mut Claims, number: &Validation) {
     } = number;
     claims.add(
         ROBOT,
-        &format!("{quantity} beside {data}, by V&V 20"),
+        &format!("{quantity} of {simulation} beside {data}, by V&V 20"),
         "E within 2 u_val where the model is as good as the tank",
         format!(
             "S over D {:.3}; roots of mean squares over {} flows: S {computed:.3}, D {measured:.3}, E {error:.3}, u_val {u_validation:.3}, model form declared {declared_model_form:.3} N; beyond 2 u_val in {}",

@@ -82,13 +82,23 @@ impl Claims {
     /// The lines for a terminal.
     pub fn text(&self) -> String {
         let mut out = String::new();
-        let mut section = "";
-        for l in &self.lines {
-            if l.section != section {
-                section = l.section;
-                out += &format!("\n{section}\n");
+        for (section, lines) in self.sections() {
+            out += &format!("\n{section}\n");
+            for l in lines {
+                out += &format!("  [{}] {}: {} (expected {})\n", mark(l.verdict), l.claim, l.found, l.expected);
             }
-            out += &format!("  [{}] {}: {} (expected {})\n", mark(l.verdict), l.claim, l.found, l.expected);
+        }
+        out
+    }
+
+    /// Sections in the order in which they begin; parts that run beside each other come back to one.
+    fn sections(&self) -> Vec<(&'static str, Vec<&Line>)> {
+        let mut out: Vec<(&'static str, Vec<&Line>)> = Vec::new();
+        for line in &self.lines {
+            match out.iter_mut().find(|(section, _)| *section == line.section) {
+                Some((_, lines)) => lines.push(line),
+                None => out.push((line.section, vec![line])),
+            }
         }
         out
     }
@@ -101,15 +111,18 @@ impl Claims {
              a figure that contradicts a paper or a data set. *Measured*: a figure without an acceptance band. *Skipped*: the data are not \
              part of this repository and were not there.\n"
         );
-        let mut section = "";
-        for l in &self.lines {
-            if l.section != section {
-                section = l.section;
-                out += &format!("\n## {section}\n\n| | claim | expected | found |\n| --- | --- | --- | --- |\n");
+        let cell = |t: &str| t.replace('|', "\\|").replace('\n', "<br>");
+        for (section, lines) in self.sections() {
+            out += &format!("\n## {section}\n\n| | claim | expected | found |\n| --- | --- | --- | --- |\n");
+            for l in lines {
+                out += &format!(
+                    "| {} | {} | {} | {} |\n",
+                    mark(l.verdict),
+                    cell(&l.claim),
+                    cell(&l.expected),
+                    cell(&l.found)
+                );
             }
-            let cell = |t: &str| t.replace('|', "\\|").replace('\n', "<br>");
-            out +=
-                &format!("| {} | {} | {} | {} |\n", mark(l.verdict), cell(&l.claim), cell(&l.expected), cell(&l.found));
         }
         out
     }
