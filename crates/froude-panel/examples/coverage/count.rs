@@ -25,7 +25,7 @@ const FAST: usize = 200;
 
 pub const COVERED: f64 = 0.95;
 /// Largest median of U over the error: of the finest value, of the extrapolated one.
-pub const GENEROUS: [f64; 2] = [3.0, 10.0];
+pub const GENEROUS: [f64; 2] = [3.0, 4.0];
 pub const SHORT_COVERED: f64 = 0.9;
 
 fn solve(body: &Body, level: usize) -> (Solution, Size) {
