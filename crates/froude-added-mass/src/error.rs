@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use froude_hydro::fluid::FluidError;
 use froude_identify::IdentifyError;
 use froude_identify::method::MethodError;
-use froude_mesh::files::ReadError;
+use froude_mesh::files::{Format, ReadError};
 use froude_mesh::plausible::{Crosses, TooLarge};
 use froude_mesh::sections::SectionError;
 use froude_panel::chain::ChainError;
@@ -149,6 +149,20 @@ pub enum AddedMassError {
         path: PathBuf,
         /// Where.
         crossing: Crosses,
+    },
+    /// A hull cut off at the water's surface of its format, which nobody says is submerged.
+    #[error(
+        "{}: {panels} panels close the mesh in the plane z = 0, which is the water's surface in a {format} file, so the hull floats; floating bodies \
+         are not computed here. If the body is submerged, state where the surface is: --surface \"5 m\" puts it 5 m above the origin of the mesh",
+        .path.display()
+    )]
+    Lid {
+        /// The mesh.
+        path: PathBuf,
+        /// Panels in the plane.
+        panels: usize,
+        /// The format.
+        format: Format,
     },
     /// A body above the water's surface.
     #[error(

@@ -7,6 +7,7 @@ use froude_cfd::body::{Shaped, shaped};
 use froude_cfd::surface::asymmetry;
 use froude_mesh::check::{Trouble, check};
 use froude_mesh::crossing::crossings;
+use froude_mesh::files::MeshFile;
 use froude_mesh::mesh::Mesh;
 use froude_mesh::parts::part_troubles;
 use froude_mesh::plausible::{LARGEST_M, too_large};
@@ -56,7 +57,7 @@ pub(super) fn bodies<'a>(asked: &Asked, named: impl IntoIterator<Item = &'a Stri
 fn surface(asked: &Asked, name: &str) -> Result<Shaped, Error> {
     let refused = |problem: String| CfdInput { path: asked.body.clone(), problem };
     let lies = Lies::read(&asked.body, &asked.spec.lies)?;
-    let (mesh, _) = read_mesh(&asked.body, lies.unit_m)?;
+    let MeshFile { mesh, notes, .. } = read_mesh(&asked.body, lies.unit_m)?;
     let troubles = troubles(&mesh);
     if !troubles.is_empty() {
         let unit = lies.unit_m.map_or_else(String::new, |m| format!(" --unit {}", unit_of(m)));
@@ -76,6 +77,7 @@ fn surface(asked: &Asked, name: &str) -> Result<Shaped, Error> {
     }
     let axes = Axes::Ned.vectors(lies.orientation.unwrap_or_default());
     let mut body = Shaped::of_surface(name, mesh.mapped(|v| axes.map(|axis| dot(axis, v))));
+    body.notes = notes;
     let [length_m, area_m2] = asked.reference;
     body.reference.length_m = length_m.unwrap_or(body.reference.length_m);
     body.reference.area_m2 = area_m2.unwrap_or(body.reference.area_m2);

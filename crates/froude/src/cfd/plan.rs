@@ -164,6 +164,9 @@ const COVERED: f64 = 0.9;
 
 fn said(asked: &Asked, meshed: &[Group], cases: &[Case], change: &Change) -> Vec<String> {
     let mut out = Vec::new();
+    for group in meshed {
+        out.extend(group.body.notes.iter().map(|note| format!("{}: {note}", group.meshed.configuration)));
+    }
     for (group, ready) in meshed.iter().flat_map(|group| group.meshes.iter().map(move |ready| (group, ready))) {
         let name = &group.meshed.configuration;
         if let Some(place) = &ready.instead {
