@@ -76,6 +76,8 @@ pub struct Swum {
     pub drives: Drives,
     /// Half height, half width and half length of its modules, m.
     pub sections: Vec<[f64; 3]>,
+    /// What its URDF was taken as.
+    pub remarks: Vec<String>,
     /// The highest frequency at which the motors give what the gait needs, rad/s.
     pub fastest_rad_s: Option<f64>,
     /// What the coefficients' uncertainty makes of it.
@@ -165,6 +167,7 @@ fn in_plane(file: RobotFile, job: &Job) -> Result<Swum, Error> {
         robot,
         drives,
         sections,
+        remarks: file.remarks,
         fastest_rad_s,
         uncertain: job.uncertain.clone(),
         written: None,
