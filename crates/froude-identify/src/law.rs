@@ -9,13 +9,13 @@ use faer::Mat;
 use froude_hydro::power_law::PowerLaw;
 use froude_hydro::{Axis, Body, CrossTerm, DragModel, Link, Setting};
 use froude_records::estimate::{Estimate, Measured};
-use froude_records::units::Dimension;
+use froude_records::units::{Dimension, parse_unit};
 use indexmap::IndexMap;
 
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::formula::unit::Dim;
-use crate::formula::{Formula, channel_of_alias, load_column};
+use crate::formula::{Formula, channel_of_alias};
 
 /// Reference speed of the linear coefficients of f1 and of the power law, m/s.
 pub const REFERENCE_SPEED_M_S: f64 = 1.0;
@@ -94,16 +94,26 @@ impl ForceLaw {
     ///
     /// What is wrong with a formula, with the model's name and the load.
     pub fn formulas(name: &str, texts: &IndexMap<String, String>, data: &Dataset) -> Result<Self, IdentifyError> {
+        Self::reading(name, texts, data, &|name| data.dimension(name))
+    }
+
+    /// The same over the channels that `channel` knows.
+    fn reading(
+        name: &str,
+        texts: &IndexMap<String, String>,
+        data: &Dataset,
+        channel: &dyn Fn(&str) -> Option<Dimension>,
+    ) -> Result<Self, IdentifyError> {
         let mut formulas = Vec::new();
         let mut coefficients: IndexMap<String, Dimension> = IndexMap::new();
         for (response, text) in texts {
-            let target = aliased(response);
+            let target = data.meant(response);
             let wanted = data.dimension(target).ok_or_else(|| IdentifyError::NoSuchChannel {
                 model: name.to_owned(),
                 channel: target.to_owned(),
                 known: data.channels.keys().cloned().collect(),
             })?;
-            let channel = |n: &str| data.dimension(n).map(exponents);
+            let channel = |n: &str| channel(n).map(exponents);
             let formula = Formula::parse(target, text, &channel, exponents(wanted), &[]).map_err(|source| {
                 IdentifyError::Formula { model: name.to_owned(), response: response.clone(), source: Box::new(source) }
             })?;
@@ -125,7 +135,7 @@ impl ForceLaw {
         Ok(Self {
             name: name.to_owned(),
             kind: Kind::Formulas(formulas),
-            responses: texts.keys().map(|r| aliased(r).to_owned()).collect(),
+            responses: texts.keys().map(|r| data.meant(r).to_owned()).collect(),
             coefficients: coefficients
                 .iter()
                 .map(|(name, d)| CoefficientSpec { name: name.clone(), unit: d.to_string() })
@@ -169,7 +179,7 @@ impl ForceLaw {
         }
         let formulas = estimate.law.formulas();
         if !formulas.is_empty() {
-            return Self::formulas(&estimate.law.name, &formulas, data);
+            return Self::as_recorded(estimate, &formulas, data);
         }
         if estimate.law.name.starts_with("power_law")
             && let Some(axis) = estimate.coefficients.keys().find_map(|n| n.strip_prefix("n_"))
@@ -182,6 +192,34 @@ impl ForceLaw {
             return Ok(Self { name: estimate.law.name.clone(), ..Self::power_law(&response, &channel, in_logarithms) });
         }
         Err(IdentifyError::NoForceLaw { id: estimate.id.clone(), model: estimate.law.name.clone() })
+    }
+
+    /// A record's formulas over the channels that it names as its inputs; a letter that it does not name is read as in a campaign.
+    fn as_recorded(
+        estimate: &Estimate,
+        texts: &IndexMap<String, String>,
+        data: &Dataset,
+    ) -> Result<Self, IdentifyError> {
+        let inputs = &estimate.law.inputs;
+        let stated = |name: &str| inputs.get(name).and_then(|unit| parse_unit(unit).ok()).map(|unit| unit.dimension);
+        for name in inputs.keys() {
+            if let (Some(recorded), Some(found)) = (stated(name), data.dimension(name))
+                && recorded != found
+            {
+                return Err(IdentifyError::InputUnit {
+                    id: estimate.id.clone(),
+                    channel: name.clone(),
+                    recorded: recorded.to_string(),
+                    found: found.to_string(),
+                });
+            }
+        }
+        // The letter of an input that the record names by its column is that column, whatever else the table holds.
+        let is_other = |name: &str| {
+            !inputs.contains_key(name) && channel_of_alias(name).is_some_and(|column| inputs.contains_key(column))
+        };
+        let channel = |name: &str| stated(name).or_else(|| data.dimension(name).filter(|_| !is_other(name)));
+        Self::reading(&estimate.law.name, texts, data, &channel)
     }
 
     /// Derivatives of every response by every coefficient: rows stacked response by response,
@@ -221,11 +259,8 @@ impl ForceLaw {
             }
             Kind::Formulas(formulas) => {
                 for (r, formula) in formulas.iter().enumerate() {
-                    let columns = formula
-                        .channels
-                        .iter()
-                        .map(|c| self.channel(data, aliased(c)))
-                        .collect::<Result<Vec<_>, _>>()?;
+                    let columns =
+                        formula.channels.iter().map(|c| self.channel(data, c)).collect::<Result<Vec<_>, _>>()?;
                     let place: Vec<usize> =
                         formula.coefficients.iter().filter_map(|(name, _)| self.position(name)).collect();
                     let mut values = vec![0.0; columns.len()];
@@ -275,7 +310,7 @@ impl ForceLaw {
         let all: Vec<&str> = match &self.kind {
             Kind::Drag { .. } => vec!["v_x", "v_y", "n_links", "density"],
             Kind::PowerLaw { channel, .. } => vec![channel],
-            Kind::Formulas(formulas) => formulas.iter().flat_map(|f| &f.channels).map(|c| aliased(c)).collect(),
+            Kind::Formulas(formulas) => formulas.iter().flat_map(|f| &f.channels).map(String::as_str).collect(),
         };
         for channel in all {
             if !out.contains(&channel) {
@@ -301,7 +336,7 @@ impl ForceLaw {
         match &self.kind {
             Kind::Drag { .. } => is_meant("v_x"),
             Kind::PowerLaw { channel, .. } => is_meant(channel),
-            Kind::Formulas(formulas) => formulas[response].channels.iter().any(|c| is_meant(aliased(c))),
+            Kind::Formulas(formulas) => formulas[response].channels.iter().any(|c| is_meant(c)),
         }
     }
 
@@ -352,12 +387,6 @@ impl ForceLaw {
             known: data.channels.keys().cloned().collect(),
         })
     }
-}
-
-/// The channel name behind the ship theorist's letters: `u v w p q r` and `X Y Z K M N`.
-#[must_use]
-pub fn aliased(name: &str) -> &str {
-    channel_of_alias(name).or_else(|| load_column(name)).unwrap_or(name)
 }
 
 /// A dimension as the formula room writes it: exponents of m, kg, s, K and A.
