@@ -114,8 +114,11 @@ fn estimate_to_si(e: &mut Estimate) -> Result<(), BadUnit> {
     for (name, m) in &mut e.refers_to {
         measured(m, &Field { path: &["refers_to", name], expected: of_reference(name) })?;
     }
+    // A fit in logarithms has a relative scatter.
+    let is_relative = e.law.name.contains("_log");
     for (name, m) in &mut e.sigma {
-        measured(m, &Field { path: &["sigma", name], expected: known_dimension(name) })?;
+        let expected = if is_relative { Some(Dimension::ONE) } else { known_dimension(name) };
+        measured(m, &Field { path: &["sigma", name], expected })?;
     }
     for (name, range) in &mut e.validity {
         let Range { low, high, unit } = range;
