@@ -56,9 +56,9 @@ fn rejected(args: &[&str]) -> String {
 fn a_robot_swims_as_fast_whatever_units_its_record_is_written_in() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    let as_written = swum(&robot(here, &["coefficients", "C_f_I"], 1.0, "m/s"));
+    let as_written = swum(&robot(here, &["coefficients", "C_d_I"], 1.0, "m/s"));
     let cases: [(&[&str], f64, &str); 4] = [
-        (&["coefficients", "C_f_I"], 1000.0, "mm/s"),
+        (&["coefficients", "C_d_I"], 1000.0, "mm/s"),
         (&["geometry", "half_length"], 1000.0, "mm"),
         (&["geometry", "head_side_area"], 1e4, "cm^2"),
         (&["density"], 1e-3, "g/cm^3"),
@@ -73,7 +73,7 @@ fn a_robot_swims_as_fast_whatever_units_its_record_is_written_in() {
 fn every_verb_rejects_a_unit_that_is_none() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    let path = robot(here, &["coefficients", "C_f_I"], 1.0, "nonsense");
+    let path = robot(here, &["coefficients", "C_d_I"], 1.0, "nonsense");
     let record = here.join("drag.json");
     let line = 1 + std::fs::read_to_string(&record).unwrap().lines().position(|l| l.contains("nonsense")).unwrap();
     let table = here.join("tank.csv");
@@ -86,7 +86,7 @@ fn every_verb_rejects_a_unit_that_is_none() {
         std::fs::write(&path, text).unwrap();
         path
     };
-    let entry = "coefficient = \"D_x_l\", record = \"drag.json\", entry = \"C_f_I\"";
+    let entry = "coefficient = \"D_x_l\", record = \"drag.json\", entry = \"C_d_I\"";
     let tare = campaign("tare.toml", &format!("tare = {{ record = \"drag.json\", select = \"{DRAG}\" }}\n"));
     let prior = campaign("prior.toml", &format!("[identify]\nprior = [{{ {entry} }}]\n"));
     let known = campaign("known.toml", &format!("[identify]\nknown = [{{ {entry} }}]\n"));
@@ -111,7 +111,7 @@ fn every_verb_rejects_a_unit_that_is_none() {
     for verb in verbs {
         let said = rejected(verb);
         let place = format!(
-            "drag.json:{line}: estimate {DRAG}: the unit of coefficients.C_f_I is rejected: unknown unit `nonsense`"
+            "drag.json:{line}: estimate {DRAG}: the unit of coefficients.C_d_I is rejected: unknown unit `nonsense`"
         );
         assert!(said.contains(&place), "{verb:?}: {said}");
     }
@@ -191,7 +191,7 @@ fn a_prior_is_never_counted_against_its_own_data() {
 fn no_result_takes_the_place_of_an_input() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    let path = robot(here, &["coefficients", "C_f_I"], 1.0, "m/s");
+    let path = robot(here, &["coefficients", "C_d_I"], 1.0, "m/s");
     let out = here.join("swim");
     let swim = |robot: &Path| froude(&[&["swim", text(robot), "--out", text(&out)], &GAIT[..]].concat());
     assert!(swim(&path).status.success());
