@@ -20,6 +20,9 @@ use crate::formula::{Formula, channel_of_alias};
 /// Reference speed of the linear coefficients of f1 and of the power law, m/s.
 pub const REFERENCE_SPEED_M_S: f64 = 1.0;
 
+/// Relative difference of two reference speeds that the conversion of a unit explains: some units in the last place.
+const SAME_SPEED: f64 = 1e-12;
+
 /// A coefficient as the record names it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoefficientSpec {
@@ -167,8 +170,36 @@ impl ForceLaw {
     ///
     /// # Errors
     ///
-    /// A built-in drag model without its geometry, or an unknown model.
+    /// A built-in drag model without its geometry, an unknown model, a coefficient in a unit that does not fit the law, or a reference speed other
+    /// than 1 m/s.
     pub fn of_estimate(estimate: &Estimate, data: &Dataset) -> Result<Self, IdentifyError> {
+        let law = Self::named_by(estimate, data)?;
+        let wrong = |what: String| IdentifyError::Campaign { place: format!("estimate {}", estimate.id), what };
+        for spec in &law.coefficients {
+            let Some(c) = estimate.coefficients.get(&spec.name) else { continue };
+            let [own, stated] = [&spec.unit, &c.unit].map(|unit| parse_unit(unit).ok().map(|unit| unit.dimension));
+            if own.is_some() && own != stated {
+                return Err(wrong(format!(
+                    "coefficient {} is in {}, and its law needs it in {}: correct the unit in the record",
+                    spec.name, c.unit, spec.unit
+                )));
+            }
+        }
+        for key in ["v_ref", "U_ref"] {
+            if let Some(m) = estimate.law.constants.get(key)
+                && (m.value / REFERENCE_SPEED_M_S - 1.0).abs() > SAME_SPEED
+            {
+                return Err(wrong(format!(
+                    "its {key} is {} m/s; laws are evaluated with {REFERENCE_SPEED_M_S} m/s: state the coefficients for this speed",
+                    m.value
+                )));
+            }
+        }
+        Ok(law)
+    }
+
+    /// The law by its name or its formulas.
+    fn named_by(estimate: &Estimate, data: &Dataset) -> Result<Self, IdentifyError> {
         if let Some(model) = DragModel::from_name(&estimate.law.name) {
             let body = body_of(estimate)?;
             let cross_term = match estimate.law.constants.get("epsilon") {

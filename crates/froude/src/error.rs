@@ -164,7 +164,7 @@ pub enum Error {
         estimates: usize,
     },
 
-    /// Results would replace a record that is read.
+    /// Results would replace a file that is read.
     #[error(
         "{} holds {}, which is read: results there would replace it. Name another folder with --out",
         .out.display(),
@@ -173,8 +173,26 @@ pub enum Error {
     ReplacesInput {
         /// The folder of the results.
         out: PathBuf,
+        /// The file.
+        record: PathBuf,
+    },
+
+    /// Data behind a record are fitted too.
+    #[error(
+        "{}: {key}: {} was itself fitted to {file}, which this job fits again: the same data would count twice, and the interval would be too \
+         narrow. Take the {key} from a record of other data, or leave it out",
+        .campaign.display(),
+        .record.display()
+    )]
+    CountedTwice {
+        /// The campaign.
+        campaign: PathBuf,
+        /// `prior`, `known` or `tare`.
+        key: &'static str,
         /// The record.
         record: PathBuf,
+        /// The file in common, as this job names it.
+        file: String,
     },
 
     /// The result of a part would replace that of more runs, or of others.
@@ -239,6 +257,7 @@ impl Error {
             | Self::NoSource { .. }
             | Self::TooMany { .. }
             | Self::ReplacesInput { .. }
+            | Self::CountedTwice { .. }
             | Self::ReplacesMore { .. }
             | Self::OfAnotherMethod { .. }
             | Self::Drag(_)

@@ -1,6 +1,7 @@
 //! From a campaign, a bare table, runs or records to estimates side by side and a report.
 
 mod job;
+mod origins;
 mod validation;
 
 use std::collections::BTreeSet;
@@ -79,6 +80,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         progress(&format!("{}: held against the fits", source.name));
         gathered.validate(source, &campaign, job.purpose)?;
     }
+    origins::inherit(&campaign, &gathered.sources, &mut files)?;
     let nobodys = asked::held_by_no_law(&campaign.identify, gathered.sources.iter().flat_map(Answer::estimates));
     if let (Some([place, what]), true) = (&nobodys, job.models.is_empty() && !gathered.has_not_fitted()) {
         return Err(IdentifyError::Campaign { place: place.clone(), what: what.clone() }.into());
@@ -324,18 +326,13 @@ fn is_same_file(a: &Path, b: &Path) -> bool {
         && sha256_of_file(a).ok().is_some_and(|sum| sha256_of_file(b).is_ok_and(|own| own == sum))
 }
 
-/// Refuses results in the folder of a record that is read, as an estimate or as a tare: they would take its place.
+/// Refuses results in the folder of a file that is read: they would take its place.
 fn reads_nothing_in(out: &Path, campaign: &Campaign) -> Result<(), Error> {
-    let Ok(out) = std::fs::canonicalize(out) else { return Ok(()) };
-    let records = campaign.sources.iter().flat_map(|source| {
-        let own = Some(source.input.path()).filter(|_| matches!(source.input, campaign::Input::Record { .. }));
-        own.into_iter().chain(source.tare.as_ref().map(|tare| tare.record.as_path()))
+    let sources = campaign.sources.iter().filter(|source| {
+        matches!(source.input, campaign::Input::Record { .. } | campaign::Input::Table(_) | campaign::Input::Mesh(_))
     });
-    let is_replaced = |path: &&Path| std::fs::canonicalize(path).is_ok_and(|path| path.starts_with(&out));
-    match records.into_iter().find(is_replaced) {
-        None => Ok(()),
-        Some(record) => Err(Error::ReplacesInput { out, record: record.to_owned() }),
-    }
+    let inputs = sources.map(|source| source.input.path()).chain(origins::records(campaign));
+    results::spares(out, inputs.chain([campaign.path.as_path()]))
 }
 
 /// What a record states about itself that a comparison must take into account.

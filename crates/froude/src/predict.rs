@@ -22,6 +22,7 @@ use indexmap::IndexMap;
 use serde_json::{Value, json};
 
 use crate::Error;
+use crate::results::spares;
 
 /// Chance below which a record does not hold.
 const CONTRADICTED: f64 = 0.01;
@@ -84,6 +85,7 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
         std::fs::create_dir_all(folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
         for predicted in &out.estimates {
             let path = folder.join(format!("predicted-{}.csv", in_a_file_name(&predicted.id)));
+            spares(&path, [job.record.as_path(), job.table.as_path()].into_iter().chain(job.sidecar.as_deref()))?;
             write_atomically(&path, &csv_bytes(&out.table(predicted, &path))?)?;
             out.written.push(path);
         }

@@ -60,6 +60,7 @@ pub struct SpatialWritten {
 }
 
 pub(super) fn swim(file: &RobotFile, job: &Job, pitching: &Pitching) -> Result<SpatialSwum, Error> {
+    super::spares_inputs(file, job)?;
     let robot = SpatialRobot::of(file)?;
     let joints = robot.chain.joints.len();
     let wrong = |path: &Path, problem: &str| SwimInput { path: path.to_owned(), problem: problem.to_owned() };
