@@ -305,7 +305,7 @@ fn a_plan_is_counted_before_it_is_made() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let block = |n: usize| {
-        "[[source.plan]]\namplitude = \"10 deg\"\nfrequency = \"70 deg/s\"\nperiods = 10\nrepeats = 2500\n".repeat(n)
+        "[[source.plan]]\namplitude = \"10 deg\"\nfrequency = \"70 deg/s\"\nperiods = 10\nrate = \"10 Hz\"\nrepeats = 2500\n".repeat(n)
     };
     let text = |blocks: &str| {
         format!(
