@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_cfd::openfoam::OpenFoamError;
 use froude_identify::compare::too_many;
 use froude_identify::method::MethodError;
 use froude_records::run::FREE_DECAY;
 use froude_records::text::counted;
+use froude_rig::campaign::error::CampaignError;
+use froude_rig::campaign::runner::RunnerError;
 
 /// Why a job of the pipeline failed.
 #[derive(Debug, thiserror::Error)]
@@ -78,6 +81,10 @@ pub enum Error {
     /// OpenFOAM cannot be run.
     #[error(transparent)]
     OpenFoam(#[from] froude_cfd::openfoam::OpenFoamError),
+
+    /// Stopped as asked, where nothing else says so.
+    #[error("stopped as asked, nothing is lost: the same command resumes")]
+    Stopped,
 
     /// A sweep does not begin.
     #[error(transparent)]
@@ -270,7 +277,18 @@ impl Error {
             | Self::Sweep(_)
             | Self::Draws(_)
             | Self::Swim(_) => true,
-            Self::Runner(_) | Self::OpenFoam(_) | Self::Report(_) | Self::Output { .. } => false,
+            Self::Stopped | Self::Runner(_) | Self::OpenFoam(_) | Self::Report(_) | Self::Output { .. } => false,
+        }
+    }
+
+    /// True where the job ended because it was asked to (Ctrl-C), and the same command resumes.
+    #[must_use]
+    pub fn was_stopped(&self) -> bool {
+        let is_asked = |e: &RunnerError| matches!(e, RunnerError::Stopped { .. } | RunnerError::StoppedWaiting { .. });
+        match self {
+            Self::Stopped | Self::OpenFoam(OpenFoamError::Cancelled { .. }) => true,
+            Self::Runner(e) | Self::Campaign(CampaignError::Runner(e)) => is_asked(e),
+            _ => false,
         }
     }
 

@@ -1,6 +1,7 @@
 //! `froude predict`: a record's forces on the rows of any table, with bands, errors and one number over all rows.
 
 use std::collections::BTreeSet;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use froude_identify::dataset::{Dataset, LOADS};
@@ -12,12 +13,13 @@ use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
 use froude_records::json::read_estimates;
+use froude_records::manifest::take_own_place;
 use froude_records::number::{dof, p_equation, percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::text::{counted, in_a_file_name};
 use froude_records::units::{Dimension, Unit, parse_unit};
-use froude_records::write::write_atomically;
+use froude_records::write::Prepared;
 use indexmap::IndexMap;
 use serde_json::{Value, json};
 
@@ -86,7 +88,8 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
         for predicted in &out.estimates {
             let path = folder.join(format!("predicted-{}.csv", in_a_file_name(&predicted.id)));
             spares(&path, [job.record.as_path(), job.table.as_path()].into_iter().chain(job.sidecar.as_deref()))?;
-            write_atomically(&path, &csv_bytes(&out.table(predicted, &path))?)?;
+            let bytes = csv_bytes(&out.table(predicted, &path))?;
+            take_own_place(Prepared::new(&path, |file| file.write_all(&bytes))?)?;
             out.written.push(path);
         }
     }
