@@ -27,7 +27,7 @@
 //!
 //! **Units.** SI, rad, as URDF has them. **Source.** wiki.ros.org/urdf/XML.
 
-use std::collections::HashMap;
+use indexmap::IndexMap;
 use std::path::Path;
 
 use froude_hydro::Link;
@@ -121,7 +121,7 @@ struct Tree<'n, 'i> {
 impl<'n, 'i> Tree<'n, 'i> {
     fn of(file: &File<'_, '_>, robot: Node<'n, 'i>) -> Result<Self, RecordError> {
         let named = |tag: &'static str| robot.children().filter(move |n| n.has_tag_name(tag));
-        let (mut links, mut places) = (Vec::new(), HashMap::new());
+        let (mut links, mut places) = (Vec::new(), IndexMap::new());
         for link in named("link") {
             let name = file.text(link, "name")?;
             if places.insert(name, links.len()).is_some() {
@@ -185,7 +185,9 @@ impl<'n, 'i> Tree<'n, 'i> {
             _ => None,
         };
         let own = own.unwrap_or_default();
-        parts.iter_mut().for_each(|part| part.frame = own.seen(&part.frame));
+        for part in &mut parts {
+            part.frame = own.seen(&part.frame);
+        }
         if let Some(joint) = &mut joint {
             joint.frame = own.seen(&joint.frame);
         }
@@ -333,7 +335,7 @@ impl Frame {
 /// Modules of a sidecar for the bodies of a URDF.
 pub(super) fn modules(root: &Section<'_>, chain: &[UrdfLink]) -> Result<Vec<ModuleFile>, RecordError> {
     let sections = root.sections("module")?;
-    let mut body_of: HashMap<&str, usize> = HashMap::new();
+    let mut body_of: IndexMap<&str, usize> = IndexMap::new();
     for (i, body) in chain.iter().enumerate() {
         body_of.extend(body.links.iter().map(|(name, _)| (name.as_str(), i)));
     }
@@ -520,7 +522,8 @@ impl File<'_, '_> {
         let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
         let [x, y, z] = direction.map(|x| x / length);
         // An axis without a length has no direction, and its components are NaN.
-        if !(x.hypot(y) <= TURNED) {
+        let is_vertical = x.hypot(y) <= TURNED;
+        if !is_vertical {
             let problem =
                 format!("is {direction:?}; joints of a planar chain turn about z: write xyz=\"0 0 1\" or \"0 0 -1\"");
             return Err(self.wrong(axis.unwrap_or(joint), "axis", problem));
