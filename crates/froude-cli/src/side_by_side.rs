@@ -159,7 +159,7 @@ fn forces(c: &Comparison) {
     place.extend(["speed [m/s]".to_owned(), "angle [deg]".to_owned()]);
     let at = |r: &LoadComparison| {
         let mut row =
-            vec![if is_one_unit { cell(&r.component) } else { cell(&format!("{} [{}]", r.component, r.unit)) }];
+            vec![if is_one_unit { cell(&r.component) } else { cell(format!("{} [{}]", r.component, r.unit)) }];
         if has_links {
             row.push(right(r.n_links.map_or_else(String::new, |k| format!("{k}"))));
         }

@@ -860,11 +860,15 @@ fn corners_at_one_place_are_one_vertex_in_every_format() {
         let own: Vec<Vec3> = shaken(k).collect();
         for triangle in [[0, 1, 2], [0, 2, 3]].iter().take(own.len() - 2) {
             ascii += "facet normal 0 0 0\nouter loop\n";
-            triangle.iter().for_each(|c| ascii += &format!("vertex {} {} {}\n", own[*c][0], own[*c][1], own[*c][2]));
+            for c in triangle {
+                ascii += &format!("vertex {} {} {}\n", own[*c][0], own[*c][1], own[*c][2]);
+            }
             ascii += "endloop\nendfacet\n";
         }
         let four: Vec<usize> = (0..4).map(|c| c.min(own.len() - 1)).collect();
-        four.iter().for_each(|c| gdf += &format!("{} {} {}\n", own[*c][0], own[*c][1], own[*c][2]));
+        for c in &four {
+            gdf += &format!("{} {} {}\n", own[*c][0], own[*c][1], own[*c][2]);
+        }
         panels += &four.iter().map(|c| (next + c).to_string()).collect::<Vec<_>>().join(" ");
         panels += "\n";
         faces += &format!("f {}\n", (0..own.len()).map(|c| (next + c).to_string()).collect::<Vec<_>>().join(" "));

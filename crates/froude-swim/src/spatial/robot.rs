@@ -110,7 +110,7 @@ fn displaced_kg(modules: &[ModuleFile], density_kg_m3: f64) -> Vec<f64> {
     let heavy_kg: f64 = modules.iter().map(|m| m.mass_kg - stated(m)).sum();
     if heavy_kg.abs() <= modules.iter().map(within).sum() {
         let factor = mass_kg / all.iter().sum::<f64>();
-        for kg in all.iter_mut() {
+        for kg in &mut all {
             *kg *= factor;
         }
     }

@@ -48,6 +48,8 @@ pub(super) struct Ready {
 /// A body with the meshes of its cases, of all angles or of one.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Group {
+    /// What was left out or changed in reading the body, a sentence each.
+    pub notes: Vec<String>,
     /// Height of the body, z, m.
     pub height_m: f64,
     /// Part of a tank's section that the body blocks \[-\].
@@ -93,6 +95,7 @@ fn of_angle(asked: &Asked, body: &Shaped, angle_rad: Option<f64>, cancel: &Atomi
     // The surface itself is not kept: a plan may have hundreds of bodies.
     let [low, high] = bounds_m(&body.surface);
     let group = |meshes: Vec<Ready>| Group {
+        notes: body.notes.clone(),
         height_m: high[2] - low[2],
         blockage: asked.spec.tank.zip(angle_rad).map(|(tank, angle)| {
             let (sin, cos) = angle.sin_cos();

@@ -165,7 +165,7 @@ const COVERED: f64 = 0.9;
 fn said(asked: &Asked, meshed: &[Group], cases: &[Case], change: &Change) -> Vec<String> {
     let mut out = Vec::new();
     for group in meshed {
-        out.extend(group.body.notes.iter().map(|note| format!("{}: {note}", group.meshed.configuration)));
+        out.extend(group.notes.iter().map(|note| format!("{}: {note}", group.meshed.configuration)));
     }
     for (group, ready) in meshed.iter().flat_map(|group| group.meshes.iter().map(move |ready| (group, ready))) {
         let name = &group.meshed.configuration;
