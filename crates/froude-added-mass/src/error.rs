@@ -12,6 +12,7 @@ use froude_panel::chain::ChainError;
 use froude_panel::refine::RefineError;
 use froude_records::RecordError;
 use froude_records::added_mass_options::GivenOption;
+use froude_records::text::counted;
 
 use crate::frame::Direction;
 
@@ -152,9 +153,10 @@ pub enum AddedMassError {
     },
     /// A hull cut off at the water's surface of its format, which nobody says is submerged.
     #[error(
-        "{}: {panels} panels close the mesh in the plane z = 0, which is the water's surface in a {format} file, so the hull floats; floating bodies \
-         are not computed here. If the body is submerged, state where the surface is: --surface \"5 m\" puts it 5 m above the origin of the mesh",
-        .path.display()
+        "{}: the mesh is closed by {} in the plane z = 0, which is the water's surface in a {format} file: this is a floating hull, and floating \
+         bodies are not computed here. If the body is submerged, state where the surface is: --surface \"5 m\" puts it 5 m above the origin of the mesh",
+        .path.display(),
+        counted(*panels, "panel", "panels")
     )]
     Lid {
         /// The mesh.

@@ -902,35 +902,22 @@ fn corners_at_one_place_are_one_vertex_in_every_format() {
         ("egg.dat", nemoh),
         ("egg.msh", msh),
     ];
-    let options =
-        [&["--polyhedron", "--density", "1000 kg/m^3", "--tolerance", "20 %"][..], &["--out", "results", "--force"]]
-            .concat();
-    let computed = |name: &str| {
-        let output = froude(at, &[&[name], &options[..]].concat());
-        assert_eq!(output.status.code(), Some(0), "{name}: {}", said(&output));
-        output
-    };
-    let of = |name: &str| {
-        computed(name);
-        matrix(&serde_json::from_slice(&std::fs::read(at.join("results/estimate.json")).unwrap()).unwrap(), 0)
-    };
-    let exact = of("whole.obj");
+    let options = ["--polyhedron", "--density", "1000 kg/m^3", "--tolerance", "20 %"];
+    let exact = matrix(&record(at, &[&["whole.obj"], &options[..]].concat()), 0);
     for (name, content) in files {
         std::fs::write(at.join(name), content).unwrap();
-        let text = String::from_utf8(computed(name).stdout).unwrap();
+        let text = lines(at, &[&[name], &options[..]].concat());
         assert!(text.contains(" merged (closer than 0.000006 m), first at "), "{name}: {text}");
-        let a = of(name);
+        let a = matrix(&record(at, &[&[name], &options[..]].concat()), 0);
         for i in 0..6 {
-            assert!(
-                (a[i][i] / exact[i][i] - 1.0).abs() < 1e-3,
-                "{name}, A{0}{0}: {1} of {2}",
-                i + 1,
-                a[i][i],
-                exact[i][i]
-            );
+            let part = a[i][i] / exact[i][i];
+            assert!((part - 1.0).abs() < SHAKEN, "{name}, A{0}{0}: {1} of {2}", i + 1, a[i][i], exact[i][i]);
         }
     }
 }
+
+/// Quadrilaterals that 1e-8 m warp are divided into triangles only above a millionth of their radius; an STL has triangles, and converges from another side.
+const SHAKEN: f64 = 0.01;
 
 /// Numbers that count from 1, counted from 0.
 fn zero_based(numbers: &str) -> String {
@@ -951,8 +938,8 @@ fn a_hull_closed_by_a_lid_at_the_surface_is_not_deeply_submerged() {
     refuses(
         &[("barge.gdf", gdf.as_bytes())],
         &[&["barge.gdf"], &WATER[..]].concat(),
-        "barge.gdf: 1 panels close the mesh in the plane z = 0, which is the water's surface in a WAMIT GDF file, so the hull floats; floating bodies are not \
-         computed here. If the body is submerged, state where the surface is: --surface \"5 m\" puts it 5 m above the origin of the mesh",
+        "barge.gdf: the mesh is closed by 1 panel in the plane z = 0, which is the water's surface in a WAMIT GDF file: this is a floating hull, and floating \
+         bodies are not computed here. If the body is submerged, state where the surface is: --surface \"5 m\" puts it 5 m above the origin of the mesh",
     );
     // Other formats do not define where the surface is.
     write(at, "barge.obj", &boxed);

@@ -96,7 +96,6 @@ fn a_pipe_or_a_device_is_rejected_at_once_by_every_reader() {
         &["robot", "inspect", "?.toml"],
         &["robot", "inspect", "?.urdf"],
         &["swim", "?.toml", "--amplitude", "30 deg", "--frequency", "80 deg/s", "--phase", "40 deg"],
-        &["carriage", "identify", "?.csv"],
         &["carriage", "identify", "?.mcap"],
         &["carriage", "drag", "?.mcap"],
     ];

@@ -210,7 +210,8 @@ fn no_result_takes_the_place_of_an_input() {
     let record = here.join("a-first/estimate.json");
     let out = here.join("predicted");
     assert!(froude(&["predict", text(&record), text(&here.join("a.csv")), "--out", text(&out)]).status.success());
-    let table = std::fs::read_dir(&out).unwrap().map(|e| e.unwrap().path()).next().unwrap();
+    let mut written = std::fs::read_dir(&out).unwrap().map(|e| e.unwrap().path());
+    let table = written.find(|path| path.extension().is_some_and(|e| e == "csv")).unwrap();
     let before = std::fs::read(&table).unwrap();
     let said = rejected(&["predict", text(&record), text(&table), "--out", text(&out)]);
     assert!(said.contains("which is read: results there would replace it"), "{said}");

@@ -111,7 +111,7 @@ pub fn unused(data: &Dataset, campaign: &Campaign, source: &Source, laws: &[Forc
 
 /// Names that the campaign uses and that are columns of the table as well as letters of other columns.
 fn letters(data: &Dataset, campaign: &Campaign, source: &Source, laws: &[ForceLaw]) -> Vec<Finding> {
-    let used = laws.iter().flat_map(|law| law.texts.keys().map(String::as_str).chain(law.channels()));
+    let used = laws.iter().flat_map(ForceLaw::channels);
     let kept = source.keep.iter().flat_map(|keep| &keep.clauses).map(|clause| clause.column.as_str());
     let blocks = campaign.identify.cross_validation.iter().map(|block| block.column.as_str());
     let budget = source.uncertainty.iter().map(|entry| entry.quantity.as_str());
@@ -120,8 +120,7 @@ fn letters(data: &Dataset, campaign: &Campaign, source: &Source, laws: &[ForceLa
     own.map(|name| {
         let column = aliased(name);
         let text = format!(
-            "{name} is the table's own column `{}`, not the letter that otherwise stands for {column}; write {column} where that is meant, \
-             or give the column another name",
+            "{name} is read as the table's column `{}`, not as the alias of {column}; write {column} if you mean that, or rename the column",
             data.header(name)
         );
         Finding::new(Severity::Note, "column-like-alias", text)

@@ -15,7 +15,7 @@ use indexmap::IndexMap;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::formula::unit::Dim;
-use crate::formula::{Formula, channel_of_alias};
+use crate::formula::{Formula, channel_of_alias, load_column};
 
 /// Reference speed of the linear coefficients of f1 and of the power law, m/s.
 pub const REFERENCE_SPEED_M_S: f64 = 1.0;
@@ -110,7 +110,7 @@ impl ForceLaw {
         let mut formulas = Vec::new();
         let mut coefficients: IndexMap<String, Dimension> = IndexMap::new();
         for (response, text) in texts {
-            let target = data.meant(response);
+            let target = response_of(data, response);
             let wanted = data.dimension(target).ok_or_else(|| IdentifyError::NoSuchChannel {
                 model: name.to_owned(),
                 channel: target.to_owned(),
@@ -138,7 +138,7 @@ impl ForceLaw {
         Ok(Self {
             name: name.to_owned(),
             kind: Kind::Formulas(formulas),
-            responses: texts.keys().map(|r| data.meant(r).to_owned()).collect(),
+            responses: texts.keys().map(|r| response_of(data, r).to_owned()).collect(),
             coefficients: coefficients
                 .iter()
                 .map(|(name, d)| CoefficientSpec { name: name.clone(), unit: d.to_string() })
@@ -460,4 +460,9 @@ pub fn geometry_of(body: &Body) -> IndexMap<String, Measured> {
         ("head_side_area".to_owned(), m(body.head_side_area_m2, "m^2")),
         ("tail_side_area".to_owned(), m(body.tail_side_area_m2, "m^2")),
     ])
+}
+
+/// The channel that a law gives: on the left of a formula `X Y Z K M N` are loads, also beside a column of the table with that name.
+fn response_of<'a>(data: &Dataset, name: &'a str) -> &'a str {
+    load_column(name).unwrap_or_else(|| data.meant(name))
 }

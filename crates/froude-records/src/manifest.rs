@@ -123,6 +123,7 @@ pub fn may_replace(path: &Path) -> Result<(), RecordError> {
 pub fn take_own_place(file: Prepared) -> Result<(), RecordError> {
     let (folder, name) = split(file.path());
     let (mut manifest, before) = single(&folder, &name, file.path())?;
+    manifest.files.remove(&name);
     // Both are listed first: killed before or after the rename, what stands there is known.
     manifest.single.insert(name, before.into_iter().chain([file.sha256()?]).collect());
     write(&folder, &manifest)?;
@@ -136,11 +137,13 @@ fn single(folder: &Path, name: &str, path: &Path) -> Result<(Manifest, Option<St
     if path.symlink_metadata().is_err() {
         return Ok((manifest, None));
     }
-    let listed = manifest.single.get(name);
+    // A file of results that were written as a whole folder is Froude's as well.
+    let mut listed = manifest.single.get(name).into_iter().flatten().chain(manifest.files.get(name)).peekable();
+    let is_changed = listed.peek().is_some();
     let found = if path.is_file() { Some(sha256_of_file(path)?) } else { None };
-    match (listed, found) {
-        (Some(listed), Some(found)) if listed.contains(&found) => Ok((manifest, Some(found))),
-        (listed, _) => Err(RecordError::NotOurs { path: path.to_owned(), is_changed: listed.is_some() }),
+    match found {
+        Some(found) if listed.any(|own| *own == found) => Ok((manifest, Some(found))),
+        _ => Err(RecordError::NotOurs { path: path.to_owned(), is_changed }),
     }
 }
 

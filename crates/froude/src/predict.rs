@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use froude_identify::compare::observations;
 use froude_identify::dataset::{Dataset, LOADS};
 use froude_identify::lint::repeats::identical_copies;
 use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate};
@@ -111,8 +112,8 @@ pub fn of_rows(estimates: &[&Estimate], data: Dataset) -> Result<Prediction, Err
 /// Why the rows of a table are rows that an estimate was fitted to: its file by the fingerprint, or its rows where that file is still beside the record.
 fn fitted_to(job: &Job, record: &EstimateFile, estimate: &Estimate, data: &Dataset) -> Result<Option<String>, Error> {
     let own = sha256_of_file(&job.table)?;
-    let of_estimate = estimate.data.iter().filter_map(|key| record.data.get(key));
-    for file in of_estimate.filter(|file| file.role.as_deref().is_none_or(|role| role == "table")) {
+    let fitted = observations(record, estimate).into_iter();
+    for file in fitted.filter(|file| file.role.as_deref().is_none_or(|role| role == "table")) {
         if file.sha256 == own {
             return Ok(Some(format!(
                 "{} has the SHA-256 of {}, which it was fitted to",

@@ -11,7 +11,7 @@
 //! | `errors`, `diagnostics` | no unit in the file: SI of the quantity |
 //!
 //! A unit that cannot be read, or that measures something else than the field is for, is rejected. The dimension of a coefficient is known for
-//! f1 to f6, power laws, `added_mass_6x6` and C_A; that of a formula follows from the formula, where the law is built.
+//! f1 to f6, power laws, `added_mass_6x6`, and C_A beside a drag law; that of a formula follows from the formula, where the law is built.
 
 use froude_hydro::DragModel;
 use indexmap::IndexMap;
@@ -115,10 +115,11 @@ fn estimate_to_si(e: &mut Estimate) -> Result<(), BadUnit> {
         measured(m, &Field { path: &["refers_to", name], expected: of_reference(name) })?;
     }
     // A fit in logarithms has a relative scatter.
-    let is_relative = e.law.name.contains("_log");
+    let is_relative = power_law(&e.law.name) == Some(PowerLaw::InLogarithms);
     for (name, m) in &mut e.sigma {
         let expected = if is_relative { Some(Dimension::ONE) } else { known_dimension(name) };
-        measured(m, &Field { path: &["sigma", name], expected })?;
+        let unit = Field { path: &["sigma", name], expected }.converted(&mut m.unit)?;
+        m.value = unit.difference_to_si(m.value);
     }
     for (name, range) in &mut e.validity {
         let Range { low, high, unit } = range;
@@ -221,18 +222,31 @@ fn of_reference(name: &str) -> Option<Dimension> {
 /// Dimension of a range of observations.
 fn of_range(name: &str) -> Option<Dimension> {
     match name {
-        "angle_off_axis" | "Re" | "Fr" | "KC" | "blockage" => Some(Dimension::ONE),
+        "angle_off_axis" | "Re" | "KC" | "blockage" => Some(Dimension::ONE),
+        _ if name.starts_with("Fr_") => Some(Dimension::ONE),
         _ => known_dimension(name),
     }
 }
 
-/// Dimension of a coefficient of a built-in law, and of C_A in any.
+#[derive(PartialEq)]
+enum PowerLaw {
+    Plain,
+    InLogarithms,
+}
+
+/// The built-in power law behind a name, which may state its axis: `power_law_log_rx`. A law of a user with a similar name is none.
+fn power_law(name: &str) -> Option<PowerLaw> {
+    let rest = name.strip_prefix("power_law")?;
+    let (rest, kind) = match rest.strip_prefix("_log") {
+        Some(rest) => (rest, PowerLaw::InLogarithms),
+        None => (rest, PowerLaw::Plain),
+    };
+    matches!(rest, "" | "_x" | "_y" | "_z" | "_rx" | "_ry" | "_rz").then_some(kind)
+}
+
+/// Dimension of a coefficient of a built-in law; `None` for laws whose formula decides it.
 fn of_coefficient(law: &str, name: &str) -> Option<Dimension> {
-    if let Some(model) = DragModel::from_name(law) {
-        let info = model.coefficients().iter().find(|c| c.name == name);
-        return info.and_then(|c| parse_unit(c.unit).ok()).map(|unit| unit.dimension);
-    }
-    if law.starts_with("power_law") {
+    if power_law(law).is_some() {
         return match name.split_at_checked(2)? {
             ("n_", _) => Some(Dimension::ONE),
             ("k_", axis) if axis.starts_with('r') => Some(Dimension::MOMENT),
@@ -240,10 +254,17 @@ fn of_coefficient(law: &str, name: &str) -> Option<Dimension> {
             _ => None,
         };
     }
-    if law.starts_with("added_mass") {
+    if matches!(law, "added_mass_6x6" | "added_mass_parts") {
         return of_matrix(name);
     }
-    matches!(name, "C_A" | "C_Ax" | "C_Ay").then_some(Dimension::ONE)
+    // Methods name their laws after the drag law beside the added mass.
+    let with_added_mass = law.strip_prefix("added_mass_");
+    if with_added_mass.is_some() && matches!(name, "C_A" | "C_Ax" | "C_Ay" | "C_Az") {
+        return Some(Dimension::ONE);
+    }
+    let model = DragModel::from_name(with_added_mass.unwrap_or(law))?;
+    let info = model.coefficients().iter().find(|c| c.name == name)?;
+    parse_unit(info.unit).ok().map(|unit| unit.dimension)
 }
 
 /// Dimension of an entry `A11` to `A66`: a mass, a first moment or an inertia.

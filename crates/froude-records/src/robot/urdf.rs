@@ -181,7 +181,7 @@ impl<'n, 'i> Tree<'n, 'i> {
             }
         }
         let own = match &joint {
-            Some(joint) if is_head => parts.iter().map(|part| part.frame).find(|frame| frame.is_aligned(&joint.frame)),
+            Some(joint) if is_head => head_frame(&parts, &joint.frame),
             _ => None,
         };
         let own = own.unwrap_or_default();
@@ -193,6 +193,18 @@ impl<'n, 'i> Tree<'n, 'i> {
         }
         Ok(Body { parts, joint })
     }
+}
+
+/// The frame of the head, of those of its links: axes as at the joint, which lies behind on the x axis. Links with a mass come first, as a `world` may lie anywhere.
+fn head_frame(parts: &[Part<'_, '_>], joint: &Frame) -> Option<Frame> {
+    let is_heavy = |part: &&Part<'_, '_>| part.node.children().any(|n| n.has_tag_name("inertial"));
+    let ordered = || parts.iter().filter(is_heavy).chain(parts).map(|part| part.frame);
+    let is_behind = |frame: &Frame| {
+        let [x, y, z] = frame.seen(joint).place_m;
+        x < 0.0 && y.hypot(z) <= TURNED * x.abs()
+    };
+    let mut aligned = ordered().filter(|frame| frame.is_aligned(joint));
+    aligned.clone().find(is_behind).or_else(|| aligned.next())
 }
 
 /// A joint that moves, with the link behind it and its frame in that of the body.
@@ -234,7 +246,15 @@ impl Body<'_, '_> {
             };
             rigid.iter().map(own).sum::<f64>()
         });
-        if heavy.is_none() || inertia_kg_m2.iter().any(|i| *i <= 0.0) {
+        if heavy.is_none() {
+            let names: Vec<&str> = self.parts.iter().map(|part| part.name).collect();
+            let problem = format!(
+                "has no mass, and no link that is fixed to it has one ({}); write <inertial> in one of them",
+                names.join(", ")
+            );
+            return Err(file.wrong(first.node, "link", problem));
+        }
+        if inertia_kg_m2.iter().any(|i| *i <= 0.0) {
             let problem = format!(
                 "has a mass of {mass_kg} kg and inertias of {inertia_kg_m2:?} kg m² with all links that are fixed to it; expected values above zero"
             );
@@ -387,7 +407,7 @@ pub(super) fn remarks(chain: &[UrdfLink]) -> Vec<String> {
         if let Some(name) = &body.turns_down {
             let joint = i + 1;
             out.push(format!(
-                "joint {joint} ({name}) turns about -z: phi_{joint} is minus its URDF angle, in recordings that are read and in trajectories"
+                "joint {joint} ({name}) turns about -z: phi_{joint} is minus its URDF angle; change its sign in recordings of URDF angles before they are read (trajectories hold phi_{joint})"
             ));
         }
     }
@@ -532,7 +552,7 @@ impl File<'_, '_> {
         let [x, y, z] = frame.place_m;
         if !(x < 0.0 && y.hypot(z) <= TURNED * x.abs()) {
             let problem = format!(
-                "is ({x}, {y}, {z}) from the joint before it; the joint of the next link lies behind its own on the x axis: (−length, 0, 0)"
+                "is ({x}, {y}, {z}) in the frame of the module before it; the joint of the next link lies behind its own on the x axis: (−length, 0, 0)"
             );
             return Err(self.wrong(joint, "origin", problem));
         }

@@ -98,23 +98,20 @@ impl SpatialRobot {
     }
 }
 
-/// Water that each module displaces, kg. Where it is the module's mass within the digits in which both are written it is that mass, and where this holds for the sum only, all are scaled to it:
-/// a difference in a digit that nobody gave would turn a body that nothing rights, and lift or sink it.
+/// Water that each module displaces, kg. A robot that is neutral within the digits of its masses, volumes and density is exactly neutral: a difference beyond these digits
+/// would turn a body that nothing rights, and lift or sink it. Modules that are neutral within their own digits are so by themselves, and the rest is scaled in equal parts.
 fn displaced_kg(modules: &[ModuleFile], density_kg_m3: f64) -> Vec<f64> {
     // A file of three dimensions has all volumes.
     let stated = |m: &ModuleFile| m.volume_m3.unwrap_or(0.0) * density_kg_m3;
     let within = |m: &ModuleFile| m.neutral_within.min(NEUTRAL) * m.mass_kg;
-    let own = |m: &ModuleFile| if (m.mass_kg - stated(m)).abs() <= within(m) { m.mass_kg } else { stated(m) };
-    let mut all: Vec<f64> = modules.iter().map(own).collect();
-    let mass_kg: f64 = modules.iter().map(|m| m.mass_kg).sum();
     let heavy_kg: f64 = modules.iter().map(|m| m.mass_kg - stated(m)).sum();
-    if heavy_kg.abs() <= modules.iter().map(within).sum() {
-        let factor = mass_kg / all.iter().sum::<f64>();
-        for kg in &mut all {
-            *kg *= factor;
-        }
+    if heavy_kg.abs() > modules.iter().map(within).sum() {
+        return modules.iter().map(stated).collect();
     }
-    all
+    let own = |m: &ModuleFile| if (m.mass_kg - stated(m)).abs() <= within(m) { m.mass_kg } else { stated(m) };
+    let mass_kg: f64 = modules.iter().map(|m| m.mass_kg).sum();
+    let factor = mass_kg / modules.iter().map(own).sum::<f64>();
+    modules.iter().map(|m| factor * own(m)).collect()
 }
 
 /// The centre of mass less that of buoyancy of a straight, level chain, ahead and down.

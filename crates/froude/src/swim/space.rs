@@ -305,7 +305,8 @@ impl SpatialSwum {
         let heavy = self.robot.heavy_kg;
         if heavy == 0.0 {
             let stated = self.robot.plane.heavy_kg.unwrap_or(0.0);
-            if stated != 0.0 {
+            // The sum of the modules is rounded.
+            if stated.abs() > 1e-12 * self.robot.plane.mass_kg {
                 out.push(format!(
                     "neutral within the digits given: mass and displaced water differ by {} kg, and weight and buoyancy are taken as equal",
                     significant(stated.abs(), 2)
