@@ -273,3 +273,57 @@ fn an_animation_is_to_scale_and_loads_nothing() {
         assert!(mean.abs() < 0.01 * most, "axis {axis}: {mean} of {most}");
     }
 }
+
+/// f6 of CFD at 20 deg and 60 deg of phase: straight swimming at 0.1007 m/s and 3.04 mW is unstable (multiplier 1.12). The figures are those of the motion that it settles into, and 600 periods from a start a little aside end on it.
+#[test]
+fn an_unstable_gait_is_reported_as_the_motion_it_settles_into() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let record = "circulation_tank_restricted.json\", select = \"circulation_tank_restricted/f2\"";
+    let robot = changed(folder.path(), record, "cfd.json\", select = \"cfd/f6\"");
+    let toml = std::fs::read_to_string(&robot).unwrap();
+    let aside = "velocity = [\"0.1 m/s\", \"-0.002 m/s\"]\nturn_rate = \"0 deg/s\"\n";
+    std::fs::write(&robot, format!("{toml}\n[start]\nplace = [\"0 m\", \"0 m\"]\nheading = \"0 deg\"\n{aside}"))
+        .unwrap();
+    let gait = ["--frequency", "80 deg/s", "--phase", "60 deg"];
+    let run = |more: &[&str]| {
+        let output = froude(&[&["swim", text(&robot)], &gait[..], more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let amplitude = ["--amplitude", "20 deg"];
+    let out = at("long");
+    let told = run(&[&amplitude[..], &["--periods", "600", "--out", text(&out), "--json"]].concat());
+    let found: Value = serde_json::from_str(&told).unwrap();
+    let left = &found["unstable_motion"];
+    for (key, expected) in [("speed_m_s", 0.1007), ("power_net_w", 3.042e-3)] {
+        assert!((number(left, key) / expected - 1.0).abs() < 1e-3, "{left}");
+    }
+    assert!(left["floquet_multipliers"][0].as_f64().unwrap() > 1.1, "{left}");
+    assert!(found["floquet_multipliers"][0].as_f64().unwrap() < 1.0, "{found}");
+    let table = read_table(&out.join("trajectory.parquet"), None).unwrap();
+    let last = |name: &str, dimension: Dimension| {
+        let si = table.number(name, dimension).unwrap();
+        si[si.len() - 1] - si[si.len() - 101]
+    };
+    // Turn and power are those of its mirror image too, on which it may end.
+    let turn = last("heading", Dimension::ONE) / number(&found, "turn_per_period_rad");
+    assert!((turn.abs() - 1.0).abs() < 1e-6, "{turn} {found}");
+    let power = table.number("power_net", Dimension::new(2, 1, -3)).unwrap();
+    let power = power[power.len() - 100..].iter().sum::<f64>() / 100.0 / number(&found, "power_net_w");
+    assert!((power - 1.0).abs() < 1e-6, "{power} {found}");
+    // The word comes first, and the unstable figures stand beside the others.
+    let told = run(&amplitude);
+    assert!(told.contains("settles into a circle of 3.68 m radius or its mirror image"), "{told}");
+    assert!(told.find("unstable: ").unwrap() < told.find("net power").unwrap(), "{told}");
+    assert!(told.contains("speed of the unstable motion"), "{told}");
+    // A sweep has both, and ranks gaits by the motion that they settle into.
+    let out = at("sweep");
+    let swept = run(&["--sweep", "amplitude=20..20.1 deg:2", "--out", text(&out)]);
+    assert!(swept.contains("2 gaits leave an unstable motion"), "{swept}");
+    let table = read_table(&out.join("sweep.parquet"), None).unwrap();
+    for (column, expected) in [("unstable_speed", 0.1007), ("speed", number(&found, "speed_m_s"))] {
+        let speed = table.number(column, Dimension::new(1, 0, -1)).unwrap()[0];
+        assert!((speed / expected - 1.0).abs() < 1e-3, "{column}: {speed}");
+    }
+}

@@ -246,3 +246,30 @@ fn a_robot_that_is_neutral_within_its_digits_swims_as_in_the_plane() {
     let output = froude(&["robot", "inspect", text(&robot), "--json"]);
     assert!(String::from_utf8(output.stdout).unwrap().contains("no stable equilibrium"));
 }
+
+/// A gait that is unstable in the plane: in three dimensions too it is the circle that is reported, with the plane's figures, and the straight motion stands beside.
+#[test]
+fn an_unstable_gait_settles_into_the_circle_of_the_plane() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = (
+        "circulation_tank_restricted.json\", select = \"circulation_tank_restricted/f2\"",
+        "cfd.json\", select = \"cfd/f6\"",
+    );
+    let gait = ["--amplitude", "20 deg", "--phase", "60 deg"];
+    let swum = |changes: &[(&str, &str)]| {
+        let robot = changed(folder.path(), changes);
+        let output = froude(&[&["swim", text(&robot), "--frequency", "80 deg/s", "--json"], &gait[..]].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let space = swum(&[record, PITCH, LOW, EXACT]);
+    let plane = swum(&[record, PITCH, LOW, EXACT, ("\"3d\"", "\"planar\"")]);
+    for key in ["speed_m_s", "power_net_w"] {
+        let [a, b] = [&space, &plane].map(|found| number(found, key));
+        assert!((a / b - 1.0).abs() < 1e-6, "{key}: {a} {b}");
+        let [a, b] = [&space, &plane].map(|found| number(&found["unstable_motion"], key));
+        assert!((a / b - 1.0).abs() < 1e-6, "{key} of the unstable motion: {a} {b}");
+    }
+    let remarks = space["remarks"].to_string();
+    assert!(remarks.contains("unstable: the swimmer settles into a circle of 3.68 m radius"), "{remarks}");
+}

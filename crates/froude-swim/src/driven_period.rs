@@ -13,6 +13,7 @@ use crate::driven::Driven;
 use crate::moving::{Instant, Servoed, go};
 use crate::period::{MOST_STEPS, Periodic, REPEATS, Repeats, STEP, TRANSIENT, scale};
 use crate::planar::Motion;
+use crate::settled::settled;
 
 /// A step of Newton's method is taken where it leaves less than this part of what does not repeat.
 const NEARER: f64 = 0.5;
@@ -24,24 +25,55 @@ impl<'a> Driven<'a, Servo<'a>> {
     pub fn periodic_seen(&self, head: Motion, steps: usize, see: &mut dyn FnMut(&Instant<'_>)) -> Option<Periodic> {
         let mut driven = self.clone();
         driven.current_m_s = [0.0; 2];
-        let course = driven.drive.course();
-        let (j, period) = (driven.chain.joints(), course.period_s());
-        let speeds = scale(driven.chain, period);
-        let mut size = vec![1.0; j];
-        size.extend(speeds);
-        size.extend((0..j).map(|i| course.extremes(i, j)[1].max(1.0 / period)));
+        let period = driven.drive.course().period_s();
+        let size = sizes(&driven);
         let mut map = Map { driven: &mut driven, h: period / steps as f64, steps, periods: 0 };
         let mut z = map.wanted(head);
         for _ in 0..TRANSIENT {
             z = map.over(&z)?;
         }
-        let (z, repeats) = map.fixed(z, &size)?;
-        let state = map.state(&z);
-        let joints = (0..j).map(|i| [z[i], z[3 + j + i]]).collect();
-        let mut moving = Servoed::new(driven, state);
-        let passage = go(&mut moving, period / steps as f64, steps, see)?;
-        Some(Periodic::of(period, [z[j], z[j + 1], z[j + 2]], joints, &passage, &repeats))
+        told(map, z, &size, see)
     }
+
+    /// The motion that an unstable one settles into; as [`crate::path::Swimmer::settled_seen`].
+    pub fn settled_seen(
+        &self,
+        unstable: &Periodic,
+        steps: usize,
+        see: &mut dyn FnMut(&Instant<'_>),
+    ) -> Option<Periodic> {
+        let mut driven = self.clone();
+        driven.current_m_s = [0.0; 2];
+        let period = driven.drive.course().period_s();
+        let size = sizes(&driven);
+        let angles = unstable.joints.iter().map(|joint| joint[0]);
+        let start: Vec<f64> = angles.chain(unstable.head).chain(unstable.joints.iter().map(|joint| joint[1])).collect();
+        let mut map = Map { driven: &mut driven, h: period / steps as f64, steps, periods: 0 };
+        let near = settled(&start, &size, |z| map.over(z))?;
+        let found = told(map, near, &size, see)?;
+        (found.multipliers[0] <= 1.0).then_some(found)
+    }
+}
+
+/// Numbers by which the angles, the head's motion and the rates are measured.
+fn sizes(driven: &Driven<'_, Servo<'_>>) -> Vec<f64> {
+    let (course, j) = (driven.drive.course(), driven.chain.joints());
+    let period = course.period_s();
+    let mut size = vec![1.0; j];
+    size.extend(scale(driven.chain, period));
+    size.extend((0..j).map(|i| course.extremes(i, j)[1].max(1.0 / period)));
+    size
+}
+
+/// The motion that repeats next to `z`, with a period of it.
+fn told(mut map: Map<'_, '_>, z: Vec<f64>, size: &[f64], see: &mut dyn FnMut(&Instant<'_>)) -> Option<Periodic> {
+    let (z, repeats) = map.fixed(z, size)?;
+    let (j, h, steps) = (map.driven.chain.joints(), map.h, map.steps);
+    let state = map.state(&z);
+    let joints = (0..j).map(|i| [z[i], z[3 + j + i]]).collect();
+    let mut moving = Servoed::new(map.driven.clone(), state);
+    let passage = go(&mut moving, h, steps, see)?;
+    Some(Periodic::of(h * steps as f64, [z[j], z[j + 1], z[j + 2]], joints, &passage, &repeats))
 }
 
 /// The map over a period of angles, motion of the head and rates.

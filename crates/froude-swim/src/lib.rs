@@ -61,6 +61,7 @@ pub mod planar;
 pub mod robot;
 pub mod seen;
 pub mod sensitivity;
+mod settled;
 pub mod shares;
 mod sine;
 pub mod spatial;

@@ -15,6 +15,7 @@ use crate::head::{COARSE, HeadMap, SIDE_BY_SIDE};
 use crate::moving::{Exact, Instant, Passage, go};
 use crate::path::{State, Swimmer};
 use crate::planar::Motion;
+use crate::settled::settled;
 
 /// Periods that a swimmer is let go before Newton's method.
 pub(crate) const TRANSIENT: usize = 3;
@@ -117,7 +118,36 @@ impl Swimmer<'_> {
         let mut periods = TRANSIENT;
         let coarse = newton(&map, head, scale, (COARSE, 1e3 * REPEATS), &mut periods);
         let start = coarse.map_or([0.0; 3], |found| found.head);
-        let found = newton(&map, start, scale, (1, REPEATS), &mut periods)?;
+        self.at(&map, start, [steps, periods], see)
+    }
+
+    /// The motion that an unstable one settles into, seen as in [`Swimmer::periodic_seen`]; `None` where it settles into none that repeats each period.
+    pub fn settled_seen(
+        &self,
+        unstable: &Periodic,
+        steps: usize,
+        see: &mut dyn FnMut(&Instant<'_>),
+    ) -> Option<Periodic> {
+        let steps = steps.max(1).next_multiple_of(COARSE);
+        let period = self.gait.period_s();
+        let scale = scale(self.chain, period);
+        let map = HeadMap::new(self.chain, self.gait, period, steps)?;
+        let over = |z: &[f64]| Some(map.over(&[[z[0], z[1], z[2]]; SIDE_BY_SIDE], COARSE)[0].to_vec());
+        let near = settled(&unstable.head, &scale, over)?;
+        let found = self.at(&map, [near[0], near[1], near[2]], [steps, 0], see)?;
+        (found.multipliers[0] <= 1.0).then_some(found)
+    }
+
+    /// The motion that repeats next to `head`, in `steps` after `periods` that led there.
+    fn at(
+        &self,
+        map: &HeadMap,
+        head: Motion,
+        [steps, mut periods]: [usize; 2],
+        see: &mut dyn FnMut(&Instant<'_>),
+    ) -> Option<Periodic> {
+        let period = self.gait.period_s();
+        let found = newton(map, head, scale(self.chain, period), (1, REPEATS), &mut periods)?;
         let swimmer = Swimmer { current_m_s: [0.0; 2], ..self.clone() };
         let mut moving = Exact::new(swimmer, State { head: found.head, ..State::default() });
         let passage = go(&mut moving, period / steps as f64, steps, see)?;

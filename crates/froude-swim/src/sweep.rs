@@ -94,7 +94,7 @@ impl Grid {
 
 /// Names and units of the numbers of a [`Row`].
 #[rustfmt::skip]
-pub const COLUMNS: [(&str, &str); 23] = [
+pub const COLUMNS: [(&str, &str); 26] = [
     ("amplitude", "rad"), ("frequency", "rad/s"), ("phase", "rad"), ("turn", "rad"), ("draw", "1"),
     ("speed", "m/s"), ("turn_rate", "rad/s"),
     ("power_net", "W"), ("power_pos", "W"), ("power_abs", "W"), ("power_loss", "W"), ("power_friction", "W"), ("power_electric", "W"),
@@ -102,6 +102,7 @@ pub const COLUMNS: [(&str, &str); 23] = [
     ("torque_peak", "N m"), ("rate_peak", "rad/s"),
     ("residual", "1"), ("periods", "1"), ("floquet", "1"),
     ("extrapolated_loss_by_speed", "1"), ("extrapolated_loss_by_angle", "1"),
+    ("unstable_speed", "m/s"), ("unstable_power_net", "W"), ("unstable_floquet", "1"),
 ];
 
 /// Why a gait has no answer, or that it has one.
@@ -205,6 +206,7 @@ impl Row {
 
 fn answer(swim: &Swim, gait: &Gait) -> [f64; COLUMNS.len() - 5] {
     let p = &swim.periodic;
+    let unstable = swim.unstable.as_ref().map_or([f64::NAN; 3], |u| [u.speed_m_s, u.net_w, u.multipliers[0]]);
     let [by_speed, by_angle] = swim.extrapolated.map(|share| share.unwrap_or(f64::NAN));
     [
         p.speed_m_s,
@@ -225,6 +227,9 @@ fn answer(swim: &Swim, gait: &Gait) -> [f64; COLUMNS.len() - 5] {
         p.multipliers[0],
         by_speed,
         by_angle,
+        unstable[0],
+        unstable[1],
+        unstable[2],
     ]
 }
 

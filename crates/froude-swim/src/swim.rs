@@ -138,8 +138,10 @@ pub enum SwimError {
 /// What a gait comes to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swim {
-    /// The motion that repeats.
+    /// The motion that repeats; of a gait whose motion is unstable, the one that it settles into, where there is one. All figures are of this motion.
     pub periodic: Periodic,
+    /// The unstable motion that `periodic` takes the place of.
+    pub unstable: Option<Box<Periodic>>,
     /// Net power over speed, J/m.
     pub cost_j_m: f64,
     /// Positive power over speed, J/m.
@@ -187,7 +189,22 @@ impl Robot {
             let servo = Servo::new(gait, &drives.following, &drives.motor);
             Driven::new(&self.chain, servo).periodic_seen(head, steps, &mut see)
         };
-        let periodic = found.ok_or(SwimError::NotPeriodic)?;
+        let mut periodic = found.ok_or(SwimError::NotPeriodic)?;
+        let mut unstable = None;
+        if periodic.multipliers[0] > 1.0 {
+            let mut again = Seen::new(self, drives, gait);
+            let mut see = |now: &crate::moving::Instant<'_>| again.see(now);
+            let settled = if drives.following.is_empty() {
+                swimmer.settled_seen(&periodic, steps, &mut see)
+            } else {
+                let servo = Servo::new(gait, &drives.following, &drives.motor);
+                Driven::new(&self.chain, servo).settled_seen(&periodic, steps, &mut see)
+            };
+            if let Some(settled) = settled {
+                unstable = Some(Box::new(std::mem::replace(&mut periodic, settled)));
+                seen = again;
+            }
+        }
         let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
         if periodic.speed_m_s * gait.period_s() < STILL * length {
             return Err(SwimError::Still { speed_m_s: periodic.speed_m_s });
@@ -210,6 +227,7 @@ impl Robot {
             median_angle_rad: seen.losses().median_angle_rad(),
             gain_w: self.gain(seen.losses().fastest_m_s(), NO_GAIN * periodic.net_w),
             periodic,
+            unstable,
         })
     }
 

@@ -2,6 +2,7 @@
 
 mod animation;
 mod columns;
+mod leaves;
 pub mod look;
 mod moves;
 pub mod optimise;
@@ -76,6 +77,8 @@ pub struct Swum {
     pub drives: Drives,
     /// Half height, half width and half length of its modules, m.
     pub sections: Vec<[f64; 3]>,
+    /// The gait's period, or the length of a recording, s.
+    pub period_s: f64,
     /// What its URDF was taken as.
     pub remarks: Vec<String>,
     /// The highest frequency at which the motors give what the gait needs, rad/s.
@@ -170,7 +173,7 @@ fn in_plane(file: RobotFile, job: &Job) -> Result<Swum, Error> {
     let drives = drives(&file, job.motor.as_deref())?;
     let way = Way { file: &file, robot: &robot, drives: &drives, job };
     let periodic = |gait: &Periodically| Ok::<_, Error>((Asked::of(&job.moves, Some(gait)), way.gait(gait)?));
-    let (asked, (came, moments, fastest_rad_s)) = match &job.moves {
+    let (asked, (came, moments, fastest_rad_s, period_s)) = match &job.moves {
         Moves::Wave(gait) => periodic(&Periodically { wave: Wave::Gait(gait.clone()), ramp_s: None, pitch: None })?,
         Moves::File { path, typed } => periodic(&moves::flat_gait_of(path, typed, joints)?)?,
         Moves::Track(path) => (Asked::of(&job.moves, None), way.track(path)?),
@@ -184,6 +187,7 @@ fn in_plane(file: RobotFile, job: &Job) -> Result<Swum, Error> {
         robot,
         drives,
         sections,
+        period_s,
         remarks: file.remarks,
         fastest_rad_s,
         uncertain: job.uncertain.clone(),
@@ -229,7 +233,7 @@ struct Way<'a> {
     job: &'a Job,
 }
 
-type Found = (Came, Option<Vec<Moment>>, Option<f64>);
+type Found = (Came, Option<Vec<Moment>>, Option<f64>, f64);
 
 impl Way<'_> {
     fn gait(&self, of: &Periodically) -> Result<Found, Error> {
@@ -258,7 +262,7 @@ impl Way<'_> {
             Wave::Gait(gait) => self.robot.fastest(gait, self.drives),
             Wave::Table(_) => None,
         };
-        Ok((Came::Gait(swim), moments, fastest))
+        Ok((Came::Gait(swim), moments, fastest, course.period_s()))
     }
 
     fn track(&self, path: &Path) -> Result<Found, Error> {
@@ -274,7 +278,8 @@ impl Way<'_> {
                 Some(self.robot.trajectory(&track, self.drives, (&begin, &[]), cut, self.file.current_m_s)?)
             }
         };
-        Ok((Came::Track(tracked), moments, None))
+        let length_s = tracked.length_s;
+        Ok((Came::Track(tracked), moments, None, length_s))
     }
 
     /// As the robot file has it, or at rest at the origin along x.

@@ -11,6 +11,7 @@ use faer::Mat;
 
 use super::attitude::{angles, of_angles};
 use super::path::{State, Swimmer};
+use crate::settled::settled;
 
 /// Numbers of the map.
 pub const NUMBERS: usize = 8;
@@ -26,6 +27,8 @@ const MOST_HALVES: usize = 6;
 const REPEATS: f64 = 1e-9;
 /// Step of the differences of the map.
 const STEP: f64 = 1e-5;
+/// Multipliers within this of one are one: what no weight brings back neither grows nor fades.
+pub const ONE: f64 = 1e-4;
 /// Singular values below this part of the largest are none.
 const SINGULAR: f64 = 1e-7;
 
@@ -73,11 +76,7 @@ impl Swimmer<'_> {
     /// The periodic motion in `steps` steps a period; `None` where there is none within reach or an inertia is not positive.
     pub fn periodic(&mut self, steps: usize) -> Option<Periodic> {
         let steps = steps.max(1).next_multiple_of(COARSE);
-        let period = self.gait.period_s();
-        let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
-        let speed = length / self.chain.links.len() as f64 / period;
-        let turn = speed / length;
-        let scale = [turn, turn, turn, speed, speed, speed, 1.0, 1.0];
+        let scale = self.scale();
         let mut at = [0.0; NUMBERS];
         for _ in 0..TRANSIENT {
             at = self.map(&at, steps / COARSE)?;
@@ -86,6 +85,32 @@ impl Swimmer<'_> {
         let near = self.newton(at, &scale, steps / COARSE, 1e3 * REPEATS).map_or(at, |found| found.at);
         let found = self.newton(near, &scale, steps, REPEATS)?;
         self.told(&found, steps)
+    }
+
+    /// The motion that an unstable one settles into; `None` where it settles into none that repeats each period.
+    pub fn settled(&mut self, unstable: &Periodic, steps: usize) -> Option<Periodic> {
+        let steps = steps.max(1).next_multiple_of(COARSE);
+        let scale = self.scale();
+        let [roll, pitch, _] = angles(unstable.start.attitude);
+        let [p, q, r, u, v, w] = unstable.start.head;
+        let near = settled(&[p, q, r, u, v, w, roll, pitch], &scale, |z| {
+            let at: [f64; NUMBERS] = z.try_into().ok()?;
+            let mut end = self.map(&at, steps / COARSE)?;
+            // Roll is known up to a whole turn.
+            let rolled: f64 = end[6] - at[6];
+            end[6] = at[6] + rolled.sin().atan2(rolled.cos());
+            Some(end.to_vec())
+        })?;
+        let found = self.newton(near.try_into().ok()?, &scale, steps, REPEATS)?;
+        self.told(&found, steps).filter(|found| found.multipliers[0] <= 1.0 + ONE)
+    }
+
+    /// Sizes of the numbers of the map.
+    fn scale(&self) -> [f64; NUMBERS] {
+        let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
+        let speed = length / self.chain.links.len() as f64 / self.gait.period_s();
+        let turn = speed / length;
+        [turn, turn, turn, speed, speed, speed, 1.0, 1.0]
     }
 
     /// The numbers at the end of a period from those at its beginning.

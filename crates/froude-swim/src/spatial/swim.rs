@@ -6,7 +6,7 @@
 
 use super::attitude::{angles, of_angles};
 use super::path::{State, Swimmer};
-use super::period::Periodic;
+use super::period::{ONE, Periodic};
 use super::robot::SpatialRobot;
 use super::vector::dot;
 use crate::gait::{Course, Shape};
@@ -21,6 +21,8 @@ use crate::trajectory::{Cut, MOST_NUMBERS};
 pub struct SpatialSwim {
     /// The motion that repeats.
     pub periodic: Periodic,
+    /// The unstable motion that `periodic` takes the place of, as in [`crate::swim::Swim::unstable`].
+    pub unstable: Option<Box<Periodic>>,
     /// Net power over speed, J/m.
     pub cost_j_m: f64,
     /// Positive power over speed, J/m.
@@ -76,7 +78,13 @@ impl SpatialRobot {
         }
         let (steps, _) = self.plane.steps(gait, drives, step_s)?;
         let restless = || SwimError::Restless { righting_mm: 1e3 * self.righting_m };
-        let periodic = swimmer.periodic(steps).ok_or_else(restless)?;
+        let mut periodic = swimmer.periodic(steps).ok_or_else(restless)?;
+        let mut unstable = None;
+        if periodic.multipliers[0] > 1.0 + ONE
+            && let Some(settled) = swimmer.settled(&periodic, steps)
+        {
+            unstable = Some(Box::new(std::mem::replace(&mut periodic, settled)));
+        }
         let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
         if periodic.speed_m_s * gait.period_s() < STILL * length {
             return Err(SwimError::Still { speed_m_s: periodic.speed_m_s });
@@ -100,6 +108,7 @@ impl SpatialRobot {
             along: losses.along(),
             median_angle_rad: losses.median_angle_rad(),
             periodic,
+            unstable,
         })
     }
 

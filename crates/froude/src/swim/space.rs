@@ -15,12 +15,14 @@ use froude_swim::gait::Course;
 use froude_swim::spatial::attitude::of_angles;
 use froude_swim::spatial::gait::SpatialGait;
 use froude_swim::spatial::path::State;
+use froude_swim::spatial::period::ONE;
 use froude_swim::spatial::robot::SpatialRobot;
 use froude_swim::spatial::swim::{SpatialMoment, SpatialSwim};
 use froude_swim::spatial::vector::Axis;
 use froude_swim::trajectory::Cut;
 use serde_json::{Value, json};
 
+use super::leaves::Repeating;
 use super::moves::{self, Moves, Wave};
 use super::told;
 use super::{Job, MOMENTS, Pitching, SwimInput};
@@ -30,8 +32,6 @@ use crate::{Error, results};
 pub(super) const RIGHTS_ITSELF_M: f64 = 1e-5;
 /// A trim is none below this, m.
 const TRIMMED_M: f64 = 1e-4;
-/// Multipliers within this of one are one.
-const ONE: f64 = 1e-4;
 
 /// What came of a swim in three dimensions.
 #[derive(Debug, Clone, PartialEq)]
@@ -225,6 +225,7 @@ impl SpatialSwum {
             row("sinks per period", fixed(1e3 * p.way_m[2], 2), "mm"),
             row("largest Floquet multiplier", significant(p.multipliers[0], 3), "1"),
         ]);
+        rows.extend(s.unstable.iter().flat_map(|unstable| Repeating::from(&**unstable).rows()));
         DocumentSection {
             title: self.name.clone(),
             paragraphs: self.sentences(),
@@ -260,12 +261,10 @@ impl SpatialSwum {
 
     fn stability(&self, out: &mut Vec<String>) {
         let p = &self.swim.periodic;
-        let largest = p.multipliers[0];
-        if largest > 1.0 + ONE {
-            out.push(format!(
-                "unstable: a small deviation grows by a factor of {} from period to period, and the swimmer leaves this motion",
-                significant(largest, 3)
-            ));
+        match &self.swim.unstable {
+            Some(unstable) => out.push(Repeating::from(&**unstable).leaves(&p.into(), self.period_s)),
+            None if p.multipliers[0] > 1.0 + ONE => out.push(Repeating::from(p).stays()),
+            None => {}
         }
         let righting_mm = 1e3 * self.robot.righting_m;
         if self.robot.righting_m < -RIGHTS_ITSELF_M {
@@ -385,6 +384,7 @@ impl SpatialSwum {
             "mass_less_displaced_kg": self.robot.plane.heavy_kg,
             "floquet_multipliers": p.multipliers,
             "periodic_residual": p.residual,
+            "unstable_motion": s.unstable.as_ref().map(|u| Repeating::from(&**u).as_json()),
             "extrapolated_loss_by_speed": s.extrapolated[0],
             "extrapolated_loss_by_angle": s.extrapolated[1],
             "loss_along_links": s.along,

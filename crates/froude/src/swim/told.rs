@@ -7,6 +7,7 @@ use froude_swim::seen::Needs;
 use froude_swim::stability::Stiffness;
 use serde_json::{Value, json};
 
+use super::leaves::Repeating;
 use super::{Came, Swum};
 
 /// A body is neutral when it weighs less than this part of itself in water.
@@ -144,6 +145,7 @@ impl Swum {
             Came::Gait(s) => {
                 rows.push(row("turn per period", fixed(f.turn.to_degrees(), 2), "deg"));
                 rows.push(row("largest Floquet multiplier", significant(s.periodic.multipliers[0], 3), "1"));
+                rows.extend(s.unstable.iter().flat_map(|unstable| Repeating::from(&**unstable).rows()));
             }
             Came::Track(t) => {
                 rows.push(row("turn of the head", fixed(f.turn.to_degrees(), 2), "deg"));
@@ -172,13 +174,12 @@ impl Swum {
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
-        if let Came::Gait(s) = &self.came
-            && s.periodic.multipliers[0] > 1.0
-        {
-            out.push(format!(
-                "unstable: a small deviation grows by a factor of {} from period to period, and the swimmer leaves this motion",
-                significant(s.periodic.multipliers[0], 3)
-            ));
+        let Came::Gait(s) = &self.came else { return out };
+        let settled = Repeating::from(&s.periodic);
+        match &s.unstable {
+            Some(unstable) => out.push(Repeating::from(&**unstable).leaves(&settled, self.period_s)),
+            None if s.periodic.multipliers[0] > 1.0 => out.push(settled.stays()),
+            None => {}
         }
         out
     }
@@ -332,6 +333,7 @@ impl Swum {
                 "turn_per_period_rad": f.turn,
                 "floquet_multipliers": s.periodic.multipliers,
                 "periodic_residual": s.periodic.residual,
+                "unstable_motion": s.unstable.as_ref().map(|u| Repeating::from(&**u).as_json()),
             }),
             Came::Track(t) => json!({
                 "length_s": t.length_s,

@@ -34,6 +34,8 @@ pub struct Drawn {
     pub beyond: Beyond,
     /// Draws with which the gait has no answer.
     pub without_answer: usize,
+    /// Draws whose figures are those of the motion that an unstable one settles into, and of a motion that stays unstable.
+    pub unstable: [usize; 2],
     /// 95 % of speed, m/s, net and positive power, W, and cost of transport, J/m.
     pub intervals: [[f64; 2]; 4],
 }
@@ -81,12 +83,14 @@ pub fn uncertain(
                 let found = swim(&blueprint.robot(values)).ok()?;
                 tell(done.fetch_add(1, Ordering::Relaxed) + 1, asked.n);
                 let p = &found.periodic;
-                Some([p.speed_m_s, p.net_w, p.positive_w, found.cost_j_m])
+                let is = [found.unstable.is_some(), p.multipliers[0] > 1.0];
+                Some(([p.speed_m_s, p.net_w, p.positive_w, found.cost_j_m], is))
             };
-            let found: Vec<[f64; 4]> = draws.values.par_iter().filter_map(one).collect();
-            let column = |k: usize| found.iter().map(|row| row[k]).collect::<Vec<f64>>();
+            let found: Vec<([f64; 4], [bool; 2])> = draws.values.par_iter().filter_map(one).collect();
+            let column = |k: usize| found.iter().map(|(row, _)| row[k]).collect::<Vec<f64>>();
             let intervals = [0, 1, 2, 3].map(|k| interval_95(&column(k)).unwrap_or([f64::NAN; 2]));
-            Some(Drawn { asked, beyond: draws.beyond, without_answer: asked.n - found.len(), intervals })
+            let unstable = [0, 1].map(|k| found.iter().filter(|(_, is)| is[k]).count());
+            Some(Drawn { asked, beyond: draws.beyond, unstable, without_answer: asked.n - found.len(), intervals })
         }
     };
     let sensitivities = if is_sensitive {
@@ -124,6 +128,8 @@ impl Uncertain {
                 "brought_back": d.beyond.brought_back,
                 "refused": d.beyond.refused,
                 "without_answer": d.without_answer,
+                "settled_from_unstable": d.unstable[0],
+                "unstable": d.unstable[1],
                 "interval_95": OF.iter().zip(d.intervals).map(|((.., key), ends)| ((*key).to_owned(), json!(ends))).collect::<serde_json::Map<_, _>>(),
             })),
             "sensitivities": self.sensitivities.as_ref().map(|s| json!({
@@ -172,6 +178,17 @@ impl Drawn {
         if self.without_answer > 0 {
             let words = counted(self.without_answer, "draw has", "draws have");
             paragraphs.push(format!("{words} no motion that repeats, and are in no interval"));
+        }
+        let [settled, stays] = self.unstable;
+        if settled > 0 {
+            let words = counted(settled, "draw enters", "draws enter");
+            paragraphs.push(format!("{words} the intervals with the motion that an unstable one settles into"));
+        }
+        if stays > 0 {
+            let words = counted(stays, "draw enters", "draws enter");
+            paragraphs.push(format!(
+                "{words} the intervals with an unstable motion, which settles into none that repeats each period"
+            ));
         }
         let row = |((name, unit, _), ends): (&(&str, &str, &str), [f64; 2])| {
             vec![(*name).to_owned(), interval(ends), (*unit).to_owned()]

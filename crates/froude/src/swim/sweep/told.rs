@@ -109,10 +109,17 @@ impl Swept {
                 status.name()
             ));
         }
+        let settled = self.answered().filter(|(_, row)| row.get("unstable_floquet") > 1.0).count();
+        if settled > 0 {
+            out.push(format!(
+                "{} unstable motion: figures are those of the motion that it settles into, those of the unstable one stand in the columns unstable_speed, unstable_power_net and unstable_floquet",
+                counted(settled, "gait leaves an", "gaits leave an")
+            ));
+        }
         let unstable = self.answered().filter(|(_, row)| row.get("floquet") > 1.0).count();
         if unstable > 0 {
             out.push(format!(
-                "{} unstable: a small deviation grows from period to period (column floquet above 1)",
+                "{} unstable and settle into no motion that repeats each period (column floquet above 1): figures are those of the unstable motion",
                 counted(unstable, "gait is", "gaits are")
             ));
         }
