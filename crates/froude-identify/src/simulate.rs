@@ -163,6 +163,12 @@ pub fn observations(campaign: &Campaign, source: &Source, stream: u64) -> Result
     let n_setups = distinct(&data.setup).len();
     for sensor in &simulate.sensors {
         let quantity = data.meant(&sensor.quantity);
+        if sensor.correlation_s.is_some() {
+            return Err(IdentifyError::Campaign {
+                place: sensor.place.as_ref().map_or_else(|| "[[simulate.sensor]]".to_owned(), ToString::to_string),
+                what: "correlation is of noise in time, and the rows of a table have none: leave it out".to_owned(),
+            });
+        }
         let Some(channel) = data.channels.get_mut(quantity) else {
             return Err(IdentifyError::Campaign {
                 place: "[[simulate.sensor]]".to_owned(),

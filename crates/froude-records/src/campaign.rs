@@ -545,8 +545,10 @@ pub enum Truth {
 }
 
 /// One sensor of a simulation; everything in SI.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct SensorSpec {
+    /// Where it is declared.
+    pub place: Option<Place>,
     /// The column that it makes.
     pub quantity: String,
     /// Standard deviation of its noise.

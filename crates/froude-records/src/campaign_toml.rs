@@ -737,6 +737,7 @@ fn sensor(s: &Section<'_>) -> Result<SensorSpec, RecordError> {
             .transpose()
     };
     Ok(SensorSpec {
+        place: Some(s.place()),
         noise: part("noise")?,
         resolution: part("resolution")?,
         drift: part("drift")?,

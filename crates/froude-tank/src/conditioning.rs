@@ -9,6 +9,7 @@
 //! | `cell`      | [`loads`]   | bridges of a load cell as loads, by its matrix                                                         |
 //! | `frame`     | [`loads`]   | loads along the sensor's axes as loads along the body's, about its reference point                     |
 //! | `segment`, `mark` | [`stretches`] | the declared test, and what is not to be used                                                  |
+//! | `times`     | [`times`]   | times of a calendar are counted from the first sample                                                   |
 //!
 //! Every step stands in [`ImportedRun::done`]; what a reader should know of it is a finding.
 //!
@@ -19,6 +20,7 @@ pub mod clipped;
 pub mod loads;
 pub mod resolution;
 pub mod stretches;
+pub mod times;
 
 use froude_identify::method::MethodError;
 use froude_records::run::ImportedRun;
@@ -47,5 +49,7 @@ pub fn condition(run: &mut ImportedRun, method: &str) -> Result<(), MethodError>
     align::resample(run, &stamps)?;
     loads::of_cell(run)?;
     loads::in_body(run)?;
-    stretches::cut(run, method)
+    stretches::cut(run, method)?;
+    times::from_the_first_sample(run);
+    Ok(())
 }

@@ -17,5 +17,6 @@ pub mod oscillation;
 mod reference;
 mod residual_spectrum;
 pub mod rotation;
+mod sensors;
 pub mod steady;
 pub mod weight_tow;

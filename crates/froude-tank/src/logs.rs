@@ -14,6 +14,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::run::clocks::is_own;
 use froude_records::run::step::Step;
 use froude_records::run::{Channel, ImportedRun, Role, RunReader, RunStatus, read_run_meta, recorded_run};
+use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use crate::conditioning;
@@ -92,7 +93,6 @@ pub(crate) fn read_averaging(
         }
         out.findings.extend(long_logs::note(&log));
         conditioning::condition(&mut log, method)?;
-        out.findings.extend(from_its_start(&mut log));
         out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
         let sidecar = path.with_extension("toml");
         out.files.push(ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role.name()) });
@@ -101,25 +101,19 @@ pub(crate) fn read_averaging(
         }
         out.runs.push(log);
     }
+    out.findings.extend(of_a_calendar(&out.runs));
     Ok(out)
 }
 
-/// Times that start this long after zero, some 12 days, are those of a calendar, s.
-const OF_A_CALENDAR_S: f64 = 1e6;
-
-/// Counts the times of a log from its first sample where they are those of a calendar: at 1.7·10⁹ s a double resolves 0.2 µs, which steps of a delay and
-/// squares of times lose.
-fn from_its_start(log: &mut ImportedRun) -> Option<Finding> {
-    let start_s = *log.log.time_s.first()?;
-    if start_s.abs() < OF_A_CALENDAR_S {
-        return None;
-    }
-    log.log.time_s.iter_mut().for_each(|t| *t -= start_s);
-    for mark in &mut log.declared.marks {
-        mark.from_s -= start_s;
-        mark.to_s -= start_s;
-    }
-    let text = format!("{}: times start at {start_s} s and are counted from there", log.log.path.display());
+/// That the times of some logs are counted from their first samples, said once.
+pub(crate) fn of_a_calendar(logs: &[ImportedRun]) -> Option<Finding> {
+    let has_it = |log: &&ImportedRun| log.done.iter().any(|step| step.step == conditioning::times::STEP);
+    let first = logs.iter().find(has_it)?;
+    let text = format!(
+        "the times of {} are those of a calendar and are counted from the first sample of each, here and in what is reported",
+        counted(logs.iter().filter(has_it).count(), "log", "logs")
+    );
+    let text = if logs.len() == 1 { format!("{}: {text}", first.log.path.display()) } else { text };
     Some(Finding::new(Severity::Note, "times-from-start", text))
 }
 

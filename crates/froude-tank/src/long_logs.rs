@@ -18,10 +18,7 @@ use froude_records::sidecar::read_sidecar;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::Dimension;
 use froude_signal::block_mean::{BlockMean, gain, noise_bandwidth_hz};
-use froude_signal::harmonic::Harmonics;
 use indexmap::IndexMap;
-
-use crate::motion::{MotionError, not_clipped};
 
 /// Where the logs of a folder are too long, and what is kept of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -171,10 +168,9 @@ impl Means {
             );
             return Err(MethodError::input(path, what));
         }
-        let averaged =
-            Averaged { rows: self.rows, block_rows: self.block_rows, left_out: self.left_out, extremes: self.extremes };
+        let averaged = Averaged { rows: self.rows, block_rows: self.block_rows, left_out: self.left_out };
         let sidecar = table.sidecar.as_deref().map(read_sidecar).transpose()?;
-        Ok(run_of_means(&table, sidecar.as_ref(), self.ticks, averaged)?)
+        Ok(run_of_means(&table, sidecar.as_ref(), self.ticks, averaged, self.extremes)?)
     }
 }
 
@@ -214,26 +210,6 @@ pub(crate) fn note(log: &ImportedRun) -> Option<Finding> {
 /// What averages leave of the fastest tone that counts; `None` of a log that is as it was recorded.
 fn left(log: &ImportedRun, frequency_hz: f64) -> Option<f64> {
     log.averaged.as_ref().map(|averaged| gain(averaged.block_rows, 1.0 / log.steps.median_s, frequency_hz))
-}
-
-/// Holds the extremes of the rows recorded against clipping: averages show fewer samples of it, or none.
-///
-/// `channels` are those of the method with their units, the angle first.
-pub(crate) fn not_clipped_as_recorded(
-    logs: &[ImportedRun],
-    channels: [(&'static str, &'static str); 2],
-) -> Result<(), MotionError> {
-    for log in logs {
-        let (Some(averaged), Some(angle)) = (&log.averaged, log.log.channels.get(channels[0].0)) else { continue };
-        // A motion without a period is refused where it is fitted.
-        let Ok(rough) = Harmonics::fit(&log.log.time_s, &angle.values, 1, None) else { continue };
-        for (channel, unit) in channels {
-            if let Some(extremes) = averaged.extremes.get(channel) {
-                not_clipped(&log.log.meta.id, channel, unit, extremes, rough.period_s())?;
-            }
-        }
-    }
-    Ok(())
 }
 
 /// That averages are too coarse for a tone.

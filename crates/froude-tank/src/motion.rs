@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use froude_records::run::marks::Mark;
-use froude_records::run::{Extremes, Stay};
+use froude_records::run::{Extremes, ImportedRun, Stay};
 use froude_records::text::counted;
 use froude_signal::SignalError;
 use froude_signal::harmonic::Harmonics;
+use indexmap::IndexMap;
 
 use crate::conditioning::stretches::{in_words, touching};
 
@@ -131,8 +132,22 @@ pub(crate) struct Logged<'a> {
     pub angle_rad: &'a [f64],
     /// What the cell shows: its channel, its unit, its values.
     pub load: (&'static str, &'static str, &'a [f64]),
-    /// What is not used of it.
+    pub sampled: Sampled<'a>,
+}
+
+/// What a log says of its samples.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Sampled<'a> {
+    /// What is not used.
     pub marks: &'a [Mark],
+    /// Extremes of the channels whose samples are not those recorded: only what was recorded tells whether a sensor stood at its end.
+    pub recorded: Option<&'a IndexMap<String, Extremes>>,
+}
+
+impl<'a> Sampled<'a> {
+    pub(crate) fn of(log: &'a ImportedRun) -> Self {
+        Self { marks: &log.declared.marks, recorded: Some(&log.recorded) }
+    }
 }
 
 /// A run as it is used.
@@ -203,9 +218,12 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     let refused = |source| MotionError::Angle { run: run.id.to_owned(), source };
     let rough = Harmonics::fit(run.time_s, run.angle_rad, 1, None).map_err(refused)?;
     let period_s = rough.period_s();
-    if run.marks.iter().all(|mark| mark.why != "clipped") {
+    let marks = run.sampled.marks;
+    if marks.iter().all(|mark| mark.why != "clipped") {
         for (channel, values, unit) in [("angle", run.angle_rad, "rad"), (load, loads, load_unit)] {
-            not_clipped(run.id, channel, unit, &Extremes::of(run.time_s, values), period_s)?;
+            let recorded = run.sampled.recorded.and_then(|recorded| recorded.get(channel).cloned());
+            let extremes = recorded.unwrap_or_else(|| Extremes::of(run.time_s, values));
+            not_clipped(run.id, channel, unit, &extremes, period_s)?;
         }
     }
     let (first, end) = moving(run, rough.mean, period_s);
@@ -223,11 +241,11 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     let last = if asked.used.is_some_and(|used| used <= there) { at(start_s + whole as f64 * period_s) } else { end };
     let begins = |cycle: usize| at(start_s + cycle as f64 * period_s);
     let cycles = (0..whole).map(|c| begins(c)..if c + 1 == whole { last } else { begins(c + 1) });
-    let is_free = |(_, rows): &(usize, Range<usize>)| touching(run.time_s, rows, run.marks).is_empty();
+    let is_free = |(_, rows): &(usize, Range<usize>)| touching(run.time_s, rows, marks).is_empty();
     let (numbers, cycles): (Vec<usize>, Vec<Range<usize>>) = cycles.enumerate().filter(is_free).unzip();
     let dropped = whole - cycles.len();
     if cycles.len() < asked.fewest.max(1) {
-        let (left, fewest, marks) = (cycles.len(), asked.fewest.max(1), in_words(run.marks));
+        let (left, fewest, marks) = (cycles.len(), asked.fewest.max(1), in_words(marks));
         return Err(MotionError::Marked { run: run.id.to_owned(), whole, left, fewest, marks });
     }
     let whole = cycles.len();
@@ -261,7 +279,7 @@ fn moving(run: &Logged<'_>, middle: f64, period_s: f64) -> (usize, usize) {
 }
 
 /// A channel that stands at its largest or smallest value for longer than a smooth motion with its resolution would.
-pub(crate) fn not_clipped(
+fn not_clipped(
     run: &str,
     channel: &'static str,
     unit: &'static str,

@@ -38,7 +38,7 @@ fn setup(times: f64) -> DecaySetup {
 fn sensors(times: f64) -> Vec<SensorSpec> {
     let noise = Some(noise_rad(times));
     let quantity = "angle".to_owned();
-    vec![SensorSpec { quantity, noise, resolution: None, drift: None, bias: None, correlation_s: None }]
+    vec![SensorSpec { quantity, noise, ..SensorSpec::default() }]
 }
 
 fn plan(releases: usize) -> Vec<Planned> {

@@ -248,10 +248,8 @@ fn the_plan_forecasts_the_scatter_of_the_seeds() {
     let sensor = |quantity: &str, noise: f64, correlation_s: Option<f64>| froude_records::campaign::SensorSpec {
         quantity: quantity.to_owned(),
         noise: Some(noise),
-        resolution: None,
-        drift: None,
-        bias: None,
         correlation_s,
+        ..Default::default()
     };
     let sensors =
         [sensor("f_z", 0.3, Some(0.5)), sensor("acceleration", 0.02, Some(0.5)), sensor("reference", 5e-5, None)];

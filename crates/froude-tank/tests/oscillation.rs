@@ -218,14 +218,7 @@ fn plan_and_fit_have_the_same_degrees_of_freedom() {
     // All, and of H1LT the three amplitudes at one frequency, by a law that one configuration determines.
     let f2 = Drag::new(ForceLaw::drag(DragModel::from_name("f2").unwrap(), geometry(), CrossTerm::AsPrinted)).unwrap();
     let few: Vec<usize> = vec![0, 4, 8];
-    let noise = SensorSpec {
-        quantity: "force".to_owned(),
-        noise: Some(0.02),
-        resolution: None,
-        drift: None,
-        bias: None,
-        correlation_s: None,
-    };
+    let noise = SensorSpec { quantity: "force".to_owned(), noise: Some(0.02), ..SensorSpec::default() };
     let names = ["C_d_I", "C_d_II", "C_dHT_I", "C_dHT_II"];
     for (chosen, drag) in [((0..18).collect(), f4()), (few, f2)] {
         let logged: Vec<&Logged> = chosen.iter().map(|i: &usize| &all[*i]).collect();

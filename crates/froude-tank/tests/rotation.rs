@@ -64,10 +64,8 @@ fn noise(noise: f64) -> Vec<SensorSpec> {
     vec![SensorSpec {
         quantity: "torque".to_owned(),
         noise: Some(noise),
-        resolution: None,
-        drift: None,
-        bias: None,
         correlation_s: Some(0.5),
+        ..SensorSpec::default()
     }]
 }
 

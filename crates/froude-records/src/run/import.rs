@@ -65,6 +65,8 @@ pub struct ImportedRun {
     pub steps: TimeSteps,
     /// What was done to a log that is too long to be held; `None` of one that is as it was recorded.
     pub averaged: Option<Averaged>,
+    /// Extremes, as they were recorded, of the channels whose samples are others: means, or readings moved to other times.
+    pub recorded: IndexMap<String, Extremes>,
     /// What a reader should know.
     pub findings: Vec<Finding>,
     /// What its sidecar declares of the channels, by the channel's name.
@@ -84,8 +86,6 @@ pub struct Averaged {
     pub block_rows: usize,
     /// Rows of blocks that a gap or the end of the log cut, which are left out.
     pub left_out: usize,
-    /// Extremes of each channel as it was recorded.
-    pub extremes: IndexMap<String, Extremes>,
 }
 
 /// Steps between ticks, s.
@@ -146,13 +146,14 @@ pub fn run_of_means(
     sidecar: Option<&Sidecar>,
     ticks: Ticks,
     averaged: Averaged,
+    extremes: IndexMap<String, Extremes>,
 ) -> Result<ImportedRun, RecordError> {
     let time_s = times(table)?;
     let (steps, lost) = ticks.finish(&table.path)?;
     let mut out = run(table, sidecar, time_s, steps, lost)?;
     out.log.meta.log_rate_hz /= averaged.block_rows as f64;
-    let named = averaged.extremes.into_iter().map(|(name, extremes)| (channel_name(&name), extremes));
-    out.averaged = Some(Averaged { extremes: named.collect(), ..averaged });
+    out.recorded = extremes.into_iter().map(|(name, extremes)| (channel_name(&name), extremes)).collect();
+    out.averaged = Some(averaged);
     Ok(out)
 }
 
@@ -204,6 +205,7 @@ fn run(
         log,
         steps,
         averaged: None,
+        recorded: IndexMap::new(),
         findings,
         told,
         declared,

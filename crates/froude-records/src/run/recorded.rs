@@ -73,6 +73,7 @@ pub fn recorded_run(path: &Path) -> Result<ImportedRun, RecordError> {
     let declared = std::mem::take(&mut log.meta.declared);
     Ok(ImportedRun {
         averaged: None,
+        recorded: indexmap::IndexMap::new(),
         sidecar: None,
         log: RunLog { doubts: Vec::new(), ..log },
         steps,

@@ -21,11 +21,13 @@ use froude_records::run::Declared;
 use super::law::names;
 use super::reduce::{Setup, reduce};
 use super::rows::{Rows, row_errors, sample_s, window};
+use super::simulate::senses;
 use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
 use super::source::{declared, no_mass, setup_of};
 use crate::joint::conclude::part;
 use crate::joint::forecast::inverted;
 use crate::noise::correlated;
+use crate::sensors::seed_and_sensors;
 use crate::steady::plan::Expected;
 
 /// What a plan will determine.
@@ -266,7 +268,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let setup = setup_of(campaign, source, declared(source)?, &configurations(source))?;
     let truth = Truths::of(campaign, source, &setup)?;
     let planned = planned(source, &setup);
-    let sensors = campaign.simulate.as_ref().map_or([].as_slice(), |s| s.sensors.as_slice());
+    let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     let found = forecast(&planned, &setup, &truth, sensors, source)?;
     let duration_s: f64 = planned.iter().map(|run| run.profile.duration_s()).sum();
     let longest_m = planned.iter().map(|run| run.profile.travel_m()).fold(0.0, f64::max);

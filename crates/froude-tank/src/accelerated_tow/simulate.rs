@@ -19,9 +19,15 @@ use super::law::{Channels, data, names, with_acceleration};
 use super::reduce::{Mounted, Setup};
 use super::rows::{TowRun, Way};
 use super::source::{declared, no_mass, setup_of};
+use crate::sensors::{Senses, seed_and_sensors};
 
 /// Standard deviation of the zero of a run, N.
 const ZERO_N: f64 = 0.2;
+
+/// What the twin has: force and position.
+pub(super) fn senses() -> [Senses<'static>; 1] {
+    [Senses::with_memory(["force", "position"])]
+}
 
 /// One planned run.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,11 +125,6 @@ impl Truths {
                 "the twin of {ACCELERATED_TOW} needs seed, model, and the true coefficients of drag and {added} in [simulate.coefficients]"
             )));
         };
-        let sensors = campaign.simulate.as_ref().map_or(&[] as &[SensorSpec], |s| &s.sensors);
-        if let Some(other) = sensors.iter().find(|s| !["force", "position"].contains(&s.quantity.as_str())) {
-            let what = format!("a sensor has quantity = {:?}; this twin has force and position", other.quantity);
-            return Err(undeclared(what));
-        }
         let value = values
             .shift_remove(&added)
             .ok_or_else(|| undeclared(format!("{added} is missing in [simulate.coefficients]; the truth needs it")))?;
@@ -238,7 +239,7 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let setup = setup_of(campaign, source, spec, &configurations(source))?;
     let truth = Truths::of(campaign, source, &setup)?;
     let planned = planned(source, &setup);
-    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let mut out = Vec::new();
     for run in simulated(&planned, &setup, &truth, sensors, seed).ok_or_else(|| no_mass(source, &setup))? {
         out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });

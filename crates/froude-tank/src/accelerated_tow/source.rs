@@ -223,6 +223,7 @@ pub fn setup_of(
         });
     }
     for entry in source.uncertainty.iter().filter(|entry| OF_RIG.contains(&entry.quantity.as_str())) {
+        logs::is_of_all_runs(entry)?;
         if !entry.relative {
             return Err(MethodError::Undeclared {
                 place: entry.place.to_string(),

@@ -14,7 +14,7 @@ use froude_records::run::clocks::is_own;
 use froude_records::run::marks::Mark;
 use froude_records::run::sensor::Filter;
 use froude_records::run::step::Step;
-use froude_records::run::{EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, ImportedRun, LOG, ROTATION};
+use froude_records::run::{EXCITED_RESPONSE, Extremes, FORCED_OSCILLATION, FREE_DECAY, ImportedRun, LOG, ROTATION};
 use froude_records::text::counted;
 use froude_signal::analogue::Analogue;
 use froude_signal::harmonic::Harmonics;
@@ -182,6 +182,7 @@ pub fn resample(run: &mut ImportedRun, stamps: &Stamps) -> Result<(), MethodErro
             MethodError::input(&run.log.path, format!("{name} cannot be read at the rows of the log: {why}"))
         };
         let spline = Spline::through(stamps, &channel.values).map_err(|e| refuse(e.to_string()))?;
+        run.recorded.entry(name.clone()).or_insert_with(|| Extremes::of(time_s, &channel.values));
         // What is outside is cut below; its value does not matter.
         let values: Vec<f64> =
             time_s.iter().zip(&channel.values).map(|(t, old)| spline.at(*t).unwrap_or(*old)).collect();

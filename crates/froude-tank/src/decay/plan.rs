@@ -9,9 +9,11 @@ use froude_records::text::counted;
 use super::fit::Method;
 use super::forecast::{Forecast, forecast, peaks_of};
 use super::record::LAW;
+use super::releases::senses;
 use super::releases::{Planned, planned, truth_of};
 use super::run::DecaySetup;
 use crate::joint::page::{expected as expected_table, minutes};
+use crate::sensors::seed_and_sensors;
 
 /// What the plan of a source takes and determines.
 ///
@@ -21,7 +23,7 @@ use crate::joint::page::{expected as expected_table, minutes};
 pub fn prospect(campaign: &Campaign, source: &Source, setup: &DecaySetup) -> Result<Prospect, MethodError> {
     let truth = truth_of(campaign, setup.axis)?;
     let planned = planned(source);
-    let sensors = campaign.simulate.as_ref().map_or([].as_slice(), |s| s.sensors.as_slice());
+    let (_, sensors) = seed_and_sensors(campaign, &senses(setup.axis))?;
     let found = forecast(&planned, setup, truth, sensors).map_err(MethodError::refused)?;
     let duration_s = planned.iter().map(|run| run.release.held_s + run.release.free_s).sum();
     let expected = found.expected.iter().map(|e| ExpectedCoefficient {

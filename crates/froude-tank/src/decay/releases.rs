@@ -13,6 +13,7 @@ use rand_pcg::Pcg64Mcg;
 use super::record::LAW;
 use super::run::{DecaySetup, Restoring};
 use super::simulate::Logged;
+use crate::sensors::{Senses, seed_and_sensors};
 
 /// Standard deviation of the zero of a release, as part of its displacement.
 const ZERO: f64 = 0.02;
@@ -83,10 +84,18 @@ pub fn truth_of(campaign: &Campaign, axis: Motion) -> Result<[f64; 3], MethodErr
     Ok(out)
 }
 
+const fn names(axis: Motion) -> &'static [&'static str] {
+    if axis.is_rotation() { &["angle", "phi"] } else { &["position", "displacement"] }
+}
+
+/// What the twin has: the position.
+pub(super) fn senses(axis: Motion) -> [Senses<'static>; 1] {
+    [Senses::with_memory(names(axis).iter().copied())]
+}
+
 /// The sensor of the position among those of `[[simulate.sensor]]`.
 pub(super) fn sensor_of(sensors: &[SensorSpec], axis: Motion) -> Option<&SensorSpec> {
-    let names = if axis.is_rotation() { ["angle", "phi"] } else { ["position", "displacement"] };
-    sensors.iter().find(|s| names.contains(&s.quantity.as_str()))
+    sensors.iter().find(|s| names(axis).contains(&s.quantity.as_str()))
 }
 
 /// The logs of all planned releases; the same seed gives the same logs.
@@ -141,7 +150,7 @@ pub fn simulated(
 pub fn files(campaign: &Campaign, source: &Source, setup: &DecaySetup) -> Result<Vec<Export>, MethodError> {
     let truth = truth_of(campaign, setup.axis)?;
     let planned = planned(source);
-    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let (seed, sensors) = seed_and_sensors(campaign, &senses(setup.axis))?;
     let mut out = Vec::new();
     for (run, log) in planned.iter().zip(simulated(&planned, setup, truth, sensors, seed)) {
         out.push(Export { name: format!("{}.csv", run.id), content: text(&log, setup.axis).into_bytes() });

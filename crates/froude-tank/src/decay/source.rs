@@ -60,15 +60,31 @@ impl Method for FreeDecay {
         let Releases { logs, files, mut findings } = read(source.input.path())?;
         let runs = logs.iter().map(|log| release(log, setup.axis)).collect::<Result<Vec<_>, _>>()?;
         let methods: Vec<DecayMethod> = asked.iter().filter_map(|name| named(name)).collect();
-        let best = methods.iter().copied().max_by_key(|method| *method == DecayMethod::OutputError);
         let (mut out, mut fits) = (Vec::new(), Vec::new());
+        let (mut fitted, mut failed) = (Vec::new(), Vec::new());
         for &method in &methods {
             progress(method.words());
-            let fit: DecayFit = match method {
+            let fit: Result<DecayFit, _> = match method {
                 DecayMethod::Envelope => envelope(&runs, &setup),
                 DecayMethod::OutputError => output_error(&runs, &setup),
+            };
+            match fit {
+                Ok(fit) => fitted.push((method, fit)),
+                Err(why) => failed.push((method, why)),
             }
-            .map_err(|error| MethodError::input(source.input.path(), format!("{}: {error}", method.name())))?;
+        }
+        // A method that fails costs itself alone; where all fail, nothing is found.
+        if fitted.is_empty()
+            && let Some((method, why)) = failed.pop()
+        {
+            return Err(MethodError::input(source.input.path(), format!("{}: {why}", method.name())));
+        }
+        findings.extend(failed.into_iter().map(|(method, why)| {
+            let text = format!("{} could not be fitted and is left out: {why}", method.name());
+            Finding::new(Severity::Warning, "not-fitted", text)
+        }));
+        let best = fitted.iter().map(|(method, _)| *method).max_by_key(|method| *method == DecayMethod::OutputError);
+        for (method, fit) in fitted {
             let mut result = record::result(&fit, campaign, source, best == Some(method))?;
             result.files.clone_from(&files);
             findings.append(&mut result.findings);
@@ -263,6 +279,7 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
         }
         out.logs.push(log);
     }
+    out.findings.extend(logs::of_a_calendar(&out.logs));
     Ok(out)
 }
 

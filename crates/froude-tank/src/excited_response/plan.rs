@@ -18,9 +18,11 @@ use super::coefficients::{NAMES, UNITS, budget, errors, scatter};
 use super::error::ExcitedError;
 use super::response::{DOF, FEWEST_CYCLES};
 use super::setup::{Setup, Shows};
+use super::simulate::senses;
 use super::simulate::{Planned, SENSORS, planned, reading, truth};
 use super::source::setup_of;
 use super::wave::LEFT_OUT;
+use crate::sensors::seed_and_sensors;
 
 /// What a plan gives at one period.
 #[derive(Debug, Clone, PartialEq)]
@@ -133,7 +135,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
                     reflection is back";
         MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
     })?;
-    let sensors = campaign.simulate.as_ref().map_or([].as_slice(), |s| s.sensors.as_slice());
+    let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     let found = forecast(&planned, &setup, window_s, sensors).map_err(MethodError::refused)?;
     let expected = found.iter().flat_map(|at| {
         [0, 1].map(|j| ExpectedCoefficient {

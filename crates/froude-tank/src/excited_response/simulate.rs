@@ -17,6 +17,7 @@ use rand_pcg::Pcg64Mcg;
 use super::coefficients::NAMES;
 use super::setup::{Setup, Shows, WaveRun};
 use super::source::setup_of;
+use crate::sensors::{Senses, seed_and_sensors};
 
 /// Speed of the twin's waves for the phase between wavemaker and body: they have come in by so many turns and a part, whose size does not matter.
 const PHASE_RAD: f64 = -0.7;
@@ -135,6 +136,11 @@ pub fn reading(sensors: &[SensorSpec], names: &[&str]) -> Reading {
 /// Quantities of the sensors: wavemaker, force, acceleration.
 pub const SENSORS: [&[&str]; 3] = [&["reference"], &["f_z", "force"], &["acceleration"]];
 
+/// What the twin has.
+pub(super) fn senses() -> [Senses<'static>; 1] {
+    [Senses::with_memory(SENSORS.into_iter().flatten().copied())]
+}
+
 /// The logs of all planned runs; the same seed gives the same logs.
 #[must_use]
 pub fn simulated(planned: &[Planned], setup: &Setup, sensors: &[SensorSpec], seed: u64) -> Vec<Simulated> {
@@ -171,7 +177,7 @@ pub fn simulated(planned: &[Planned], setup: &Setup, sensors: &[SensorSpec], see
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
     let setup = setup_of(source)?;
     let planned = planned(source, &setup, truth(campaign)?);
-    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let mut out = Vec::new();
     for run in simulated(&planned, &setup, sensors, seed) {
         out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run).into_bytes() });

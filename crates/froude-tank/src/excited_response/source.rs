@@ -110,6 +110,7 @@ pub fn setup_of(source: &Source) -> Result<Setup, MethodError> {
         ..Setup::new(uncertain(spec.mass_kg), uncertain(spec.restoring_n_m))
     };
     for entry in &source.uncertainty {
+        logs::is_of_all_runs(entry)?;
         let refuse = |what: String| MethodError::Undeclared { place: entry.place.to_string(), what };
         let gain = match entry.quantity.as_str() {
             "force" | FORCE => &mut out.force_relative,

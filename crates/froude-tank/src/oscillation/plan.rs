@@ -11,9 +11,11 @@ use froude_records::page::{DocumentSection, TextTable};
 use super::forces::Drag;
 use super::forecast::forecast;
 use super::setup::Setup;
+use super::simulate::senses;
 use super::simulate::{Planned, Truths, configurations, planned};
 use super::source::{declared, setup_of};
 use crate::joint::page::{expected as expected_table, minutes};
+use crate::sensors::seed_and_sensors;
 
 /// What the plan of a source takes and determines.
 ///
@@ -25,7 +27,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let setup = setup_of(campaign, source, spec, &configurations(source))?;
     let truth = Truths::of(campaign, source, &setup)?;
     let planned = planned(source, &setup);
-    let sensors = campaign.simulate.as_ref().map_or([].as_slice(), |s| s.sensors.as_slice());
+    let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     // Another law than the true one is off by what it lacks, which no linearisation forecasts.
     let drag = Drag::new(truth.law.clone()).map_err(MethodError::refused)?;
     let law = drag.law.name.clone();

@@ -2,10 +2,9 @@
 
 use froude_fit::budget::Uncertain;
 use froude_hydro::swing::{Medium, Pivot};
-use froude_records::run::marks::Mark;
 
 use super::error::OscillationError;
-use crate::motion::{Cycles, Logged, Motion, motion};
+use crate::motion::{Cycles, Logged, Motion, Sampled, motion};
 
 /// One run: columns of one length, time increasing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,10 +120,10 @@ impl Setup {
 ///
 /// [`OscillationError::Motion`] of the first run that has one.
 pub fn motions(runs: &[OscillationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, OscillationError> {
-    runs.iter().map(|run| of_run(run, setup, &[])).collect()
+    runs.iter().map(|run| of_run(run, setup, Sampled::default())).collect()
 }
 
-/// The same without the cycles that a mark touches; `marks` belong to `runs`, a list each.
+/// The same without the cycles that a mark touches; `sampled` belongs to `runs`, one each.
 ///
 /// # Errors
 ///
@@ -132,13 +131,13 @@ pub fn motions(runs: &[OscillationRun<'_>], setup: &Setup) -> Result<Vec<Motion>
 pub fn motions_without(
     runs: &[OscillationRun<'_>],
     setup: &Setup,
-    marks: &[&[Mark]],
+    sampled: &[Sampled<'_>],
 ) -> Result<Vec<Motion>, OscillationError> {
-    runs.iter().zip(marks).map(|(run, marks)| of_run(run, setup, marks)).collect()
+    runs.iter().zip(sampled).map(|(run, sampled)| of_run(run, setup, *sampled)).collect()
 }
 
-fn of_run(run: &OscillationRun<'_>, setup: &Setup, marks: &[Mark]) -> Result<Motion, OscillationError> {
+fn of_run(run: &OscillationRun<'_>, setup: &Setup, sampled: Sampled<'_>) -> Result<Motion, OscillationError> {
     let OscillationRun { id, time_s, angle_rad, force_n, .. } = *run;
-    let of = Logged { id, time_s, angle_rad, load: ("force", "N", force_n), marks };
+    let of = Logged { id, time_s, angle_rad, load: ("force", "N", force_n), sampled };
     Ok(motion(&of, setup.cycles, setup.harmonics)?)
 }

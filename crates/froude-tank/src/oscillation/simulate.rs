@@ -18,12 +18,18 @@ use super::fit::{ADDED, BUOYANCY, DELAY};
 use super::forces::{Drag, LOAD};
 use super::setup::{OscillationRun, Setup};
 use super::source::{declared, drags, setup_of};
+use crate::sensors::{Senses, seed_and_sensors};
 use froude_hydro::swing::{Medium, Pivot};
 
 /// Natural frequency of the twin's servo, rad/s, and its damping ratio: a joint module that overshoots a little.
 const SERVO: (f64, f64) = (30.0, 0.6);
 /// Standard deviation of the zero of a run, N.
 const ZERO_N: f64 = 0.2;
+
+/// What the twin has: force and angle.
+pub(super) fn senses() -> [Senses<'static>; 2] {
+    [Senses::with_memory(["force", LOAD]), Senses::white("angle")]
+}
 
 /// One planned run.
 #[derive(Debug, Clone, PartialEq)]
@@ -253,7 +259,7 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let setup = setup_of(campaign, source, spec, &configurations(source))?;
     let truth = Truths::of(campaign, source, &setup)?;
     let planned = planned(source, &setup);
-    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let mut out = Vec::new();
     for run in simulated(&planned, &setup, &truth, sensors, seed) {
         out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });

@@ -9,7 +9,6 @@ use froude_identify::source::laws;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::oscillation::OscillationSpec;
-use froude_records::run::marks::Mark;
 use froude_records::run::{Channel, Declared, FORCED_OSCILLATION, ImportedRun, Role};
 use froude_records::table::links_of_configuration;
 use froude_records::units::Dimension;
@@ -19,7 +18,7 @@ use super::setup::{Body, OscillationRun, Setup, motions_without};
 use super::{findings, fit, page, plan, record, simulate};
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs::{self, LENGTHS, Lengths};
-use crate::motion::Cycles;
+use crate::motion::{Cycles, Sampled};
 use crate::reference;
 
 /// The joint fit in time.
@@ -88,9 +87,8 @@ fn identified(
     }
     let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
     progress("fitting the angles");
-    long_logs::not_clipped_as_recorded(&logs, [("angle", "rad"), ("force", "N")]).map_err(MethodError::refused)?;
-    let marks: Vec<&[Mark]> = logs.iter().map(|log| log.declared.marks.as_slice()).collect();
-    let motions = motions_without(&runs, &setup, &marks).map_err(MethodError::refused)?;
+    let sampled: Vec<Sampled<'_>> = logs.iter().map(Sampled::of).collect();
+    let motions = motions_without(&runs, &setup, &sampled).map_err(MethodError::refused)?;
     for (log, motion) in logs.iter().zip(&motions) {
         logs::add_step(&mut files, log, logs::cycles_step(log, motion));
     }

@@ -12,9 +12,11 @@ use super::findings::one_rate;
 use super::fit::{LAMBDAS, LAW};
 use super::forecast::{Forecast, forecast};
 use super::setup::Setup;
+use super::simulate::senses;
 use super::simulate::{Planned, Truths, planned};
 use super::source::{declared, setup_of};
 use crate::joint::page::{expected, minutes};
+use crate::sensors::seed_and_sensors;
 
 /// What the plan of a source takes and determines.
 ///
@@ -25,7 +27,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let setup = setup_of(campaign, source, declared(source)?)?;
     let truth = Truths::of(campaign, source, &setup)?;
     let planned = planned(source);
-    let sensors = campaign.simulate.as_ref().map_or([].as_slice(), |s| s.sensors.as_slice());
+    let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     let found = forecast(&planned, &setup, &truth, sensors, &campaign.identify).map_err(MethodError::refused)?;
     let each = found.expected.iter().map(|e| ExpectedCoefficient {
         model: LAW.to_owned(),

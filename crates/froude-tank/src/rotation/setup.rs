@@ -3,11 +3,10 @@
 use froude_fit::budget::Uncertain;
 use froude_hydro::Link;
 use froude_hydro::swing::Pivot;
-use froude_records::run::marks::Mark;
 use froude_rig::rotation::Mounted;
 
 use super::error::RotationError;
-use crate::motion::{Cycles, Logged, Motion, motion};
+use crate::motion::{Cycles, Logged, Motion, Sampled, motion};
 
 /// One run: columns of one length, time increasing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,10 +76,10 @@ impl Setup {
 ///
 /// [`RotationError::Motion`] of the first run that has one.
 pub fn motions(runs: &[RotationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, RotationError> {
-    runs.iter().map(|run| of_run(run, setup, &[])).collect()
+    runs.iter().map(|run| of_run(run, setup, Sampled::default())).collect()
 }
 
-/// The same without the cycles that a mark touches; `marks` belong to `runs`, a list each.
+/// The same without the cycles that a mark touches; `sampled` belongs to `runs`, one each.
 ///
 /// # Errors
 ///
@@ -88,13 +87,13 @@ pub fn motions(runs: &[RotationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, R
 pub fn motions_without(
     runs: &[RotationRun<'_>],
     setup: &Setup,
-    marks: &[&[Mark]],
+    sampled: &[Sampled<'_>],
 ) -> Result<Vec<Motion>, RotationError> {
-    runs.iter().zip(marks).map(|(run, marks)| of_run(run, setup, marks)).collect()
+    runs.iter().zip(sampled).map(|(run, sampled)| of_run(run, setup, *sampled)).collect()
 }
 
-fn of_run(run: &RotationRun<'_>, setup: &Setup, marks: &[Mark]) -> Result<Motion, RotationError> {
+fn of_run(run: &RotationRun<'_>, setup: &Setup, sampled: Sampled<'_>) -> Result<Motion, RotationError> {
     let RotationRun { id, time_s, angle_rad, torque_n_m, .. } = *run;
-    let of = Logged { id, time_s, angle_rad, load: ("torque", "N m", torque_n_m), marks };
+    let of = Logged { id, time_s, angle_rad, load: ("torque", "N m", torque_n_m), sampled };
     Ok(motion(&of, setup.cycles, setup.harmonics)?)
 }

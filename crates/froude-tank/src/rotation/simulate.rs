@@ -17,11 +17,17 @@ use super::fit::{INERTIA, LAMBDAS, RESTORING, RESTORING_IN_AIR, TARES};
 use super::setup::{RotationRun, Setup};
 use super::source::{declared, setup_of};
 use crate::joint::DELAY;
+use crate::sensors::{Senses, seed_and_sensors};
 
 /// Natural frequency of the twin's servo, rad/s, and its damping ratio: a joint module that overshoots a little.
 const SERVO: (f64, f64) = (30.0, 0.6);
 /// Standard deviation of the zero of a run, N m.
 const ZERO_N_M: f64 = 0.02;
+
+/// What the twin has: torque and angle.
+pub(super) fn senses() -> [Senses<'static>; 2] {
+    [Senses::with_memory(["torque"]), Senses::white("angle")]
+}
 
 /// One planned run.
 #[derive(Debug, Clone, PartialEq)]
@@ -236,7 +242,7 @@ pub fn simulated(
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
     let setup = setup_of(campaign, source, declared(source)?)?;
     let truth = Truths::of(campaign, source, &setup)?;
-    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let mut out = Vec::new();
     for run in simulated(&planned(source), &setup, &truth, sensors, seed) {
         out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });

@@ -5,7 +5,6 @@ use froude_identify::answer::Made;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::rotation::RotationSpec;
-use froude_records::run::marks::Mark;
 use froude_records::run::{Channel, Declared, ImportedRun, ROTATION, Role};
 use froude_records::units::Dimension;
 
@@ -16,7 +15,7 @@ use super::{findings, fit, page, plan, record, simulate};
 use crate::fluid::density_kg_m3;
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs;
-use crate::motion::Cycles;
+use crate::motion::{Cycles, Sampled};
 
 /// The joint fit in time.
 pub struct Rotation;
@@ -64,10 +63,8 @@ impl Method for Rotation {
         }
         let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
         progress("fitting the angles");
-        long_logs::not_clipped_as_recorded(&logs, [("angle", "rad"), ("torque", "N m")])
-            .map_err(MethodError::refused)?;
-        let marks: Vec<&[Mark]> = logs.iter().map(|log| log.declared.marks.as_slice()).collect();
-        let motions = motions_without(&runs, &setup, &marks).map_err(MethodError::refused)?;
+        let sampled: Vec<Sampled<'_>> = logs.iter().map(Sampled::of).collect();
+        let motions = motions_without(&runs, &setup, &sampled).map_err(MethodError::refused)?;
         for (log, motion) in logs.iter().zip(&motions) {
             logs::add_step(&mut files, log, logs::cycles_step(log, motion));
         }

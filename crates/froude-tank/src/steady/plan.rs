@@ -16,10 +16,12 @@ use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source
 use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
 
+use super::simulate::senses;
 use super::simulate::{Plan, Simulated, loads_at, plan_of, simulated};
 use super::window::window;
 use crate::joint::conclude::part;
 use crate::joint::forecast::inverted;
+use crate::sensors::seed_and_sensors;
 
 /// What a taper over a window costs in independent samples ([`froude_fit::series`]).
 const TAPER_COST: f64 = 0.6875 / 0.5625;
@@ -208,7 +210,7 @@ fn direction(plan: &Plan, entry: &BudgetEntry, r: usize, truth: &[f64]) -> Optio
 pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
     let spec = source.steady.unwrap_or_default();
     let plan = plan_of(campaign, source)?;
-    let sensors = campaign.simulate.as_ref().map_or([].as_slice(), |s| s.sensors.as_slice());
+    let (_, sensors) = seed_and_sensors(campaign, &senses(&plan))?;
     let windows_s = windows(&plan, source)?;
     let expected = expected(&plan, source, sensors)?;
     let speed = |i: usize| plan.data.values("speed").map_or(0.0, |v| v[i].abs());

@@ -19,6 +19,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::point::Run;
 use super::window::Motion;
+use crate::sensors::{Senses, seed_and_sensors};
 
 /// Standard deviation of the zero of a run, N or N m.
 const ZERO: f64 = 0.2;
@@ -160,6 +161,11 @@ pub fn simulated(
     out
 }
 
+/// What the twin has: the speed, and the loads of the law.
+pub(super) fn senses(plan: &Plan) -> [Senses<'_>; 1] {
+    [Senses::with_memory(plan.law.responses.iter().map(String::as_str).chain(["speed"]))]
+}
+
 /// The files of all planned runs of a source: a log and its sidecar each.
 ///
 /// # Errors
@@ -167,7 +173,7 @@ pub fn simulated(
 /// What the campaign does not declare.
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
     let plan = plan_of(campaign, source)?;
-    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let (seed, sensors) = seed_and_sensors(campaign, &senses(&plan))?;
     let mut out = Vec::new();
     for run in simulated(&plan, source, sensors, &source.uncertainty, seed) {
         out.push(Export { name: format!("{}.csv", run.id), content: log(&run).into_bytes() });

@@ -12,7 +12,9 @@ use froude_records::units::Dimension;
 use froude_records::weight_tow::WeightTowSpec;
 
 use super::reduce::{ERRORS, Reduced, reduce};
+use super::simulate::senses;
 use super::simulate::{Simulated, Weights, declared, simulated, weights_of};
+use crate::sensors::seed_and_sensors;
 use crate::steady::plan::{self as steady, Expected, PlannedError};
 use crate::steady::simulate::{Plan, loads_at};
 
@@ -119,7 +121,7 @@ pub fn expected(
 pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
     let spec = declared(source)?;
     let weights = weights_of(campaign, source)?;
-    let sensors = campaign.simulate.as_ref().map_or([].as_slice(), |s| s.sensors.as_slice());
+    let (_, sensors) = seed_and_sensors(campaign, &senses(&weights))?;
     let (runs, reduced) = exact(&weights, &spec, sensors)?;
     let expected = expected(&weights, source, &spec, &reduced, (sensors, campaign.identify.errors_in_variables))?;
     let duration = |run: &Simulated| run.time_s[run.time_s.len() - 1];

@@ -17,6 +17,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::reduce::WeightRun;
 use super::track::metres;
+use crate::sensors::{Senses, seed_and_sensors};
 use crate::steady::simulate::{Plan, loads_at};
 
 /// Part of the moving mass that hangs below the load cell: body and water.
@@ -257,6 +258,11 @@ pub fn simulated(
 /// Points of the tabulated law: linear between them to 1e-6 of a quadratic one.
 const GRID: usize = 400;
 
+/// What the twin has: the mark in pixels, and the loads of the law.
+pub(super) fn senses(weights: &Weights) -> [Senses<'_>; 2] {
+    [Senses::white("mark"), Senses::with_memory(weights.plan.law.responses.iter().map(String::as_str))]
+}
+
 /// The files of all planned runs of a source: a log and its sidecar each.
 ///
 /// # Errors
@@ -265,7 +271,7 @@ const GRID: usize = 400;
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
     let spec = declared(source)?;
     let weights = weights_of(campaign, source)?;
-    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let (seed, sensors) = seed_and_sensors(campaign, &senses(&weights))?;
     let mut out = Vec::new();
     for run in simulated(&weights, &spec, sensors, &source.uncertainty, seed) {
         out.push(Export { name: format!("{}.csv", run.id), content: log(&run).into_bytes() });

@@ -1,0 +1,63 @@
+//! Sensors of a twin of runs: what `[[simulate.sensor]]` states is simulated, or refused.
+
+use froude_identify::method::MethodError;
+use froude_records::campaign::{Campaign, SensorSpec};
+
+/// Channels of one kind: the names of their quantity, and what their twin simulates.
+pub(crate) struct Senses<'a> {
+    names: Vec<&'a str>,
+    has_memory: bool,
+}
+
+impl<'a> Senses<'a> {
+    /// A sensor with noise that may be correlated, a bias and a resolution.
+    pub(crate) fn with_memory(names: impl IntoIterator<Item = &'a str>) -> Self {
+        Self { names: names.into_iter().collect(), has_memory: true }
+    }
+
+    /// A sensor with white noise and a resolution.
+    pub(crate) fn white(name: &'a str) -> Self {
+        Self { names: vec![name], has_memory: false }
+    }
+}
+
+/// Seed and sensors of the twin of a method whose channels are `senses`.
+///
+/// # Errors
+///
+/// A key that the twin does not simulate; in a campaign of one source also a quantity that it does not have.
+pub(crate) fn seed_and_sensors<'a>(
+    campaign: &'a Campaign,
+    senses: &[Senses<'_>],
+) -> Result<(u64, &'a [SensorSpec]), MethodError> {
+    let Some(simulate) = &campaign.simulate else { return Ok((0, &[])) };
+    if simulate.misalignment_rad.is_some() {
+        let what = "misalignment is of simulated tables, and the twins of runs have none: leave it out";
+        return Err(MethodError::Undeclared { place: campaign.path.display().to_string(), what: what.to_owned() });
+    }
+    for sensor in &simulate.sensors {
+        let refuse = |what: String| {
+            let place = sensor.place.as_ref().map_or_else(|| "[[simulate.sensor]]".to_owned(), ToString::to_string);
+            Err(MethodError::Undeclared { place, what })
+        };
+        let quantity = sensor.quantity.as_str();
+        let Some(sense) = senses.iter().find(|sense| sense.names.contains(&quantity)) else {
+            // Those of another source may be meant.
+            if campaign.sources.len() > 1 {
+                continue;
+            }
+            let names: Vec<&str> = senses.iter().flat_map(|sense| sense.names.iter().copied()).collect();
+            return refuse(format!("quantity = {quantity:?} is none that this twin has: it has {}", names.join(", ")));
+        };
+        let keys = [
+            ("drift", sensor.drift.is_some()),
+            ("bias", sensor.bias.is_some() && !sense.has_memory),
+            ("correlation", sensor.correlation_s.is_some() && !sense.has_memory),
+        ];
+        if let Some((key, _)) = keys.into_iter().find(|(_, is_there)| *is_there) {
+            let has = if sense.has_memory { "noise, correlation, resolution and bias" } else { "noise and resolution" };
+            return refuse(format!("{key} is not simulated here: the twin has {has} for {quantity}; leave {key} out"));
+        }
+    }
+    Ok((simulate.seed, &simulate.sensors))
+}
