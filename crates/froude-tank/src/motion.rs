@@ -142,11 +142,13 @@ pub struct Sampled<'a> {
     pub marks: &'a [Mark],
     /// Extremes of the channels whose samples are not those recorded: only what was recorded tells whether a sensor stood at its end.
     pub recorded: Option<&'a IndexMap<String, Extremes>>,
+    /// Whether rows are means, of which marks show a part of what is clipped.
+    pub is_averaged: bool,
 }
 
 impl<'a> Sampled<'a> {
     pub(crate) fn of(log: &'a ImportedRun) -> Self {
-        Self { marks: &log.declared.marks, recorded: Some(&log.recorded) }
+        Self { marks: &log.declared.marks, recorded: Some(&log.recorded), is_averaged: log.averaged.is_some() }
     }
 }
 
@@ -219,7 +221,7 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     let rough = Harmonics::fit(run.time_s, run.angle_rad, 1, None).map_err(refused)?;
     let period_s = rough.period_s();
     let marks = run.sampled.marks;
-    if marks.iter().all(|mark| mark.why != "clipped") {
+    if run.sampled.is_averaged || marks.iter().all(|mark| mark.why != "clipped") {
         for (channel, values, unit) in [("angle", run.angle_rad, "rad"), (load, loads, load_unit)] {
             let recorded = run.sampled.recorded.and_then(|recorded| recorded.get(channel).cloned());
             let extremes = recorded.unwrap_or_else(|| Extremes::of(run.time_s, values));
