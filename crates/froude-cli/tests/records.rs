@@ -183,6 +183,11 @@ fn a_prior_is_never_counted_against_its_own_data() {
         roles,
         [("b.toml", "campaign"), ("b.csv", "table"), ("a-first/estimate.json", "record"), ("a.csv", "inherited")]
     );
+    // Nor are the two compared as if they were independent.
+    let [first, second] = ["a-first", "b-second"].map(|name| here.join(name).join("estimate.json"));
+    let output = froude(&["compare", text(&first), text(&second)]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(said.contains("[same-data]") && said.contains("come from the same data"), "{said}");
     let said = run(&fitted(here, "a", Some("b-second/estimate.json")), &here.join("a-third")).unwrap_err();
     assert!(said.contains("b-second/estimate.json") && said.contains(twice), "{said}");
 }
@@ -195,6 +200,16 @@ fn no_result_takes_the_place_of_an_input() {
     let out = here.join("swim");
     let swim = |robot: &Path| froude(&[&["swim", text(robot), "--out", text(&out)], &GAIT[..]].concat());
     assert!(swim(&path).status.success());
+    // What was read is listed with its fingerprint.
+    let result: Value = serde_json::from_slice(&std::fs::read(out.join("result.json")).unwrap()).unwrap();
+    let read: Vec<(&str, &str)> = result["data"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|data| (data["role"].as_str().unwrap(), data["path"].as_str().unwrap().rsplit('/').next().unwrap()))
+        .collect();
+    assert_eq!(read, [("robot", "robot.toml"), ("drag", "drag.json")]);
+    assert!(result["data"].as_array().unwrap().iter().all(|data| data["sha256"].as_str().unwrap().len() == 64));
     // A record in the folder of an earlier swim.
     std::fs::copy(here.join("drag.json"), out.join("drag.json")).unwrap();
     let moved = std::fs::read_to_string(&path).unwrap().replacen("drag.json", "swim/drag.json", 1);

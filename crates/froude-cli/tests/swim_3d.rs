@@ -262,14 +262,18 @@ fn an_unstable_gait_settles_into_the_circle_of_the_plane() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice::<Value>(&output.stdout).unwrap()
     };
-    let space = swum(&[record, PITCH, LOW, EXACT]);
-    let plane = swum(&[record, PITCH, LOW, EXACT, ("\"3d\"", "\"planar\"")]);
+    // The mass lies 4 mm low: on the circle the head rolls by hundredths of a degree, which moves the figures by less than a thousandth.
+    let space = swum(&[record, PITCH, EXACT]);
+    let plane = swum(&[record, PITCH, EXACT, ("\"3d\"", "\"planar\"")]);
     for key in ["speed_m_s", "power_net_w"] {
         let [a, b] = [&space, &plane].map(|found| number(found, key));
-        assert!((a / b - 1.0).abs() < 1e-6, "{key}: {a} {b}");
+        assert!((a / b - 1.0).abs() < 1e-3, "{key}: {a} {b}");
         let [a, b] = [&space, &plane].map(|found| number(&found["unstable_motion"], key));
-        assert!((a / b - 1.0).abs() < 1e-6, "{key} of the unstable motion: {a} {b}");
+        assert!((a / b - 1.0).abs() < 1e-5, "{key} of the unstable motion: {a} {b}");
     }
     let remarks = space["remarks"].to_string();
-    assert!(remarks.contains("unstable: the swimmer settles into a circle of 3.68 m radius"), "{remarks}");
+    assert!(remarks.contains("unstable: the swimmer settles into a circle of 3.79 m radius"), "{remarks}");
+    // Where nothing rights it, no other motion is looked for, and that is said.
+    let never = swum(&[record, PITCH, LOW, EXACT])["remarks"].to_string();
+    assert!(never.contains("no other that repeats each period was reached"), "{never}");
 }

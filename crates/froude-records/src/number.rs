@@ -192,6 +192,29 @@ pub fn plus_minus(value: f64, expanded: f64) -> String {
     lonely(value, expanded)
 }
 
+/// An interval that is symmetric about the value within this part of its half-width is written as `±`.
+const SYMMETRIC: f64 = 0.01;
+
+/// Half of an interval that is symmetric about the value.
+fn half_width(value: f64, [low, high]: [f64; 2]) -> Option<f64> {
+    let half = high / 2.0 - low / 2.0;
+    let offset = (low / 2.0 + high / 2.0 - value).abs();
+    (half.is_finite() && half > 0.0 && offset <= SYMMETRIC * half).then_some(half)
+}
+
+/// Value and interval: `20.1 ± 0.2` where that is symmetric about the value, `0.22 [−0.18, 0.82]` where it is not.
+#[must_use]
+pub fn value_and_interval(value: f64, ends: [f64; 2]) -> String {
+    match half_width(value, ends) {
+        Some(half) => plus_minus(value, half),
+        None => {
+            let half = ends[1] / 2.0 - ends[0] / 2.0;
+            let number = together(value, half).map_or_else(|| plain(value, 4), |t| format!("{}{}", t.value, t.power));
+            format!("{number} {}", interval(ends))
+        }
+    }
+}
+
 /// A value whose uncertainty is missing, or far below its own digits.
 fn lonely(value: f64, uncertainty: f64) -> String {
     if value.is_finite() && uncertainty.is_finite() && uncertainty > 0.0 {
@@ -369,15 +392,14 @@ pub fn coefficient_expanded(c: &Coefficient) -> String {
     if !matches!(c.status, Status::Free | Status::Prior) {
         return coefficient(c);
     }
-    if let Some([low, high]) = c.interval_95 {
-        let half = high / 2.0 - low / 2.0;
-        let offset = (low / 2.0 + high / 2.0 - value).abs();
-        if half.is_finite() && half > 0.0 && offset > 0.01 * half {
-            let number = usable(c.standard_uncertainty).map_or_else(|| plain(value, 5), |u| short_form(value, u));
-            return format!("{number} {}", interval([low, high]));
+    if let Some(ends) = c.interval_95 {
+        let half = ends[1] / 2.0 - ends[0] / 2.0;
+        if let Some(half) = half_width(value, ends) {
+            return plus_minus(value, half);
         }
         if half.is_finite() && half > 0.0 {
-            return plus_minus(value, half);
+            let number = usable(c.standard_uncertainty).map_or_else(|| plain(value, 5), |u| short_form(value, u));
+            return format!("{number} {}", interval(ends));
         }
     }
     // Without an interval there is none to halve, whatever the standard uncertainty.
@@ -388,6 +410,13 @@ pub fn coefficient_expanded(c: &Coefficient) -> String {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn an_interval_that_is_not_symmetric_is_an_interval() {
+        assert_eq!(value_and_interval(0.22, [-0.18, 0.82]), "0.22 [−0.18, 0.82]");
+        assert_eq!(value_and_interval(20.1, [19.9, 20.3]), "20.10 ± 0.20");
+        assert_eq!(value_and_interval(0.22, [-0.18, f64::INFINITY]), "0.22 [−0.18, ∞]");
+    }
 
     #[test]
     fn the_short_form_follows_the_uncertainty() {

@@ -11,7 +11,7 @@ use faer::prelude::*;
 use crate::drive::Servo;
 use crate::driven::Driven;
 use crate::moving::{Instant, Servoed, go};
-use crate::period::{MOST_STEPS, Periodic, REPEATS, Repeats, STEP, TRANSIENT, scale};
+use crate::period::{MOST_PERIODS, MOST_STEPS, Periodic, REPEATS, Repeats, STEP, TRANSIENT, scale};
 use crate::planar::Motion;
 use crate::settled::settled;
 
@@ -49,7 +49,7 @@ impl<'a> Driven<'a, Servo<'a>> {
         let angles = unstable.joints.iter().map(|joint| joint[0]);
         let start: Vec<f64> = angles.chain(unstable.head).chain(unstable.joints.iter().map(|joint| joint[1])).collect();
         let mut map = Map { driven: &mut driven, h: period / steps as f64, steps, periods: 0 };
-        let near = settled(&start, &size, |z| map.over(z))?;
+        let near = settled(&start, &size, MOST_PERIODS, |z| map.over(z))?;
         let found = told(map, near, &size, see)?;
         (found.multipliers[0] <= 1.0).then_some(found)
     }

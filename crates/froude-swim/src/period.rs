@@ -19,6 +19,8 @@ use crate::settled::settled;
 
 /// Periods that a swimmer is let go before Newton's method.
 pub(crate) const TRANSIENT: usize = 3;
+/// Periods in which a swimmer that leaves an unstable motion must come near another.
+pub(crate) const MOST_PERIODS: usize = 4000;
 /// Steps of Newton's method.
 pub(crate) const MOST_STEPS: usize = 30;
 /// A motion repeats itself when each part is met to this, of the speed of a link length in a period.
@@ -133,7 +135,7 @@ impl Swimmer<'_> {
         let scale = scale(self.chain, period);
         let map = HeadMap::new(self.chain, self.gait, period, steps)?;
         let over = |z: &[f64]| Some(map.over(&[[z[0], z[1], z[2]]; SIDE_BY_SIDE], COARSE)[0].to_vec());
-        let near = settled(&unstable.head, &scale, over)?;
+        let near = settled(&unstable.head, &scale, MOST_PERIODS, over)?;
         let found = self.at(&map, [near[0], near[1], near[2]], [steps, 0], see)?;
         (found.multipliers[0] <= 1.0).then_some(found)
     }

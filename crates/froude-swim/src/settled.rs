@@ -7,20 +7,19 @@
 
 /// By how much the unstable motion is disturbed.
 const DISTURBED: f64 = 0.01;
-/// Periods within which it must come near another motion that repeats.
-const MOST_PERIODS: usize = 4000;
 /// It is near when a period changes it by less than this part of its distance from where it began.
 const NEAR: f64 = 1e-4;
 
-/// The motion near which a swimmer comes to rest that leaves `start`; `over` follows it over a period, `size` has the sizes of its numbers. `None` where it comes to no rest.
+/// The motion near which a swimmer comes to rest that leaves `start`; `over` follows it over a period, `size` has the sizes of its numbers. `None` where it comes to no rest in so many periods.
 pub(crate) fn settled(
     start: &[f64],
     size: &[f64],
+    most_periods: usize,
     mut over: impl FnMut(&[f64]) -> Option<Vec<f64>>,
 ) -> Option<Vec<f64>> {
     let apart = |a: &[f64], b: &[f64]| (0..a.len()).map(|k| ((a[k] - b[k]) / size[k]).abs()).fold(0.0, f64::max);
     let mut here: Vec<f64> = start.iter().zip(size).map(|(z, size)| z + DISTURBED * size).collect();
-    for _ in 0..MOST_PERIODS {
+    for _ in 0..most_periods {
         let next = over(&here)?;
         if next.iter().any(|z| !z.is_finite()) {
             return None;
@@ -42,9 +41,9 @@ mod tests {
     #[test]
     fn a_pitchfork_is_left_for_its_stable_branch() {
         let over = |r: f64| move |z: &[f64]| Some(vec![z[0] + r * z[0] - z[0].powi(3)]);
-        let found = settled(&[0.0], &[1.0], over(0.2)).unwrap();
+        let found = settled(&[0.0], &[1.0], 4000, over(0.2)).unwrap();
         assert!((found[0] - 0.2_f64.sqrt()).abs() < 1e-3, "{found:?}");
-        assert_eq!(settled(&[0.0], &[1.0], over(1.2)), None);
-        assert_eq!(settled(&[0.0], &[1.0], |z| Some(vec![3.0 * z[0]])), None, "it grows for ever");
+        assert_eq!(settled(&[0.0], &[1.0], 4000, over(1.2)), None);
+        assert_eq!(settled(&[0.0], &[1.0], 4000, |z| Some(vec![3.0 * z[0]])), None, "it grows for ever");
     }
 }

@@ -6,6 +6,7 @@ mod leaves;
 pub mod look;
 mod moves;
 pub mod optimise;
+mod reads;
 mod report;
 mod space;
 mod space_report;
@@ -16,8 +17,9 @@ mod water;
 
 use std::path::{Path, PathBuf};
 
+use froude_records::estimate::DataFile;
 use froude_records::parquet_table::write_parquet;
-use froude_records::robot::{AddedFile, ModuleFile, RobotFile, read_robot};
+use froude_records::robot::{ModuleFile, RobotFile, read_robot};
 use froude_records::write::write_atomically;
 use froude_swim::joints::Drives;
 use froude_swim::robot::Robot;
@@ -29,6 +31,7 @@ use crate::{Error, results};
 pub use froude_records::gait_file::PitchFile as Pitching;
 pub use moves::{Asked, Moves, Typed};
 use moves::{FromRest, Periodically, Wave};
+use reads::Reads;
 pub use space::{SpatialSwum, SpatialWritten};
 use uncertain::Uncertain;
 
@@ -62,6 +65,17 @@ pub enum Came {
     Track(Tracked),
 }
 
+impl Job {
+    /// The files that are read; refused where results would take the place of one.
+    fn reads(&self, file: &RobotFile) -> Result<Vec<DataFile>, Error> {
+        let reads = Reads::of(file, &self.robot, &self.moves, self.motor.as_deref());
+        if let Some(out) = &self.out {
+            reads.spared_by(out)?;
+        }
+        reads.data()
+    }
+}
+
 /// What came of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swum {
@@ -79,6 +93,8 @@ pub struct Swum {
     pub sections: Vec<[f64; 3]>,
     /// The gait's period, or the length of a recording, s.
     pub period_s: f64,
+    /// The files that were read.
+    pub data: Vec<DataFile>,
     /// What its URDF was taken as.
     pub remarks: Vec<String>,
     /// The highest frequency at which the motors give what the gait needs, rad/s.
@@ -150,24 +166,8 @@ pub fn swim_anywhere(job: &Job, pitching: &Pitching) -> Result<Answer, Error> {
     Ok(Answer::Plane(Box::new(in_plane(file, job)?)))
 }
 
-/// Refuses results in the folder of a file that the robot is made of, or that it moves by.
-fn spares_inputs(file: &RobotFile, job: &Job) -> Result<(), Error> {
-    let Some(out) = &job.out else { return Ok(()) };
-    let added = file.modules.iter().map(|module| module.spatial.added.as_ref().unwrap_or(&file.added_mass));
-    let records = added.filter_map(|added| match added {
-        AddedFile::Record(from) => Some(from.path.as_path()),
-        AddedFile::Declared(_) => None,
-    });
-    let moves = match &job.moves {
-        Moves::File { path, .. } | Moves::Track(path) => Some(path.as_path()),
-        Moves::Wave(_) => None,
-    };
-    let others = [job.robot.as_path(), file.drag.path.as_path()].into_iter().chain(moves).chain(job.motor.as_deref());
-    results::spares(out, records.chain(others))
-}
-
 fn in_plane(file: RobotFile, job: &Job) -> Result<Swum, Error> {
-    spares_inputs(&file, job)?;
+    let data = job.reads(&file)?;
     let robot = Robot::of(&file)?;
     let joints = robot.chain.joints();
     let drives = drives(&file, job.motor.as_deref())?;
@@ -188,6 +188,7 @@ fn in_plane(file: RobotFile, job: &Job) -> Result<Swum, Error> {
         drives,
         sections,
         period_s,
+        data,
         remarks: file.remarks,
         fastest_rad_s,
         uncertain: job.uncertain.clone(),

@@ -43,6 +43,8 @@ pub fn observations<'a>(file: &'a EstimateFile, estimate: &'a Estimate) -> Vec<&
 pub(super) struct Origin<'a> {
     /// Fingerprints of its tables or runs.
     tables: BTreeSet<&'a str>,
+    /// Those behind the numbers that it took from other records.
+    inherited: BTreeSet<&'a str>,
     /// Whether these are its own, and not those of all estimates of its record.
     is_exact: bool,
     /// Whether all estimates of the record are of this one's source.
@@ -53,13 +55,20 @@ pub(super) struct Origin<'a> {
 pub(super) fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
     let of = |n: &Named<'a>| {
         let own = fingerprints(n.estimate, n.record.data_of(n.estimate));
+        let inherited = n.record.data.values().filter(|data| data.role.as_deref() == Some(INHERITED));
+        let inherited = inherited.map(|data| data.sha256.as_str()).collect();
         let is_exact = !own.is_empty();
         let first = n.record.estimates.first().map(|e| &e.source);
         let is_alone = || n.record.estimates.iter().all(|e| Some(&e.source) == first);
         if is_exact {
-            Origin { tables: own, is_exact, is_alone: true }
+            Origin { tables: own, inherited, is_exact, is_alone: true }
         } else {
-            Origin { tables: fingerprints(n.estimate, n.record.data.values()), is_exact, is_alone: is_alone() }
+            Origin {
+                tables: fingerprints(n.estimate, n.record.data.values()),
+                inherited,
+                is_exact,
+                is_alone: is_alone(),
+            }
         }
     };
     all.iter().map(of).collect()
@@ -105,7 +114,9 @@ pub(super) fn same_data([a, b]: [&Named<'_>; 2], [first, second]: [&Origin<'_>; 
         return true;
     }
     if first.is_exact && second.is_exact {
-        return !first.tables.is_disjoint(&second.tables);
+        // A prior that was fitted to the other's rows, too. What both took from a third record is an error with a key of its own.
+        let is_taken = |own: &Origin<'_>, other: &Origin<'_>| !own.tables.is_disjoint(&other.inherited);
+        return !first.tables.is_disjoint(&second.tables) || is_taken(first, second) || is_taken(second, first);
     }
     if std::ptr::eq(a.record, b.record) {
         // Fitted sources read tables; a published one beside them does not.

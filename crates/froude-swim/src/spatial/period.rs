@@ -29,6 +29,8 @@ const REPEATS: f64 = 1e-9;
 const STEP: f64 = 1e-5;
 /// Multipliers within this of one are one: what no weight brings back neither grows nor fades.
 pub const ONE: f64 = 1e-4;
+/// Periods in which a swimmer that leaves an unstable motion must come near another: ten seconds of computing.
+const MOST_PERIODS: usize = 1000;
 /// Singular values below this part of the largest are none.
 const SINGULAR: f64 = 1e-7;
 
@@ -93,7 +95,7 @@ impl Swimmer<'_> {
         let scale = self.scale();
         let [roll, pitch, _] = angles(unstable.start.attitude);
         let [p, q, r, u, v, w] = unstable.start.head;
-        let near = settled(&[p, q, r, u, v, w, roll, pitch], &scale, |z| {
+        let near = settled(&[p, q, r, u, v, w, roll, pitch], &scale, MOST_PERIODS, |z| {
             let at: [f64; NUMBERS] = z.try_into().ok()?;
             let mut end = self.map(&at, steps / COARSE)?;
             // Roll is known up to a whole turn.

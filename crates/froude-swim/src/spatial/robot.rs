@@ -19,6 +19,9 @@ const NEUTRAL: f64 = 0.005;
 /// A sum of masses is exact to this part.
 const SUMMED: f64 = 1e-12;
 
+/// A body rights itself when its buoyancy lies above its mass by this much, m.
+pub const RIGHTS_ITSELF_M: f64 = 1e-5;
+
 /// A robot that can swim in three dimensions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpatialRobot {

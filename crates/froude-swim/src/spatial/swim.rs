@@ -7,7 +7,7 @@
 use super::attitude::{angles, of_angles};
 use super::path::{State, Swimmer};
 use super::period::{ONE, Periodic};
-use super::robot::SpatialRobot;
+use super::robot::{RIGHTS_ITSELF_M, SpatialRobot};
 use super::vector::dot;
 use crate::gait::{Course, Shape};
 use crate::joints::Drives;
@@ -80,7 +80,9 @@ impl SpatialRobot {
         let restless = || SwimError::Restless { righting_mm: 1e3 * self.righting_m };
         let mut periodic = swimmer.periodic(steps).ok_or_else(restless)?;
         let mut unstable = None;
+        // What nothing rights comes to no rest in roll and pitch.
         if periodic.multipliers[0] > 1.0 + ONE
+            && self.righting_m.abs() > RIGHTS_ITSELF_M
             && let Some(settled) = swimmer.settled(&periodic, steps)
         {
             unstable = Some(Box::new(std::mem::replace(&mut periodic, settled)));

@@ -15,9 +15,9 @@ use froude_swim::drag::LinkDrag;
 use froude_swim::robot::Robot;
 use serde_json::{Value, json};
 
-use super::space::RIGHTS_ITSELF_M;
 use super::told::NEUTRAL;
 use crate::Error;
+use froude_swim::spatial::robot::RIGHTS_ITSELF_M;
 
 /// Speed at which the force of the whole robot is stated, m/s.
 const SPEED_M_S: f64 = 0.3;

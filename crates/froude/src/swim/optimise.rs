@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use froude_records::estimate::DataFile;
 use froude_records::manifest::{may_replace, take_own_place};
 use froude_records::number::{count, p_value};
 use froude_records::page::{DocumentSection, TextTable};
@@ -30,6 +31,8 @@ const SHOWN: usize = 12;
 pub struct Found {
     /// The robot's name.
     pub name: String,
+    /// The files that were read.
+    pub data: Vec<DataFile>,
     /// What was sought.
     pub of: [Objective; 2],
     /// The front, the best of the first objective first.
@@ -61,6 +64,7 @@ pub fn optimise(job: &SweepJob, of: [Objective; 2], tell: &(dyn Fn(usize, usize)
     };
     let written = job.out.join("front.parquet");
     may_replace(&written)?;
+    ready.reads.spared_by(&written)?;
     let swim = |gaits: &[Gait]| -> Result<Vec<Row>, Error> {
         all.fetch_add(gaits.len(), Ordering::Relaxed);
         Ok(gaits.par_iter().map(|gait| row((0, gait))).collect())
@@ -87,7 +91,8 @@ pub fn optimise(job: &SweepJob, of: [Objective; 2], tell: &(dyn Fn(usize, usize)
         take_own_place(prepare_table(&table(&front, &written), &written)?)?;
     }
     let drawn = job.draws.map(|drawing| (drawing, ready.beyond));
-    Ok(Found { name: ready.name, of, front, shown, beats, drawn, swum: search.rows(), written })
+    let data = ready.reads.data()?;
+    Ok(Found { name: ready.name, data, of, front, shown, beats, drawn, swum: search.rows(), written })
 }
 
 fn gait(row: &Row, ready: &Ready) -> Gait {
@@ -179,6 +184,7 @@ impl Found {
         });
         json!({
             "robot": self.name,
+            "data": self.data,
             "objectives": self.of.map(Objective::name),
             "front_gaits": self.front.len(),
             "swum_gaits": self.swum,

@@ -3,6 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
+use froude_records::estimate::DataFile;
 use froude_records::number::{count, fixed, percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
 use froude_records::parquet_table::write_parquet;
@@ -16,7 +17,7 @@ use froude_swim::spatial::attitude::of_angles;
 use froude_swim::spatial::gait::SpatialGait;
 use froude_swim::spatial::path::State;
 use froude_swim::spatial::period::ONE;
-use froude_swim::spatial::robot::SpatialRobot;
+use froude_swim::spatial::robot::{RIGHTS_ITSELF_M, SpatialRobot};
 use froude_swim::spatial::swim::{SpatialMoment, SpatialSwim};
 use froude_swim::spatial::vector::Axis;
 use froude_swim::trajectory::Cut;
@@ -28,8 +29,6 @@ use super::told;
 use super::{Job, MOMENTS, Pitching, SwimInput};
 use crate::{Error, results};
 
-/// A body rights itself when its buoyancy lies above its mass by this much, m.
-pub(super) const RIGHTS_ITSELF_M: f64 = 1e-5;
 /// A trim is none below this, m.
 const TRIMMED_M: f64 = 1e-4;
 
@@ -44,6 +43,8 @@ pub struct SpatialSwum {
     pub robot: SpatialRobot,
     /// Its period, s.
     pub period_s: f64,
+    /// The files that were read.
+    pub data: Vec<DataFile>,
     /// What was written, where it was asked for.
     pub written: Option<SpatialWritten>,
 }
@@ -60,7 +61,7 @@ pub struct SpatialWritten {
 }
 
 pub(super) fn swim(file: &RobotFile, job: &Job, pitching: &Pitching) -> Result<SpatialSwum, Error> {
-    super::spares_inputs(file, job)?;
+    let data = job.reads(file)?;
     let robot = SpatialRobot::of(file)?;
     let joints = robot.chain.joints.len();
     let wrong = |path: &Path, problem: &str| SwimInput { path: path.to_owned(), problem: problem.to_owned() };
@@ -102,7 +103,7 @@ pub(super) fn swim(file: &RobotFile, job: &Job, pitching: &Pitching) -> Result<S
     };
     let swim = robot.swim(&*course, &drives, job.step_s)?;
     let period_s = course.period_s();
-    let mut swum = SpatialSwum { name: file.name.clone(), swim, robot, period_s, written: None };
+    let mut swum = SpatialSwum { name: file.name.clone(), swim, robot, period_s, data, written: None };
     if let Some(out) = &job.out {
         let (swim, robot) = (&swum.swim, &swum.robot);
         let cut = Cut {
@@ -357,6 +358,7 @@ impl SpatialSwum {
         let (s, p) = (&self.swim, &self.swim.periodic);
         json!({
             "robot": self.name,
+            "data": self.data,
             "space": "3d",
             "modules": self.robot.chain.links.len(),
             "drag": self.robot.plane.estimates.0,

@@ -13,8 +13,8 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use froude_records::estimate::DataFile;
 use froude_records::manifest::{may_replace, take_own_place};
-use froude_records::robot::{AddedFile, RobotFile, is_urdf, sidecar_of_urdf};
 use froude_records::table::{Column, ColumnData, Table, prepare_table};
 use froude_records::units::{Dimension, Unit, parse_unit};
 use froude_records::write::Prepared;
@@ -28,6 +28,7 @@ use rayon::prelude::*;
 
 use super::SwimInput;
 use super::moves::{Moves, Wave, flat_gait_of};
+use super::reads::Reads;
 use super::uncertain::Drawing;
 use crate::Error;
 use parts::Parts;
@@ -83,6 +84,8 @@ impl Ranges {
 pub struct Swept {
     /// The robot's name.
     pub name: String,
+    /// The files that were read.
+    pub data: Vec<DataFile>,
     /// A row per gait and draw; of a gait, that of the estimate stands first.
     pub rows: Vec<Row>,
     /// Rows of a gait.
@@ -147,9 +150,11 @@ pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Swe
     let [written, report, result] = ["sweep.parquet", "report.html", "result.json"].map(|name| job.out.join(name));
     for path in [&written, &report, &result] {
         may_replace(path)?;
+        ready.reads.spared_by(path)?;
     }
+    let data = ready.reads.data()?;
     let asked = format!("{:?} {:?} {:?}", ready.grid, job.step_s, job.draws);
-    let parts = Parts::begin(&job.out, &parts::key(&ready.depends_on, &asked)?, rows)?;
+    let parts = Parts::begin(&job.out, &parts::key(&ready.reads.but_the_gait(), &asked)?, rows)?;
     let done = AtomicUsize::new(0);
     let resumed = AtomicUsize::new(0);
     let count = |n: usize| tell(done.fetch_add(n, Ordering::Relaxed) + n, rows);
@@ -173,8 +178,17 @@ pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Swe
     take_own_place(prepare_table(&table(&all, &written), &written)?)?;
     let others = parts.finish();
     let drawn = job.draws.map(|drawing| (drawing, ready.beyond));
-    let swept =
-        Swept { name: ready.name, rows: all, each, drawn, resumed: resumed.into_inner(), written, report, others };
+    let swept = Swept {
+        name: ready.name,
+        data,
+        rows: all,
+        each,
+        drawn,
+        resumed: resumed.into_inner(),
+        written,
+        report,
+        others,
+    };
     let page = swept.page()?;
     take_own_place(Prepared::new(&swept.report, |file| file.write_all(page.as_bytes()))?)?;
     take_own_place(Prepared::new(&result, |file| writeln!(file, "{:#}", swept.as_json()))?)?;
@@ -193,8 +207,7 @@ pub(super) struct Ready<'a> {
     pub(super) robots: Vec<Robot>,
     /// Draws that were no bodies.
     pub(super) beyond: Beyond,
-    /// The files whose content the numbers depend on.
-    depends_on: Vec<PathBuf>,
+    pub(super) reads: Reads,
 }
 
 impl<'a> Ready<'a> {
@@ -218,8 +231,8 @@ impl<'a> Ready<'a> {
             robots.extend(draws.values.iter().map(|values| blueprint.robot(values)));
         }
         let gaits = grid.gaits().unwrap_or_default();
-        let depends_on = depends_on(&file, job);
-        Ok(Self { job, name: file.name, grid, gaits, drives, robots, beyond, depends_on })
+        let reads = Reads::of(&file, &job.robot, &job.moves, job.motor.as_deref());
+        Ok(Self { job, name: file.name, grid, gaits, drives, robots, beyond, reads })
     }
 
     pub(super) fn row(&self, gait: &Gait, draw: usize) -> Row {
@@ -238,22 +251,6 @@ fn base(moves: &Moves, joints: usize) -> Result<Gait, Error> {
             Wave::Table(_) => Err(refused(path, "is a table, which has no numbers to sweep: take another kind").into()),
         },
     }
-}
-
-/// The files whose content the numbers depend on.
-fn depends_on(file: &RobotFile, job: &SweepJob) -> Vec<PathBuf> {
-    let mut paths = vec![job.robot.clone(), file.drag.path.clone()];
-    if is_urdf(&job.robot) {
-        paths.push(sidecar_of_urdf(&job.robot));
-    }
-    let own = file.modules.iter().filter_map(|m| m.spatial.added.as_ref());
-    for from in own.chain([&file.added_mass]) {
-        if let AddedFile::Record(from) = from {
-            paths.push(from.path.clone());
-        }
-    }
-    paths.extend(job.motor.clone());
-    paths
 }
 
 /// Columns with their units; a column that no row has is left out.

@@ -293,6 +293,7 @@ impl Swum {
         let f = Figures::of(&self.came);
         let mut out = json!({
             "robot": self.name,
+            "data": self.data,
             "modules": self.robot.chain.links.len(),
             "drag": self.robot.estimates.0,
             "added_mass": self.robot.estimates.1,

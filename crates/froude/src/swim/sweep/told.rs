@@ -145,6 +145,7 @@ impl Swept {
             self.best().into_iter().map(|(name, at)| (name.replace(' ', "_"), self.of_gait(at))).collect();
         json!({
             "robot": self.name,
+            "data": self.data,
             "rows": self.rows.len(),
             "gaits": self.rows.len() / self.each,
             "draws": self.drawn.map(|(d, beyond)| json!({"n": d.n, "seed": d.seed, "brought_back": beyond.brought_back, "refused": beyond.refused})),
