@@ -14,6 +14,7 @@ use serde_json::value::RawValue;
 use crate::case::Case;
 use crate::outcome::Outcome;
 use crate::store_error::StoreError;
+use crate::wall;
 
 /// Name of a result's file.
 pub const RESULT_FILE: &str = "result.json";
@@ -207,7 +208,7 @@ fn read(path: &Path, case: &Case) -> Result<Option<Attempted>, StoreError> {
         );
         return Err(StoreError::file(path, problem));
     }
-    Ok(Some(attempted))
+    Ok(Some(Attempted { outcome: wall::judged(case, attempted.outcome), ..attempted }))
 }
 
 /// What a result says, the checksum that it states, and the one that it has.
@@ -234,6 +235,7 @@ mod tests {
             iterations: 12,
             cpu_s: 0.1 + 0.2,
             y_plus: Some([0.1, 1.0, 2.0]),
+            mesh: None,
             start_from: None,
             cells: 22_400,
             solver_version: "v1912".to_owned(),
