@@ -10,7 +10,7 @@
 //!
 //! A load is taken as |pressure| + |friction| here, so that one that changes its sign with the angle keeps an uncertainty.
 //!
-//! **Sources.** The linear sublayer ends at y+ = 5 and the logarithmic law at some 300 (Pope 2000, Turbulent Flows, section 7.1.3). The wall conditions of the cases blend both laws, at a cost that was measured on a capsule of 1 m by 90 mm at 0.4 m/s: a mesh with a mean y+ of 27 has 11 % more axial and 8.5 % more transverse force than one that resolves the wall. On a SUBOFF hull without any layer, drag is 35 % too high, within the half-width of 100 % that the rule gives there.
+//! **Sources.** The linear sublayer ends at y+ = 5 and the logarithmic law at some 300 (Pope 2000, Turbulent Flows, section 7.1.3). The wall conditions of the cases blend both laws, at a cost that was measured on a capsule of 1 m by 90 mm at 0.4 m/s: a mesh with a mean y+ of 27 has 11 % more axial and 8.5 % more transverse force than one that resolves the wall. On a SUBOFF hull without any layer, drag is some 38 % too high (121 N; measured 87.4 N), within the half-width of 100 % that the rule gives there.
 
 use std::path::Path;
 
