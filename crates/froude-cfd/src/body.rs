@@ -15,6 +15,8 @@ use crate::surface::{bounds_m, reference};
 
 /// Radius of a domain over the body's length, and over its width, where the campaign does not say: the larger.
 const RADIUS: [f64; 2] = [3.0, 25.0];
+/// Height of the last layer over the edge of the cubes \[-\]: all layers together are then some 0.8 of a cube thick at a growth of 1.3. Thicker stacks (0.5, twice a cube) leave fewer faces with all layers.
+const LAST_LAYER: f64 = 0.15;
 /// Far cubes from the middle of a box to its sides, at least; across a tank.
 const FAR_CUBES: [f64; 2] = [4.0, 3.0];
 /// Panels around a body whose plan area is measured, and that cubes are cut by.
@@ -48,7 +50,7 @@ impl Shaped {
 
     /// The cubes about it that a campaign asks for; `angle_rad` is that of the velocity, which a tank lies along.
     ///
-    /// Where the campaign names an O-grid, as many cells lie on the surface as that one has, and layers grow by 1.3 from its first one until they are half as high as the cubes.
+    /// Where the campaign names an O-grid, as many cells lie on the surface as that one has, and layers grow by 1.3 from its first one until [`LAST_LAYER`].
     #[must_use]
     pub fn cubes(&self, spec: &CfdSpec, angle_rad: f64) -> Snappy {
         let cubes = match spec.mesher {
@@ -65,7 +67,7 @@ impl Shaped {
         };
         let CubeSpec { surface_cell_m, first_layer_m, growth, .. } = cubes;
         let layers = cubes.layers.unwrap_or_else(|| {
-            let ratio = 0.5 * surface_cell_m / first_layer_m;
+            let ratio = LAST_LAYER * surface_cell_m / first_layer_m;
             1 + (ratio.ln() / growth.max(1.01).ln()).max(0.0).round() as usize
         });
         let radius_m = domain_radius(spec, self.reference) * self.reference.length_m;

@@ -119,6 +119,7 @@ pub mod suggest;
 pub mod surface;
 pub mod surface_pressure;
 pub mod transient;
+pub mod wall;
 pub mod warm;
 pub mod window;
 pub mod work;

@@ -44,6 +44,17 @@ pub enum MeshError {
         /// What to do.
         advice: &'static str,
     },
+    /// Layers that most of the wall does not have.
+    #[error(
+        "layers cover {} % of the body's area, and {} % are needed, as the friction on the rest is that of cubes; write mesh = {{ surface_cell, first_layer, layers }} with smaller cubes or fewer layers",
+        (100.0 * .coverage).round(), (100.0 * .needed).round()
+    )]
+    Layers {
+        /// Part of the area that has layers.
+        coverage: f64,
+        /// The least that is taken.
+        needed: f64,
+    },
     /// A body that is not within its box of water.
     #[error("the body is not in the water: {problem}")]
     Outside {

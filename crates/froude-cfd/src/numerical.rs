@@ -158,6 +158,7 @@ mod tests {
             iterations: 10,
             cpu_s: 1.0,
             y_plus: None,
+            mesh: None,
             start_from: None,
             cells,
             solver_version: String::new(),

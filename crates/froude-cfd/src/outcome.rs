@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::wall::MeshQuality;
+
 /// How a case ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -57,6 +59,9 @@ pub struct Outcome {
     pub cpu_s: f64,
     /// Least, mean and largest y+; `None` where no wall has one.
     pub y_plus: Option<[f64; 3]>,
+    /// Quality of its mesh; `None` of results that were written without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<MeshQuality>,
     /// Case that it started from; `None`: the inflow.
     pub start_from: Option<String>,
     /// Cells of its mesh.

@@ -101,6 +101,22 @@ impl Quality {
     }
 }
 
+/// Part of the walls' area whose cell is at most so high, its volume over its face's area \[-\].
+#[must_use]
+pub fn layered_area(mesh: &PolyMesh, height_m: f64) -> f64 {
+    let shapes = Shapes::of(mesh);
+    let walls = mesh.patches.iter().filter(|patch| patch.kind == PatchKind::Wall);
+    let (mut all_m2, mut layered_m2) = (0.0, 0.0);
+    for face in walls.flat_map(|patch| patch.start..patch.start + patch.count) {
+        let area_m2 = norm(shapes.area_m2[face]);
+        all_m2 += area_m2;
+        if shapes.volume_m3[mesh.owner[face] as usize] <= height_m * area_m2 {
+            layered_m2 += area_m2;
+        }
+    }
+    if all_m2 > 0.0 { layered_m2 / all_m2 } else { 0.0 }
+}
+
 fn least(found: impl Iterator<Item = (usize, f64)>) -> Worst {
     let start = Worst { value: f64::INFINITY, cell: 0 };
     // A number that is none is the worst.

@@ -16,6 +16,7 @@ use crate::evidence;
 use crate::input;
 use crate::outcome::Outcome;
 use crate::store_error::StoreError;
+use crate::wall;
 
 /// Name of a result's file.
 pub const RESULT_FILE: &str = "result.json";
@@ -216,7 +217,7 @@ fn read(path: &Path, case: &Case) -> Result<Option<Attempted>, StoreError> {
     if attempted.outcome.status.is_usable() && attempted.outcome.loads.is_none() {
         return Err(StoreError::file(path, format!("it has no loads; {NEXT}")));
     }
-    Ok(Some(attempted))
+    Ok(Some(Attempted { outcome: wall::judged(case, attempted.outcome), ..attempted }))
 }
 
 /// What a result says, the checksum that it states, and the one that it has.
@@ -243,6 +244,7 @@ mod tests {
             iterations: 12,
             cpu_s: 0.1 + 0.2,
             y_plus: Some([0.1, 1.0, 2.0]),
+            mesh: None,
             start_from: None,
             cells: 22_400,
             solver_version: "v1912".to_owned(),

@@ -17,7 +17,9 @@ use froude_records::write::write_atomically;
 use crate::input;
 use crate::mesh_error::{MeshError, check_counts, check_length};
 use crate::openfoam::{End, OpenFoam};
+use crate::poly_mesh::PolyMesh;
 use crate::poly_mesh_files::keep;
+use crate::quality::layered_area;
 pub use crate::snappy_log::Made;
 use crate::snappy_log::{fault_of, layers_of, quality_of};
 use crate::surface::bounds_m;
@@ -54,6 +56,8 @@ pub enum Sides {
     Tank,
 }
 
+/// A cell at the wall is a layer up to this many times the height of the first layer: snappyHexMesh may give a face fewer layers of the same thickness in all, whose first one is as high as a cube.
+const LAYER_HEIGHT: f64 = 2.0;
 const FILES: [&str; 5] = ["points", "faces", "owner", "neighbour", "boundary"];
 
 impl Snappy {
@@ -111,6 +115,11 @@ impl Snappy {
         let (cells, non_orthogonality_deg, max_skewness) =
             quality_of(&checked).ok_or_else(|| unreadable("checkMesh"))?;
         let kept = keep(meshes, &self.files(&folder)?)?;
+        let finished = PolyMesh::read(&kept).map_err(|e| MeshError::Program {
+            program: "snappyHexMesh",
+            problem: format!("its mesh cannot be read: {e}"),
+            log: folder.join("log.snappyHexMesh").display().to_string(),
+        })?;
         let made = Made {
             mesh: kept.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             cells,
@@ -121,6 +130,7 @@ impl Snappy {
             layers,
             layers_m,
             coverage,
+            area_coverage: layered_area(&finished, LAYER_HEIGHT * self.first_layer_m),
             openfoam: openfoam.version.clone(),
         };
         let text = serde_json::to_string_pretty(&made)

@@ -122,6 +122,8 @@ impl Snappy {
             ("minMedianAxisAngle", "90"),
             ("nBufferCellsNoExtrude", "0"),
             ("nLayerIter", "50"),
+            // The relaxed limits hold for the layers from the first iteration on.
+            ("nRelaxedIter", "0"),
         ])
         .with("layers", body(values(&[("nSurfaceLayers", &self.layers.to_string())])));
         let quality = values(&[
@@ -139,7 +141,8 @@ impl Snappy {
             ("minTriangleTwist", "-1"),
             ("nSmoothScale", "4"),
             ("errorReduction", "0.75"),
-        ]);
+        ])
+        .with("relaxed", relaxed_for_layers());
         values(&[("castellatedMesh", "true"), ("snap", "true"), ("addLayers", "true"), ("mergeTolerance", "1e-6")])
             .with(
                 "geometry",
@@ -150,6 +153,13 @@ impl Snappy {
             .with("addLayersControls", layers)
             .with("meshQualityControls", quality)
     }
+}
+
+/// Limits for cells in layers, which are up to a thousand times as wide as high.
+///
+/// The determinant of a cell falls with its aspect ratio, and the tetrahedra of a face that is not flat are inside out once a layer is thinner than the face's sagitta. Both limits of the cubes therefore reject every layer of a hull whose cells are some centimetres wide, although the solver needs neither. The limits on twist, weights and ratios of volumes stay: without them SUBOFF has more layers, and the solver diverges within 20 iterations.
+fn relaxed_for_layers() -> Dictionary {
+    values(&[("minTetQuality", "-1e30"), ("minDeterminant", "1e-12")])
 }
 
 fn values(entries: &[(&str, &str)]) -> Dictionary {

@@ -23,6 +23,8 @@ pub struct Made {
     pub layers_m: f64,
     /// Part of the thickness that was asked for \[-\].
     pub coverage: f64,
+    /// Part of the body's area whose cell at the wall is a layer \[-\].
+    pub area_coverage: f64,
     /// Version of OpenFOAM that made it.
     pub openfoam: String,
 }

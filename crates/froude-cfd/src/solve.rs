@@ -13,6 +13,7 @@ use crate::judge::{Evidence, Judgement, judge};
 use crate::openfoam::End;
 use crate::outcome::Outcome;
 use crate::solver_log::{fastest, y_plus};
+use crate::wall::MeshQuality;
 
 /// Solves a case in an empty folder.
 ///
@@ -51,6 +52,7 @@ pub fn solve(
         iterations: history::read(folder, case.is_half)?.len(),
         cpu_s: attempt.log()?.cpu_s * how.ranks as f64,
         y_plus: y_plus(folder)?,
+        mesh: MeshQuality::read(mesh),
         start_from: start_from.and(case.start_from.clone()),
         cells: attempt.mesh.cells,
         solver_version: how.openfoam.version.clone(),

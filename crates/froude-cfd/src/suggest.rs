@@ -199,6 +199,7 @@ mod tests {
             iterations: 1,
             cpu_s: 1.0,
             y_plus: None,
+            mesh: None,
             start_from: None,
             cells: 1,
             solver_version: String::new(),

@@ -11,6 +11,7 @@ use crate::outcome::{Outcome, Status};
 use crate::result::{self, Attempted};
 use crate::store::{State, Store};
 use crate::store_error::StoreError;
+use crate::wall;
 use crate::{evidence, orphans};
 
 /// What turns a case into its outcome: OpenFOAM, or a test's stand-in.
@@ -111,6 +112,7 @@ pub fn work(
     if let Some(numbers) = not_finite(&outcome) {
         outcome = failed(format!("the solver's {numbers} are not finite numbers{note}"));
     }
+    outcome = wall::judged(&case, outcome);
     result::let_go(&place);
     let attempted = Attempted { case: case.hash(), attempt, outcome, files: evidence::record(&place) };
     result::write(&folder, &attempted)?;
@@ -153,6 +155,7 @@ fn failed(reason: String) -> Outcome {
         iterations: 0,
         cpu_s: 0.0,
         y_plus: None,
+        mesh: None,
         start_from: None,
         cells: 0,
         solver_version: String::new(),

@@ -475,6 +475,104 @@ fn a_closed_mesh_is_meshed_once_computed_and_its_faults_are_told() {
     assert!(found.contains("the surface is open there") && found.contains("--repair"), "{found}");
 }
 
+/// Bare hull of the DARPA SUBOFF model (AFF-1), radius at the distance x behind the nose, both in ft.
+///
+/// Source: Groves, Huang and Chang (1989), Geometric characteristics of DARPA SUBOFF models, DTRC/SHD-1298-01.
+fn suboff_radius_ft(x: f64) -> f64 {
+    let largest = 5.0 / 6.0;
+    if x <= 10.0 / 3.0 {
+        let a = 0.3 * x - 1.0;
+        let bow = 1.126_395_101 * x * a.powi(4) + 0.442_874_707 * x * x * a.powi(3) + 1.0 - a.powi(4) * (1.2 * x + 1.0);
+        largest * bow.max(0.0).powf(1.0 / 2.1)
+    } else if x <= 10.645_833 {
+        largest
+    } else if x <= 13.979_167 {
+        let (s, h, k0, k1) = ((13.979_167 - x) / 3.333_333, 0.1175_f64, 10.0, 44.6244);
+        let hh = h * h;
+        let stern = hh
+            + h * k0 * s.powi(2)
+            + (20.0 - 20.0 * hh - 4.0 * h * k0 - k1 / 3.0) * s.powi(3)
+            + (-45.0 + 45.0 * hh + 6.0 * h * k0 + k1) * s.powi(4)
+            + (36.0 - 36.0 * hh - 4.0 * h * k0 - k1) * s.powi(5)
+            + (-10.0 + 10.0 * hh + h * k0 + k1 / 3.0) * s.powi(6);
+        largest * stern.sqrt()
+    } else {
+        0.1175 * largest * (1.0 - (3.2 * x - 44.733_333).powi(2)).max(0.0).sqrt()
+    }
+}
+
+/// A closed surface of quadrilaterals between rings, in m; degenerate triangles at the tips are left out.
+fn skin(rings: &[Vec<[f64; 3]>]) -> String {
+    let mut text = "solid hull\n".to_owned();
+    for pair in rings.windows(2) {
+        let around = pair[0].len();
+        for j in 0..around {
+            let k = (j + 1) % around;
+            let [p, q, r, s] = [pair[0][j], pair[1][j], pair[1][k], pair[0][k]];
+            for [a, b, c] in [[p, s, q], [s, r, q]] {
+                if a == b || b == c || c == a {
+                    continue;
+                }
+                text.push_str(" facet normal 0 0 0\n  outer loop\n");
+                for [x, y, z] in [a, b, c] {
+                    text.push_str(&format!("   vertex {x:.7} {y:.7} {z:.7}\n"));
+                }
+                text.push_str("  endloop\n endfacet\n");
+            }
+        }
+    }
+    text + "endsolid hull\n"
+}
+
+fn suboff() -> String {
+    let (length_ft, around, along) = (14.291_667, 96, 120);
+    let ring = |i: usize| {
+        let x = 0.5 * length_ft * (1.0 - (std::f64::consts::PI * i as f64 / along as f64).cos());
+        let radius = if i == 0 || i == along { 0.0 } else { suboff_radius_ft(x) };
+        let point = |j: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * j as f64 / around as f64).sin_cos();
+            [7.0 - x, radius * sin, radius * cos].map(|ft| 0.3048 * ft)
+        };
+        (0..around).map(point).collect()
+    };
+    skin(&(0..=along).map(ring).collect::<Vec<_>>())
+}
+
+/// 1 m by 0.2 m by 0.2 m.
+fn sharp_box() -> String {
+    let ring = |x: f64, half: f64| {
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[y, z]| [x, half * y, half * z]).to_vec()
+    };
+    skin(&[ring(0.5, 0.0), ring(0.5, 0.1), ring(-0.5, 0.1), ring(-0.5, 0.0)])
+}
+
+/// The default mesh of a surface adds its layers to a slender hull, a box with sharp edges, and an ellipsoid.
+#[test]
+fn the_default_mesh_of_a_surface_has_its_layers() {
+    if is_left_out() {
+        return;
+    }
+    for (name, surface, unit) in
+        [("suboff", suboff(), "m"), ("box", sharp_box(), "m"), ("ellipsoid", ellipsoid_mm(1.0), "mm")]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("hull.stl"), surface).unwrap();
+        let own = "body = \"body.toml\"\nmesh = { stations = 20, layers = 20, azimuth = 8, first_layer = \"0.5 mm\" }";
+        let text = CAMPAIGN.replacen(own, &format!("body = \"hull.stl\"\nunit = \"{unit}\""), 1).replacen(
+            "configurations = [\"H1LT\", \"H2LT\"]\n",
+            "",
+            1,
+        );
+        let path = folder.path().join("campaign.toml");
+        std::fs::write(&path, text).unwrap();
+        let planned = json(&["cfd", "plan", self::text(&path)]);
+        let row = &planned["configurations"][0];
+        let number = |key: &str| row["layers"][key].as_f64().unwrap();
+        assert!(number("coverage") > 0.9 && number("area_coverage") >= 0.5, "{name}: {row}");
+        assert!(number("mean") > 0.6 * number("asked"), "{name}: {row}");
+    }
+}
+
 /// Rays of an O-grid cross in the necks, and a named mesh is then one of cubes; in a tank it is one too, a mesh an angle.
 #[test]
 fn necks_and_tanks_are_meshed_by_cubes() {

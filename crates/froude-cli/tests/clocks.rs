@@ -111,7 +111,7 @@ fn a_law_that_does_not_converge_costs_itself_alone() {
     // Alone it is an error.
     replace_in(&folder.path().join("campaign.toml"), "models = [\"f1\", \"f4\"]", "models = [\"f1\"]");
     let output = froude(folder.path(), &["identify", "campaign.toml"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said);
+    assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(tank::said(&output).contains("declare the delay"), "{}", tank::said(&output));
 }
 

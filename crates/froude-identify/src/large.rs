@@ -234,7 +234,7 @@ fn reduced(
     let (validity, found) = validity::ranges(ends, campaign);
     findings.extend(found);
     findings.extend(lint::of_ends(ends, campaign));
-    findings.extend(no_budget(campaign, source, false));
+    findings.extend(no_budget(campaign, source, &[]));
     findings.extend(seconds.findings(facts, ends, &laws));
     check_budget(source, ends)?;
     findings.extend(columns::unused(ends, campaign, source, &laws));

@@ -123,7 +123,7 @@ fn reduced(
     let Asked { method, laws, scatter, choice, has_budget } = asked;
     validity.extend(validity::of_laws(&data, &laws));
     findings.extend(lint::observations(&data, campaign, &laws));
-    findings.extend(no_budget(campaign, source, !shared_errors.is_empty()).filter(|_| !has_budget));
+    findings.extend(no_budget(campaign, source, &shared_errors).filter(|_| !has_budget));
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));
     let out = of_table(campaign, source, method, data, laws);

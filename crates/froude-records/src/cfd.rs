@@ -133,7 +133,7 @@ pub struct CubeSpec {
     pub surface_cell_m: f64,
     /// Height of the layer at the wall, m.
     pub first_layer_m: f64,
-    /// Layers; `None`: until they are half as high as the cubes.
+    /// Layers; `None`: until the last is 0.15 times as high as the cubes.
     pub layers: Option<usize>,
     /// Each layer over the one before \[-\].
     pub growth: f64,

@@ -3,6 +3,7 @@
 mod bodies;
 pub mod collect;
 mod computed;
+mod findings;
 mod meshes;
 mod numerical;
 pub mod plan;

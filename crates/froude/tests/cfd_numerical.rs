@@ -10,6 +10,7 @@ use froude::records::estimate::Estimate;
 use froude_cfd::engine::local;
 use froude_cfd::foam_mesh::FoamMesh;
 use froude_cfd::outcome::{Outcome, Status};
+use froude_cfd::wall::{MeshQuality, WallLayers};
 use froude_cfd::work::{Solve, Task};
 
 const BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
@@ -67,6 +68,7 @@ impl Solve for Known {
             iterations: 100,
             cpu_s: 1.0,
             y_plus: None,
+            mesh: None,
             start_from: None,
             cells,
             solver_version: "known".to_owned(),
@@ -178,6 +180,75 @@ fn a_mesh_that_nothing_is_known_of_is_said() {
     assert!(other.contains("campaign.toml") && other.contains("H1LT at 0.3 m/s and 0°"), "{other}");
     let other = refused("[[source.cfd.study]]\nconfigurations = [\"H3LT\"]\nspeed = \"0.4 m/s\"\n");
     assert!(other.contains("names \"H3LT\", which the plan does not compute"), "{other}");
+}
+
+/// Answers with the law, on a mesh whose wall is resolved as it says.
+struct AtWall {
+    mean_y_plus: f64,
+    area_coverage: f64,
+}
+
+impl Solve for AtWall {
+    fn solve(&self, task: &Task<'_>) -> Result<Outcome, String> {
+        let layers = WallLayers {
+            requested: 10,
+            achieved: 10.0 * self.area_coverage,
+            thickness_coverage: self.area_coverage,
+            area_coverage: self.area_coverage,
+        };
+        let mesh = MeshQuality { max_non_orthogonality_rad: 1.0, max_skewness: 1.5, layers: Some(layers) };
+        let y_plus = Some([0.5 * self.mean_y_plus, self.mean_y_plus, 2.0 * self.mean_y_plus]);
+        Ok(Outcome { y_plus, mesh: Some(mesh), ..Known.solve(task)? })
+    }
+}
+
+/// A campaign on such a mesh.
+fn at_wall(folder: &Path, solver: &AtWall) -> PathBuf {
+    std::fs::write(folder.join("body.toml"), BODY).unwrap();
+    let path = folder.join("campaign.toml");
+    std::fs::write(&path, CAMPAIGN.replace("STUDY", "")).unwrap();
+    let planned = plan::plan(&path, None, &AtomicBool::new(false), &|_| ()).unwrap();
+    local::run(&planned.store, solver, 2, &AtomicBool::new(false), &|_| ()).unwrap();
+    path
+}
+
+/// Layers that are missing on a part of the body, and a mean y+ between the sublayer and the end of the law of the wall, widen the coefficient, and the record says so.
+#[test]
+fn a_wall_that_is_resolved_in_part_widens_the_interval_and_is_a_finding() {
+    for (mean_y_plus, area_coverage, half_width) in [(1.0, 1.0, 0.0), (1.0, 0.7, 0.3), (40.0, 1.0, 0.11)] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = at_wall(folder.path(), &AtWall { mean_y_plus, area_coverage });
+        let done = identify(&Job::new(&path), &|_| ()).unwrap();
+        let estimate = done.file.estimates.iter().find(|e| e.coefficients.contains_key("Y_vav")).unwrap();
+        let found = 2.0 * part(estimate, "mesh at the wall (f_y)");
+        assert!((found - half_width).abs() < 1e-6, "{mean_y_plus} {area_coverage}: {found}");
+        let record = std::fs::read_to_string(folder.path().join("campaign-results/estimate.json")).unwrap();
+        assert_eq!(record.contains("\"cfd-wall\""), half_width > 0.0, "{mean_y_plus} {area_coverage}");
+        let layers = format!("layers cover at least {:.0} % of the body's area", 100.0 * area_coverage);
+        assert!(record.contains(&layers) && record.contains("non-orthogonality up to 57°"), "{record}");
+        assert!(record.contains("the error of the mesh is in no interval"), "{record}");
+        assert!(!record.contains("tare"), "{record}");
+        assert!(record.contains("no uncertainty of the computation is declared"), "{record}");
+        let table = std::fs::read_to_string(folder.path().join("flow/observations.csv")).unwrap();
+        for column in ["layer_coverage", "layers_requested", "non_orthogonality", "skewness", "y_plus_mean"] {
+            assert!(table.contains(column), "{table}");
+        }
+    }
+}
+
+/// Without layers on most of the body, or with a first cell beyond the law of the wall, a case has no result, in run, status and collect alike.
+#[test]
+fn a_wall_that_is_not_resolved_leaves_no_result() {
+    for (mean_y_plus, area_coverage, said) in
+        [(1.0, 0.2, "layers cover 20 % of the body's area"), (900.0, 1.0, "make first_layer of mesh")]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        let path = at_wall(folder.path(), &AtWall { mean_y_plus, area_coverage });
+        let refused = collect::collect(&path, None).unwrap_err().to_string();
+        assert!(refused.contains(said), "{refused}");
+        let status = froude::cfd::status::status(&path, None).unwrap().as_json();
+        assert_eq!(status["counts"]["failed"].as_u64(), Some(12), "{status}");
+    }
 }
 
 /// A wider domain that answers the same has no error, and stands in the plan with its cells.

@@ -85,6 +85,7 @@ impl Solve for Stub {
             iterations: ITERATIONS,
             cpu_s: 1e-6 * (CELLS * ITERATIONS) as f64,
             y_plus: Some([0.1, 1.0, 2.0]),
+            mesh: None,
             start_from: None,
             cells: CELLS,
             solver_version: "stub".to_owned(),

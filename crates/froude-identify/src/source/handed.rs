@@ -10,6 +10,7 @@ use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::regression::Scatter;
 use crate::seam::Reduced;
+use crate::uncertainty::SharedError;
 
 /// Observations of a table, with what the campaign states of them.
 pub(crate) fn of_table(
@@ -26,15 +27,24 @@ pub(crate) fn of_table(
     Reduced { budget: source.uncertainty.clone(), campaign: campaign.key.clone(), ..out }
 }
 
-/// That no error of an instrument is declared, where none is.
-pub(crate) fn no_budget(campaign: &Campaign, source: &Source, has_tare: bool) -> Option<Finding> {
+/// That no error of an instrument is declared, where none is; `stated` are the errors that the method brings itself.
+pub(crate) fn no_budget(campaign: &Campaign, source: &Source, stated: &[SharedError]) -> Option<Finding> {
     source.uncertainty.is_empty().then(|| {
-        let tare = if has_tare { ", that of the tare" } else { "" };
+        let mut names: Vec<&str> = stated.iter().map(|error| error.name.as_str()).collect();
+        names.dedup();
+        let stated = names.iter().map(|name| format!(", the error \"{name}\"")).collect::<String>();
         let known = if campaign.identify.known.is_empty() { "" } else { ", that of what is known" };
-        let text = format!(
-            "no uncertainty of an instrument is declared: the intervals include the scatter of the observations{tare}{known} and nothing else \
-             (a calibration error does not appear in the scatter)"
-        );
+        let text = if source.kind == SourceKind::Cfd {
+            format!(
+                "no uncertainty of the computation is declared: the intervals include the scatter about the law{stated}{known} and nothing else \
+                 (the error of the model form does not appear in the scatter)"
+            )
+        } else {
+            format!(
+                "no uncertainty of an instrument is declared: the intervals include the scatter of the observations{stated}{known} and nothing else \
+                 (a calibration error does not appear in the scatter)"
+            )
+        };
         Finding::new(Severity::Note, "no-budget", text)
     })
 }

@@ -10,11 +10,12 @@ use froude_cfd::mirror::{OneSided, is_symmetric, take_means};
 use froude_cfd::numerical::Numerical;
 use froude_cfd::outcome::Status;
 use froude_cfd::store::Store;
+use froude_cfd::wall::{MeshQuality, std_of_wall};
 use froude_records::RecordError;
 use froude_records::cfd::CfdSpec;
 use froude_records::csv_table::csv_bytes;
 use froude_records::manifest::take_own_place;
-use froude_records::number::{percent, significant};
+use froude_records::number::significant;
 use froude_records::page::{DocumentSection, TextTable};
 use froude_records::read;
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration};
@@ -182,6 +183,7 @@ fn table(rows: &[Row], numerical: &Numerical, path: &Path) -> Table {
     }
     let is_half = rows.iter().all(|r| r.case.is_half);
     let dimension = |load: usize| if load < 3 { Dimension::FORCE } else { Dimension::MOMENT };
+    let is_of_wall = rows.iter().any(|r| std_of_wall(&r.case, &r.outcome).iter().any(|std| *std > 0.0));
     let mut of_loads = |prefix: &str, of: &dyn Fn(&Row) -> Option<[f64; 6]>| {
         // What some rows do not have is no column.
         if rows.iter().all(|r| of(r).is_some()) {
@@ -195,9 +197,28 @@ fn table(rows: &[Row], numerical: &Numerical, path: &Path) -> Table {
     of_loads("correction_", &|r| (!numerical.fine.is_empty()).then(|| numerical.correction(&r.case)));
     of_loads("std_iterative_", &|r| r.outcome.std_iterative);
     of_loads("std_numerical_", &|r| {
-        let (mesh, iterative) = (numerical.std_of_mesh(&r.case)?, r.outcome.std_iterative?);
-        Some(std::array::from_fn(|k| mesh[k].hypot(iterative[k])))
+        let (mesh, wall) = (numerical.std_of_mesh(&r.case), std_of_wall(&r.case, &r.outcome));
+        if mesh.is_none() && !is_of_wall {
+            return None;
+        }
+        let (mesh, iterative) = (mesh.unwrap_or_default(), r.outcome.std_iterative?);
+        Some(std::array::from_fn(|k| mesh[k].hypot(iterative[k]).hypot(wall[k])))
     });
+    if rows.iter().all(|r| r.outcome.mesh.is_some()) {
+        let of = |what: fn(&MeshQuality) -> f64| move |r: &Row| r.outcome.mesh.as_ref().map_or(f64::NAN, what);
+        columns.push(number("non_orthogonality", "deg", Dimension::ONE, &of(|m| m.max_non_orthogonality_rad)));
+        columns.push(number("skewness", "1", Dimension::ONE, &of(|m| m.max_skewness)));
+        columns.push(number("layer_coverage", "1", Dimension::ONE, &of(MeshQuality::area_coverage)));
+        if rows.iter().all(|r| r.outcome.mesh.is_some_and(|m| m.layers.is_some())) {
+            columns.push(number(
+                "layers_requested",
+                "1",
+                Dimension::ONE,
+                &of(|m| m.layers.map_or(f64::NAN, |l| l.requested as f64)),
+            ));
+            columns.push(number("layers", "1", Dimension::ONE, &of(|m| m.layers.map_or(f64::NAN, |l| l.achieved))));
+        }
+    }
     if rows.iter().all(|r| r.outcome.y_plus.is_some()) {
         let y_plus = |k: usize| move |r: &Row| r.outcome.y_plus.map_or(f64::NAN, |y| y[k]);
         columns.push(number("y_plus_mean", "1", Dimension::ONE, &y_plus(1)));
@@ -210,7 +231,7 @@ fn table(rows: &[Row], numerical: &Numerical, path: &Path) -> Table {
 
 impl Collected {
     /// Flows that lean to a side of a plane of symmetry by more than a hundredth of ½ρU²A.
-    fn of_one_side(&self) -> Option<String> {
+    pub(super) fn of_one_side(&self) -> Option<String> {
         let seen: Vec<&OneSided> = self.one_sided.iter().filter(|o| o.part.abs() > SEEN && o.load < 3).collect();
         let most = seen.iter().max_by(|a, b| a.part.abs().total_cmp(&b.part.abs()))?;
         Some(format!(
@@ -224,7 +245,7 @@ impl Collected {
     }
 
     /// Largest difference of repeats of one kind: of f_x and f_y, each over ½ρU²A of its case, with how many there are.
-    fn apart(&self, what: &str) -> Option<([f64; 2], usize)> {
+    pub(super) fn apart(&self, what: &str) -> Option<([f64; 2], usize)> {
         let own: Vec<&Pair> = self.pairs.iter().filter(|p| p.what == what).collect();
         let of = |k: usize| {
             let part = |p: &&Pair| (p.first.loads[k] - p.second.loads[k]).abs() / p.first.case.load_scales()[k];
@@ -241,29 +262,12 @@ impl Collected {
 
     fn section(&self) -> DocumentSection {
         let is = |status: Status| self.rows.iter().filter(|r| r.outcome.status == status).count();
-        let mut paragraphs = Vec::new();
+        let mut paragraphs: Vec<String> = Vec::new();
         if !self.without.is_empty() {
             let cases = counted(self.without.len(), "case has", "cases have");
             paragraphs.push(format!("{cases} no result that counts; froude cfd status says why"));
         }
-        for (what, words) in [
-            ("from the inflow", "repeated from the inflow: what is left of where a case starts from"),
-            (
-                "laminar",
-                "computed by both models, of which the table has the one with turbulence: two limits, no interval",
-            ),
-        ] {
-            if let Some(([x, y], n)) = self.apart(what) {
-                let cases = counted(n, "case", "cases");
-                paragraphs.push(format!(
-                    "{cases} {words}; f_x at most {} of ½ρU²A apart, f_y {}",
-                    percent(x),
-                    percent(y)
-                ));
-            }
-        }
-        paragraphs.extend(self.of_one_side());
-        paragraphs.extend(numerical::sentences(&self.numerical, &self.rows));
+        paragraphs.extend(super::findings::of_collected(self).into_iter().map(|finding| finding.message));
         let range = |k: usize| {
             let of = |f: fn(f64, f64) -> f64, from: f64| self.rows.iter().map(|r| r.loads[k]).fold(from, f);
             [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use froude_cfd::case::Case;
 use froude_cfd::collect::Collected as Row;
 use froude_cfd::outcome::Loads;
+use froude_cfd::wall::std_of_wall;
 use froude_fit::budget::Kind;
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::reduce::{Observations, reduce_table};
@@ -15,9 +16,9 @@ use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::output::inside;
 use froude_records::table::Table;
-use froude_records::text::counted;
 
 use super::collect::{Collected, LOADS, of_folder};
+use super::findings;
 
 /// The cases of a CFD campaign.
 pub(crate) struct Computed;
@@ -64,14 +65,9 @@ impl Method for Computed {
             .collect();
         observations.shared_errors.extend(iterative(&observations, &std));
         observations.shared_errors.extend(of_grid(&observations, &collected));
-        let left_out = collected.without.len();
-        if left_out > 0 {
-            let text = format!(
-                "{} no result that counts and stand in no fit; froude cfd status says why",
-                counted(left_out, "case has", "cases have")
-            );
-            observations.findings.push(Finding::new(Severity::Warning, "cfd-cases-missing", text));
-        }
+        observations.findings.extend(findings::of_missing(&collected));
+        observations.findings.extend(findings::of_collected(&collected));
+        observations.findings.extend(findings::of_flows(&collected, &spec, &source));
         let mut result = identify_observations(campaign, &source, observations, "cfd", &|model| {
             progress(&format!("fitting {model}"));
         })?;
@@ -86,10 +82,17 @@ fn is_of_a_rig(finding: &Finding) -> bool {
     finding.code == "one-sign-of-angle" || (finding.code == "force-along-motion" && finding.severity < Severity::Error)
 }
 
+/// Columns about the mesh, which no law reads.
+const ABOUT_THE_MESH: [&str; 5] = ["non_orthogonality", "skewness", "layer_coverage", "layers_requested", "layers"];
+
 /// A table without what it says about its own loads and nothing reads: the iterations' part is that of the numerical uncertainty where this is known.
 fn loads_alone(table: &Table) -> Table {
     let has_numerical = table.columns.iter().any(|c| c.name.starts_with(STD_NUMERICAL));
-    let is_about = |name: &str| name.starts_with("correction_") || (has_numerical && name.starts_with(STD_ITERATIVE));
+    let is_about = |name: &str| {
+        ABOUT_THE_MESH.contains(&name)
+            || name.starts_with("correction_")
+            || (has_numerical && name.starts_with(STD_ITERATIVE))
+    };
     Table { columns: table.columns.iter().filter(|c| !is_about(&c.name)).cloned().collect(), ..table.clone() }
 }
 
@@ -104,7 +107,7 @@ fn iterative(observations: &Observations, std: &BTreeMap<&str, Loads>) -> Vec<Sh
     LOADS.iter().enumerate().filter_map(of).collect()
 }
 
-/// What mesh and domain leave in the loads, as errors that all cases share.
+/// What mesh, wall and domain leave in the loads, as errors that all cases share.
 ///
 /// A mesh errs in one direction about bodies that differ in their length alone, and at all speeds: its error does not average down, over cases or over configurations. (It is no constant: all configurations have as many stations, so that the cells of a longer body are longer.) So each load has one, of the size that it has in each row. What an endless domain changes is known with its sign; loads are not corrected for it, so it lies between nothing and all of it.
 fn of_grid(observations: &Observations, collected: &Collected) -> Vec<SharedError> {
@@ -114,9 +117,18 @@ fn of_grid(observations: &Observations, collected: &Collected) -> Vec<SharedErro
         observations.data.run.iter().map(row).collect()
     };
     let mut out = Vec::new();
+    let of_wall = |load: usize| -> Option<Vec<f64>> {
+        let std = |run: &String| rows.get(run.as_str()).map(|row| std_of_wall(&row.case, &row.outcome)[load]);
+        observations.data.run.iter().map(std).collect()
+    };
     for (k, load) in LOADS.iter().enumerate().filter(|(_, load)| observations.data.values(load).is_some()) {
         if let Some(standard) = of(&|case| collected.numerical.std_of_mesh(case), k) {
             let error = SharedError::of_load(&format!("mesh ({load})"), load, &standard, 1.0, f64::INFINITY);
+            out.push(error.evaluated_as(Kind::Numerical));
+        }
+        if let Some(standard) = of_wall(k).filter(|all| all.iter().any(|std| *std > 0.0)) {
+            let error =
+                SharedError::of_load(&format!("mesh at the wall ({load})"), load, &standard, 1.0, f64::INFINITY);
             out.push(error.evaluated_as(Kind::Numerical));
         }
         if let Some(change) = of(&|case| collected.numerical.endless(case), k) {

@@ -14,6 +14,7 @@ use froude_cfd::poly_mesh::PolyMesh;
 use froude_cfd::quality::Quality;
 use froude_cfd::snappy::Made;
 use froude_cfd::surface::{bounds_m, shadow_m2};
+use froude_cfd::wall::{MIN_COVERAGE, MeshQuality, WallLayers};
 use froude_hydro::similarity::blockage;
 use froude_mesh::sections::SectionBody;
 use froude_records::cfd::Mesher;
@@ -149,6 +150,20 @@ fn of_angle(asked: &Asked, body: &Shaped, angle_rad: Option<f64>, cancel: &Atomi
             cubes.mesh(&body.surface, &meshes, &openfoam, cancel).map_err(refused)?
         }
     };
+    if made.area_coverage < MIN_COVERAGE {
+        return Err(refused(MeshError::Layers { coverage: made.area_coverage, needed: MIN_COVERAGE }));
+    }
+    let quality = MeshQuality {
+        max_non_orthogonality_rad: made.max_non_orthogonality_rad,
+        max_skewness: made.max_skewness,
+        layers: Some(WallLayers {
+            requested: made.layers_asked,
+            achieved: made.layers,
+            thickness_coverage: made.coverage,
+            area_coverage: made.area_coverage,
+        }),
+    };
+    quality.write(&meshes.join(&made.mesh))?;
     Ok(group(vec![Ready {
         mesh: made.mesh.clone(),
         again: None,
@@ -169,6 +184,12 @@ fn written(
     (mesh, quality): (PolyMesh, Quality),
 ) -> Result<Ready, MeshError> {
     let folder = mesh.write(meshes)?;
+    let at_wall = MeshQuality {
+        max_non_orthogonality_rad: quality.max_non_orthogonality_rad.value,
+        max_skewness: quality.max_skewness.value,
+        layers: None,
+    };
+    at_wall.write(&folder)?;
     let first_layer_m = match (again, asked.spec.fine) {
         (Some(Again::Fine), Some(fine)) => fine.mesh.first_layer_m,
         _ => asked.spec.mesh.first_layer_m,

@@ -159,7 +159,7 @@ fn y_plus(water: Water, length_m: f64, speed_m_s: f64, first_layer_m: f64) -> f6
     speed_m_s * (0.5 * friction).sqrt() * 0.5 * first_layer_m / water.viscosity_m2_s
 }
 
-/// Part of the layers' thickness below which they are said to be lost.
+/// Part of the body's area with layers below which some are said to be missing.
 const COVERED: f64 = 0.9;
 
 fn said(asked: &Asked, meshed: &[Group], cases: &[Case], change: &Change) -> Vec<String> {
@@ -174,10 +174,10 @@ fn said(asked: &Asked, meshed: &[Group], cases: &[Case], change: &Change) -> Vec
                 "{name}: rays of an O-grid cross at {place}, so that snappyHexMesh made the mesh, with as many cells on the surface"
             ));
         }
-        if let Some(made) = ready.cubes.as_ref().filter(|made| made.coverage < COVERED) {
+        if let Some(made) = ready.cubes.as_ref().filter(|made| made.area_coverage < COVERED) {
             out.push(format!(
-                "{name}: layers have {} of the thickness that was asked for; where they are missing, y+ is that of the cubes: make the cubes smaller, or ask for fewer layers",
-                percent(made.coverage)
+                "{name}: layers cover {} of the body's area; where they are missing, y+ is that of the cubes, and that part of each load is counted as its error: make surface_cell of mesh smaller, or ask for fewer layers",
+                percent(made.area_coverage)
             ));
         }
     }
@@ -238,7 +238,7 @@ impl Planned {
                 format!("{:.0}", c.non_orthogonality_rad.to_degrees()),
                 significant(c.skewness, 2),
                 c.cubes.as_ref().map_or_else(|| "all".to_owned(), layers),
-                percent(c.cubes.as_ref().map_or(1.0, |made| made.coverage)),
+                percent(c.cubes.as_ref().map_or(1.0, |made| made.area_coverage)),
                 significant(c.y_plus, 2),
                 c.blockage.map_or_else(String::new, percent),
             ]
@@ -267,8 +267,7 @@ impl Planned {
             rows: self.configurations.iter().map(row).collect(),
         };
         let head = ["body", "cells", "Re of the width", "cases", "to compute", "time", "disk, MB"];
-        let mesh_head =
-            ["body", "mesh", "non-orthogonality, deg", "skewness", "layers", "of their thickness", "y+", "blocks"];
+        let mesh_head = ["body", "mesh", "non-orthogonality, deg", "skewness", "layers", "of the area", "y+", "blocks"];
         let of_mesh = "meshes; y+ is what the friction of a plate lets expect at the highest speed";
         let of_lengths = "lengths that numbers refer to, the area of the side, and the point of the moments, x forward, y to starboard, z down";
         DocumentSection {
@@ -300,7 +299,7 @@ impl Planned {
                 "cells": c.cells,
                 "max_non_orthogonality_rad": c.non_orthogonality_rad,
                 "max_skewness": c.skewness,
-                "layers": c.cubes.as_ref().map(|m| json!({"asked": m.layers_asked, "mean": m.layers, "coverage": m.coverage, "thickness_m": m.layers_m})),
+                "layers": c.cubes.as_ref().map(|m| json!({"asked": m.layers_asked, "mean": m.layers, "coverage": m.coverage, "area_coverage": m.area_coverage, "thickness_m": m.layers_m})),
                 "y_plus_expected": c.y_plus,
                 "blockage": c.blockage,
                 "cases": c.cases,
