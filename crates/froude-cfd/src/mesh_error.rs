@@ -46,7 +46,7 @@ pub enum MeshError {
     },
     /// Layers that most of the wall does not have.
     #[error(
-        "layers cover {} % of the body's area, and {} % are needed, as the friction on the rest is that of cubes; write mesh = {{ surface_cell, first_layer, layers }} with smaller cubes or fewer layers",
+        "layers cover {} % of the body's area, but at least {} % is required, because the friction is not resolved without layers; write mesh = {{ surface_cell, first_layer, layers }} with smaller cubes or fewer layers",
         (100.0 * .coverage).round(), (100.0 * .needed).round()
     )]
     Layers {

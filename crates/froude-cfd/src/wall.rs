@@ -98,7 +98,7 @@ fn fault(case: &Case, outcome: &Outcome) -> Option<String> {
     let coverage = outcome.mesh.map_or(1.0, |mesh| mesh.area_coverage());
     if coverage < MIN_COVERAGE {
         return Some(format!(
-            "layers cover {:.0} % of the body's area, and {:.0} % are needed, as the friction on the rest is that of cubes; write mesh = {{ surface_cell, first_layer, layers }} in [source.cfd] with smaller cubes or fewer layers",
+            "layers cover {:.0} % of the body's area, but at least {:.0} % is required, because the friction is not resolved without layers; write mesh = {{ surface_cell, first_layer, layers }} in [source.cfd] with smaller cubes or fewer layers",
             100.0 * coverage,
             100.0 * MIN_COVERAGE
         ));
@@ -106,7 +106,7 @@ fn fault(case: &Case, outcome: &Outcome) -> Option<String> {
     let [_, mean, _] = outcome.y_plus?;
     let (limit, why) = match case.model {
         Model::Sst { .. } => (LAW_OF_THE_WALL, "the law of the wall ends"),
-        Model::Laminar => (SUBLAYER, "a laminar flow is resolved"),
+        Model::Laminar => (SUBLAYER, "the viscous sublayer ends"),
     };
     (mean > limit).then(|| {
         format!(

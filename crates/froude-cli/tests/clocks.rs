@@ -144,7 +144,7 @@ fn what_a_method_does_not_use_is_refused() {
             assert!(text.contains("campaign.toml:") && text.contains("drift is not simulated here"), "{name}: {text}");
         }
         for text in sensor("angel", "noise = \"0.1 rad\"") {
-            assert!(text.contains("\"angel\" is none that this twin has: it has "), "{name}: {text}");
+            assert!(text.contains("\"angel\" is not simulated by this twin: it has "), "{name}: {text}");
         }
     }
     for (name, quantity, section) in [

@@ -110,7 +110,7 @@ pub(crate) fn of_a_calendar(logs: &[ImportedRun]) -> Option<Finding> {
     let has_it = |log: &&ImportedRun| log.done.iter().any(|step| step.step == conditioning::times::STEP);
     let first = logs.iter().find(has_it)?;
     let text = format!(
-        "the times of {} are those of a calendar and are counted from the first sample of each, here and in what is reported",
+        "the times of {} are calendar times and are counted from the first sample of each, in the analysis and in the report",
         counted(logs.iter().filter(has_it).count(), "log", "logs")
     );
     let text = if logs.len() == 1 { format!("{}: {text}", first.log.path.display()) } else { text };

@@ -32,7 +32,7 @@ pub(crate) fn seed_and_sensors<'a>(
 ) -> Result<(u64, &'a [SensorSpec]), MethodError> {
     let Some(simulate) = &campaign.simulate else { return Ok((0, &[])) };
     if simulate.misalignment_rad.is_some() {
-        let what = "misalignment is of simulated tables, and the twins of runs have none: leave it out";
+        let what = "misalignment applies to simulated tables only, not to simulated runs: leave it out";
         return Err(MethodError::Undeclared { place: campaign.path.display().to_string(), what: what.to_owned() });
     }
     for sensor in &simulate.sensors {
@@ -47,7 +47,7 @@ pub(crate) fn seed_and_sensors<'a>(
                 continue;
             }
             let names: Vec<&str> = senses.iter().flat_map(|sense| sense.names.iter().copied()).collect();
-            return refuse(format!("quantity = {quantity:?} is none that this twin has: it has {}", names.join(", ")));
+            return refuse(format!("quantity = {quantity:?} is not simulated by this twin: it has {}", names.join(", ")));
         };
         let keys = [
             ("drift", sensor.drift.is_some()),

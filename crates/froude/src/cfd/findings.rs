@@ -43,7 +43,7 @@ pub(super) fn of_collected(collected: &Collected) -> Vec<Finding> {
         (
             "cfd-two-models",
             "laminar",
-            "computed by both models; the table has the turbulent result, and the difference is in no interval",
+            "computed with both models; the table has the turbulent result, and no interval includes the difference",
         ),
     ] {
         if let Some(([x, y], n)) = collected.apart(what) {
@@ -74,14 +74,14 @@ pub(super) fn of_flows(collected: &Collected, spec: &CfdSpec, source: &Source) -
     let early = rows.iter().filter(|row| row.case.is_tripped_too_early()).count();
     if early > 0 {
         let text = format!(
-            "{} by a model of turbulence below a Reynolds number of {} of the width, where the boundary layer is laminar; laminar_below and both_below of [source.cfd] compute them without the model",
+            "{} with a turbulence model at a Reynolds number (based on width) below {}, where the boundary layer is laminar; use laminar_below or both_below in [source.cfd] to compute without the model",
             counted(early, "case is computed", "cases are computed"),
             count(froude_cfd::case::LAMINAR_REYNOLDS as usize)
         );
         out.push(Finding::new(Severity::Warning, "cfd-laminar-layer", text));
     }
     if spec.tank.is_some() {
-        let text = "the walls, the bottom and the surface of the tank are planes along which the water slips; the surface stays flat, so the loads contain no waves";
+        let text = "the walls, the bottom and the surface of the tank are slip planes; the surface stays flat, so the loads contain no waves";
         out.push(Finding::new(Severity::Note, "cfd-tank", text.to_owned()));
     }
     let swinging = rows.iter().filter(|row| row.outcome.status == Status::Oscillating).count();
@@ -155,7 +155,7 @@ fn of_wall(rows: &[Row]) -> Option<Finding> {
     }
     (!own.is_empty()).then(|| {
         let text = format!(
-            "the mesh does not resolve the wall in {}, which adds up to ±{} of the load (95 %): {}",
+            "the mesh does not resolve the wall in {}, which adds an uncertainty of at most ±{} of the load (95 %): {}",
             counted(own.len(), "case", "cases"),
             percent(most),
             advice.join("; ")

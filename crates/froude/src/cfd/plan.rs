@@ -176,7 +176,7 @@ fn said(asked: &Asked, meshed: &[Group], cases: &[Case], change: &Change) -> Vec
         }
         if let Some(made) = ready.cubes.as_ref().filter(|made| made.area_coverage < COVERED) {
             out.push(format!(
-                "{name}: layers cover {} of the body's area; where they are missing, y+ is that of the cubes, and that part of each load is counted as its error: make surface_cell of mesh smaller, or ask for fewer layers",
+                "{name}: layers cover {} of the body's area; where they are missing, y+ is that of the cubes, and the same part of each load is counted as error: make surface_cell of mesh smaller, or request fewer layers",
                 percent(made.area_coverage)
             ));
         }

@@ -64,7 +64,7 @@ impl Repeating<'_> {
             "another motion".to_owned()
         };
         format!(
-            "unstable: the swimmer settles into {into}, with {} m/s and {} W, and all figures are of that motion; it leaves the motion of {} m/s and {} W, of which {}",
+            "unstable: the swimmer settles into {into}, at {} m/s and {} W, and all figures are those of this motion; it leaves the motion at {} m/s and {} W, in which {}",
             significant(settled.speed_m_s, 4),
             significant(settled.net_w, 4),
             significant(self.speed_m_s, 4),

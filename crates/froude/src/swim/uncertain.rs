@@ -181,13 +181,13 @@ impl Drawn {
         }
         let [settled, stays] = self.unstable;
         if settled > 0 {
-            let words = counted(settled, "draw enters", "draws enter");
-            paragraphs.push(format!("{words} the intervals with the motion that an unstable one settles into"));
+            let words = counted(settled, "draw has", "draws have");
+            paragraphs.push(format!("{words} an unstable motion; the intervals use the motion that it settles into"));
         }
         if stays > 0 {
-            let words = counted(stays, "draw enters", "draws enter");
+            let words = counted(stays, "draw has", "draws have");
             paragraphs.push(format!(
-                "{words} the intervals with an unstable motion, which settles into none that repeats each period"
+                "{words} an unstable motion that settles into none that repeats each period; the intervals use the unstable motion"
             ));
         }
         let row = |((name, unit, _), ends): (&(&str, &str, &str), [f64; 2])| {

@@ -112,7 +112,7 @@ impl Swept {
         let settled = self.answered().filter(|(_, row)| row.get("unstable_floquet") > 1.0).count();
         if settled > 0 {
             out.push(format!(
-                "{} unstable motion: figures are those of the motion that it settles into, those of the unstable one stand in the columns unstable_speed, unstable_power_net and unstable_floquet",
+                "{} unstable motion: the figures are those of the motion that follows, and those of the unstable motion are in the columns unstable_speed, unstable_power_net and unstable_floquet",
                 counted(settled, "gait leaves an", "gaits leave an")
             ));
         }
