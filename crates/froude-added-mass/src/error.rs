@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use froude_hydro::fluid::FluidError;
 use froude_identify::IdentifyError;
 use froude_identify::method::MethodError;
-use froude_mesh::files::ReadError;
+use froude_mesh::files::{Format, ReadError};
 use froude_mesh::plausible::{Crosses, TooLarge};
 use froude_mesh::sections::SectionError;
 use froude_panel::chain::ChainError;
 use froude_panel::refine::RefineError;
 use froude_records::RecordError;
 use froude_records::added_mass_options::GivenOption;
+use froude_records::text::counted;
 
 use crate::frame::Direction;
 
@@ -149,6 +150,21 @@ pub enum AddedMassError {
         path: PathBuf,
         /// Where.
         crossing: Crosses,
+    },
+    /// A hull cut off at the water's surface of its format, which nobody says is submerged.
+    #[error(
+        "{}: the mesh is closed by {} in the plane z = 0, which is the water's surface in a {format} file: this is a floating hull, and floating \
+         bodies are not computed here. If the body is submerged, state where the surface is: --surface \"5 m\" puts it 5 m above the origin of the mesh",
+        .path.display(),
+        counted(*panels, "panel", "panels")
+    )]
+    Lid {
+        /// The mesh.
+        path: PathBuf,
+        /// Panels in the plane.
+        panels: usize,
+        /// The format.
+        format: Format,
     },
     /// A body above the water's surface.
     #[error(

@@ -4,17 +4,19 @@ use std::path::Path;
 
 use froude_mesh::check::{Trouble, check, extent};
 use froude_mesh::crossing::crossings;
-use froude_mesh::files;
+use froude_mesh::files::{self, Format, MeshFile};
 use froude_mesh::panel::Facet;
 use froude_mesh::parts::part_troubles;
 use froude_mesh::plausible::too_large;
 use froude_mesh::refine::without_warp;
+use froude_mesh::repair::{WELD, merged};
 use froude_mesh::vector::{norm, sub};
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::family::Family;
 use froude_records::body::{Shape, read_body};
 use froude_records::finding::{Finding, Severity};
 
+use super::frame::Direction;
 use super::options::{Asked, unit_of};
 use super::shape::family;
 use crate::error::AddedMassError;
@@ -48,17 +50,32 @@ pub fn is_body_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
 
-/// Reads a mesh as it is, in metres.
+/// Reads a mesh as it is, its coordinates in metres.
 ///
 /// # Errors
 ///
 /// A file that cannot be read.
-pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<(Mesh, Vec<String>), AddedMassError> {
+pub(super) fn read_unmerged(path: &Path, unit_m: Option<f64>) -> Result<MeshFile, AddedMassError> {
     let bytes = froude_records::read::whole(path, LARGEST_FILE, "a mesh")?;
-    let file = files::read(&path.display().to_string(), &bytes)?;
+    let mut file = files::read(&path.display().to_string(), &bytes)?;
     let unit_m = unit_m.unwrap_or(1.0);
-    let mesh = if unit_m == 1.0 { file.mesh } else { file.mesh.mapped(|v| v.map(|x| unit_m * x)) };
-    Ok((mesh, file.notes))
+    if unit_m != 1.0 {
+        file.mesh = file.mesh.mapped(|v| v.map(|x| unit_m * x));
+    }
+    Ok(file)
+}
+
+/// Reads a mesh, in metres, and merges vertices at one place ([`merged`]); the notes state what was left out and merged.
+///
+/// # Errors
+///
+/// A file that cannot be read.
+pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<MeshFile, AddedMassError> {
+    let mut file = read_unmerged(path, unit_m)?;
+    let (mesh, notes) = merged(file.mesh);
+    file.mesh = mesh;
+    file.notes.extend(notes);
+    Ok(file)
 }
 
 /// Refuses for a body file what only a mesh needs.
@@ -106,7 +123,7 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
     if !job.links.is_empty() {
         return Err(AddedMassError::NoLinks { path: job.input.clone() });
     }
-    let (mesh, mut notes) = read_mesh(&job.input, job.unit_m)?;
+    let MeshFile { mesh, mut notes, format } = read_mesh(&job.input, job.unit_m)?;
     let mut findings = Vec::new();
     let mut wrong = Vec::new();
     let mut troubles = check(&mesh);
@@ -153,6 +170,16 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
     if let Some(doubt) = too_large(&mesh).filter(|_| job.unit_m.is_none()) {
         return Err(AddedMassError::TooLarge { path: job.input.clone(), doubt });
     }
+    if let Some((panels, up)) = lid(&mesh, job).filter(|_| job.surface_m.is_none()) {
+        if matches!(format, Format::Gdf | Format::Nemoh) {
+            return Err(AddedMassError::Lid { path: job.input.clone(), panels, format });
+        }
+        let message = format!(
+            "{panels} panels lie in the plane {up} = 0 and nothing lies above it: if that plane is the water's surface, the hull floats and these \
+             values do not apply; if the body is submerged, --surface states how deep"
+        );
+        findings.push(Finding::new(Severity::Warning, "lid-at-zero", message));
+    }
     findings.extend(thin_panels(&mesh));
     let flat = without_warp(&mesh, WARP);
     if flat.panels.len() > mesh.panels.len() {
@@ -164,6 +191,19 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
     let name = file_name(&job.input);
     let family = Family::Mesh(flat);
     Ok(Loaded { name, family, shape: None, density_kg_m3: None, centre_of_gravity_m: None, notes, findings })
+}
+
+/// Panels that close a mesh from above in the plane where its vertical coordinate is 0, and that coordinate.
+///
+/// Wave programs have the water's surface there: a floating hull with such panels is a lid over its waterplane (IRR = 1 in WAMIT).
+fn lid(mesh: &Mesh, job: &Asked) -> Option<(usize, Direction)> {
+    let up = job.orientation.unwrap_or_default().up();
+    let slack_m = WELD * extent(mesh);
+    if mesh.vertices.iter().any(|v| up.coordinate(*v) > slack_m) {
+        return None;
+    }
+    let panels = mesh.panels.iter().filter(|p| mesh.corners(**p).all(|c| up.coordinate(c) >= -slack_m)).count();
+    (panels > 0).then_some((panels, up))
 }
 
 /// Area over the square of the longest edge, and longest edge over the extent, from which a panel is long and thin.

@@ -5,12 +5,12 @@ use std::path::Path;
 
 use froude_mesh::check::{check, extent};
 use froude_mesh::crossing::crossings;
-use froude_mesh::files::{write_obj, write_stl_binary};
+use froude_mesh::files::{MeshFile, write_obj, write_stl_binary};
 use froude_mesh::parts::part_troubles;
-use froude_mesh::repair::repaired;
+use froude_mesh::repair::{WELD, repaired};
 use froude_records::write::Prepared;
 
-use super::load::{is_body_file, read_mesh};
+use super::load::{is_body_file, read_unmerged};
 use crate::error::AddedMassError;
 
 /// What was done.
@@ -25,9 +25,6 @@ pub struct Repaired {
     /// Panels of the new mesh.
     pub panels: usize,
 }
-
-/// Vertices closer than this part of the extent are one, unless another length is given.
-const WELD: f64 = 1e-6;
 
 /// Reads, repairs, writes: `.obj`, which keeps quadrilaterals, or binary `.stl`.
 ///
@@ -53,7 +50,7 @@ pub fn repair(
     if target.symlink_metadata().is_ok() {
         return Err(AddedMassError::RepairExists { path: target.to_owned() });
     }
-    let (mesh, notes) = read_mesh(input, unit_m)?;
+    let MeshFile { mesh, notes, .. } = read_unmerged(input, unit_m)?;
     let (mesh, repairs) = repaired(&mesh, weld_m.unwrap_or_else(|| WELD * extent(&mesh)));
     let mut left: Vec<String> = check(&mesh).iter().map(ToString::to_string).collect();
     left.extend(part_troubles(&mesh).iter().chain(&crossings(&mesh)).map(ToString::to_string));

@@ -8,6 +8,7 @@ use crate::foam_case::{self, FoamCaseError, write_dictionary};
 use crate::foam_mesh::FoamMesh;
 use crate::foam_system::{self, Pace};
 use crate::history::{self, HistoryError};
+use crate::input;
 use crate::openfoam::{End, OpenFoam, OpenFoamError};
 use crate::solver_log::SolverLog;
 use crate::warm;
@@ -138,7 +139,7 @@ impl<'a> Attempt<'a> {
     /// What the solver said so far.
     pub fn log(&self) -> Result<SolverLog, SolveError> {
         let log = self.folder.join(SOLVER_LOG);
-        let text = std::fs::read(&log).map_err(|e| FoamCaseError::at(&log, e))?;
+        let text = input::bytes(&log).map_err(|e| FoamCaseError::at(&log, e))?;
         Ok(SolverLog::of(&String::from_utf8_lossy(&text)))
     }
 
@@ -166,7 +167,7 @@ impl<'a> Attempt<'a> {
             return Ok(());
         }
         let log = self.folder.join(PARTS_LOG);
-        let text = std::fs::read_to_string(&log).unwrap_or_default();
+        let text = input::text(&log).unwrap_or_default();
         let last = || text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing").to_owned();
         Err(SolveError::Part { program, end, log, said: SolverLog::of(&text).fatal.unwrap_or_else(last) })
     }

@@ -31,6 +31,8 @@ pub struct Shaped {
     pub sections: Option<SectionBody>,
     /// Its surface in body axes.
     pub surface: Mesh,
+    /// What was left out or changed in reading the surface, a sentence each.
+    pub notes: Vec<String>,
     /// Lengths, and the point that moments are about: the origin of a body of sections.
     pub reference: Reference,
 }
@@ -41,7 +43,7 @@ impl Shaped {
     pub fn of_surface(configuration: &str, surface: Mesh) -> Self {
         let centre_m = Measure::of(&surface).centroid_m;
         let reference = reference(&surface, centre_m);
-        Self { configuration: configuration.to_owned(), sections: None, surface, reference }
+        Self { configuration: configuration.to_owned(), sections: None, surface, notes: Vec::new(), reference }
     }
 
     /// The cubes about it that a campaign asks for; `angle_rad` is that of the velocity, which a tank lies along.
@@ -151,7 +153,7 @@ pub fn shaped(file: &BodyFile, configuration: &str) -> Result<Shaped, String> {
     let reference = reference(&surface, [0.0; 3]);
     // No O-grid follows the edges of flat ends.
     let sections = Some(body).filter(|_| !matches!(file.shape, Shape::Cylinder { .. }));
-    Ok(Shaped { configuration: configuration.to_owned(), sections, surface, reference })
+    Ok(Shaped { configuration: configuration.to_owned(), sections, surface, notes: Vec::new(), reference })
 }
 
 #[cfg(test)]

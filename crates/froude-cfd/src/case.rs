@@ -7,6 +7,7 @@ use std::path::Path;
 use froude_records::hash::sha256_of_bytes;
 use serde::{Deserialize, Serialize};
 
+use crate::input;
 use crate::outcome::Loads;
 
 /// A case.
@@ -144,8 +145,8 @@ impl Case {
     /// [`CaseError`].
     pub fn read(folder: &Path) -> Result<Self, CaseError> {
         let path = folder.join(CASE_FILE);
-        let text = std::fs::read_to_string(&path)
-            .map_err(|e| CaseError { path: path.display().to_string(), problem: e.to_string() })?;
+        let text =
+            input::text(&path).map_err(|e| CaseError { path: path.display().to_string(), problem: e.to_string() })?;
         serde_json::from_str(&text).map_err(|e| CaseError { path: path.display().to_string(), problem: e.to_string() })
     }
 }

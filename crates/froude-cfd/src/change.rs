@@ -34,6 +34,7 @@ pub struct Change {
 /// [`StoreError::Plan`]: a name that is none or stands twice, or a case that starts from one that does not stand before it. [`StoreError::Held`]: the campaign is running, or a case that would be moved. [`StoreError::File`]: something cannot be written.
 pub fn plan(root: &Path, cases: &[Case]) -> Result<(Store, Change), StoreError> {
     check(cases)?;
+    only_own(root)?;
     let folder = root.join(CASES);
     std::fs::create_dir_all(&folder).map_err(|e| StoreError::file(&folder, e.to_string()))?;
     let _lock = Lock::take(root)?;
@@ -77,6 +78,28 @@ pub fn plan(root: &Path, cases: &[Case]) -> Result<(Store, Change), StoreError> 
     let text = serde_json::to_string_pretty(&Index { cases }).map_err(|e| StoreError::file(&path, e.to_string()))?;
     write_atomically(&path, (text + "\n").as_bytes())?;
     Ok((Store::open(root)?, change))
+}
+
+/// How names begin that a case's folder holds beside its file.
+const OF_A_CASE: [&str; 5] = ["lock-", "attempt-", "retired-", "result.json", ".froude-unfinished-"];
+
+/// Refuses a folder that holds what no plan wrote: another `campaign.json`, and folders among the cases that are none.
+fn only_own(root: &Path) -> Result<(), StoreError> {
+    if root.join(CAMPAIGN_FILE).symlink_metadata().is_ok() {
+        Store::open(root)?;
+    }
+    let cases = root.join(CASES);
+    for (_, path) in if cases.is_dir() { folders(&cases)? } else { Vec::new() } {
+        // One that a plan was killed in has no case.json yet.
+        let is_own = |name: &str| OF_A_CASE.iter().any(|own| name.starts_with(own));
+        let mut entries = std::fs::read_dir(&path).into_iter().flatten().flatten();
+        if !path.join(CASE_FILE).exists() && entries.any(|e| !is_own(&e.file_name().to_string_lossy())) {
+            let problem =
+                "was not written by Froude: it holds no case.json; move it away, or name another folder in `cases`";
+            return Err(StoreError::file(&path, problem));
+        }
+    }
+    Ok(())
 }
 
 fn check(cases: &[Case]) -> Result<(), StoreError> {

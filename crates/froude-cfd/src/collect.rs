@@ -41,7 +41,7 @@ pub fn collect(store: &Store) -> Collection {
 
 fn collected(store: &Store, id: &str) -> Result<Collected, String> {
     let case = store.case(id).map_err(|e| e.to_string())?;
-    let outcome = match store.verified(id) {
+    let outcome = match store.state(id) {
         State::Done(attempted) => attempted.outcome,
         State::Edited(why) => return Err(why),
         State::Running(holder) => return Err(format!("it is running: {holder}")),

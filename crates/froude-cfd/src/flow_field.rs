@@ -6,6 +6,7 @@ use froude_mesh::vector::Vec3;
 
 use crate::foam_binary::of_cells;
 use crate::foam_case::{FoamCaseError, times};
+use crate::input;
 use crate::poly_mesh::PolyMesh;
 
 /// The fields that a case ended with.
@@ -44,7 +45,7 @@ impl FlowField {
 
 fn values<const W: usize>(path: &Path, cells: usize) -> Result<Vec<[f64; W]>, FoamCaseError> {
     let refuse = |problem: String| FoamCaseError::at(path, problem);
-    let content = std::fs::read(path).map_err(|e| refuse(e.to_string()))?;
+    let content = input::bytes(path).map_err(|e| refuse(e.to_string()))?;
     let values = of_cells(&content, cells).map_err(refuse)?;
     match values.iter().position(|value: &[f64; W]| !value.iter().all(|x| x.is_finite())) {
         None => Ok(values),

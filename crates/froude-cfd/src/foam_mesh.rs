@@ -3,6 +3,8 @@
 use std::io::Read as _;
 use std::path::Path;
 
+use crate::input;
+
 /// A mesh's folder as a case sees it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FoamMesh {
@@ -57,12 +59,14 @@ impl FoamMesh {
     /// [`FoamMeshError`]: a file is missing, is none of a mesh's, or a patch has a type that cases have no conditions for.
     pub fn read(folder: &Path) -> Result<Self, FoamMeshError> {
         let boundary = folder.join("boundary");
-        let text = std::fs::read_to_string(&boundary).map_err(|e| refuse(&boundary, e.to_string()))?;
+        let text = input::text(&boundary).map_err(|e| refuse(&boundary, e.to_string()))?;
         let patches = patches_of(&text).map_err(|problem| refuse(&boundary, problem))?;
         let owner = folder.join("owner");
         let mut head = Vec::new();
-        std::fs::File::open(&owner)
-            .and_then(|file| file.take(4096).read_to_end(&mut head))
+        froude_records::read::open(&owner)
+            .map_err(|e| refuse(&owner, e.to_string()))?
+            .take(4096)
+            .read_to_end(&mut head)
             .map_err(|e| refuse(&owner, e.to_string()))?;
         let cells = cells_of(&String::from_utf8_lossy(&head))
             .ok_or_else(|| refuse(&owner, "its head has no note that says nCells".to_owned()))?;

@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::input;
 use crate::outcome::Loads;
 
 /// Loads of one iteration or step on the whole body, body axes, N and N m.
@@ -104,7 +105,7 @@ struct Row {
 /// A file's rows; none where it is not there yet.
 fn table(path: &Path) -> Result<Vec<Row>, HistoryError> {
     let refuse = |line, problem| HistoryError { path: path.display().to_string(), line, problem };
-    let text = match std::fs::read(path) {
+    let text = match input::bytes(path) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
         bytes => bytes.map_err(|e| refuse(None, e.to_string()))?,
     };

@@ -82,6 +82,7 @@ pub mod foam_solver;
 pub mod foam_system;
 pub mod grid_error;
 pub mod history;
+mod input;
 pub mod judge;
 pub mod layers;
 pub mod lock;

@@ -16,6 +16,7 @@ use std::time::{Duration, SystemTime};
 use froude_records::write::Prepared;
 use serde::{Deserialize, Serialize};
 
+use crate::input;
 use crate::process::Process;
 use crate::store_error::StoreError;
 
@@ -190,7 +191,7 @@ enum Seen {
 
 fn look(folder: &Path, number: u64) -> Seen {
     let path = file(folder, number);
-    let text = match std::fs::read(&path) {
+    let text = match input::bytes(&path) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Seen::Gone,
         text => text.unwrap_or_default(),
     };

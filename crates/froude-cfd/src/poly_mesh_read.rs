@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::foam_mesh::{FoamMesh, FoamMeshError, refuse, without_comments};
+use crate::input;
 use crate::poly_mesh::{Patch, PatchKind, PolyMesh};
 
 impl PolyMesh {
@@ -15,7 +16,7 @@ impl PolyMesh {
         let found = FoamMesh::read(folder)?;
         let read = |name: &str| {
             let path = folder.join(name);
-            let text = std::fs::read_to_string(&path).map_err(|e| refuse(&path, e.to_string()))?;
+            let text = input::text(&path).map_err(|e| refuse(&path, e.to_string()))?;
             Ok::<_, FoamMeshError>((path, text))
         };
         let (path, text) = read("points")?;

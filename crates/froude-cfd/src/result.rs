@@ -12,6 +12,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
 use crate::case::Case;
+use crate::evidence;
+use crate::input;
 use crate::outcome::Outcome;
 use crate::store_error::StoreError;
 
@@ -97,7 +99,7 @@ pub fn accept(case_folder: &Path, attempt: u32) -> Result<bool, StoreError> {
         Ok(()) => Ok(true),
         Err(e) if e.kind() == ErrorKind::AlreadyExists => Ok(false),
         Err(e) if matches!(e.kind(), ErrorKind::Unsupported | ErrorKind::PermissionDenied) => {
-            let text = std::fs::read(&its).map_err(|e| StoreError::file(&its, e.to_string()))?;
+            let text = input::bytes(&its).map_err(|e| StoreError::file(&its, e.to_string()))?;
             let taken = Prepared::new(&place, |out| out.write_all(&text))?.take_free_place();
             if taken.is_err() && place.exists() { Ok(false) } else { Ok(taken.map(|()| true)?) }
         }
@@ -121,9 +123,13 @@ pub fn retire(case_folder: &Path) -> Result<(), StoreError> {
 ///
 /// # Errors
 ///
-/// [`StoreError::Edited`]: it is not what was written, or belongs to other inputs.
+/// [`StoreError::Edited`]: it is not what was written, or a file that it stands on is not, or it belongs to other inputs.
 pub fn accepted(case_folder: &Path, case: &Case) -> Result<Option<Attempted>, StoreError> {
-    read(&case_folder.join(RESULT_FILE), case)
+    let found = read(&case_folder.join(RESULT_FILE), case)?;
+    if let Some(attempted) = &found {
+        evidence::verify(&attempt_folder(case_folder, attempted.attempt), &attempted.files)?;
+    }
+    Ok(found)
 }
 
 /// The newest attempt with a whole result that could be accepted: one that was killed before it was.
@@ -189,7 +195,7 @@ fn seal(attempted: &Attempted) -> Result<String, String> {
 const NEXT: &str = "froude cfd retry with its name computes the case again";
 
 fn read(path: &Path, case: &Case) -> Result<Option<Attempted>, StoreError> {
-    let text = match std::fs::read_to_string(path) {
+    let text = match input::text(path) {
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
         Err(e) => return Err(StoreError::file(path, format!("{e}; {NEXT}"))),
         Ok(text) => text,
@@ -206,6 +212,9 @@ fn read(path: &Path, case: &Case) -> Result<Option<Attempted>, StoreError> {
             attempted.case
         );
         return Err(StoreError::file(path, problem));
+    }
+    if attempted.outcome.status.is_usable() && attempted.outcome.loads.is_none() {
+        return Err(StoreError::file(path, format!("it has no loads; {NEXT}")));
     }
     Ok(Some(attempted))
 }

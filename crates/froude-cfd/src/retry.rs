@@ -16,7 +16,7 @@ pub fn retry(store: &Store, named: &[String]) -> Result<Vec<String>, StoreError>
     let _lock = Lock::take(store.root())?;
     for id in named {
         store.case(id)?;
-        let problem = match store.verified(id) {
+        let problem = match store.state(id) {
             State::Done(a) if a.outcome.status.is_usable() => "its result counts",
             State::Planned | State::Interrupted | State::Running(_) => {
                 "it has no result yet; froude cfd run computes it"

@@ -5,7 +5,6 @@
 //! **Frame.** The box lies along the axes that the body's turn about z by `turn_rad` brings its own to. The mesh is in body axes.
 //! **Once.** What was made of the same surface with the same numbers stands in `meshes/snappy-HASH.json` and is not made again; while it is made, and where it fails, the folder `meshes/snappy-HASH` has the programs' logs.
 
-use std::fs::read_to_string;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -15,6 +14,7 @@ use froude_records::RecordError;
 use froude_records::hash::sha256_of_bytes;
 use froude_records::write::write_atomically;
 
+use crate::input;
 use crate::mesh_error::{MeshError, check_counts, check_length};
 use crate::openfoam::{End, OpenFoam};
 use crate::poly_mesh_files::keep;
@@ -60,7 +60,7 @@ impl Snappy {
     /// The mesh, where it was made before.
     #[must_use]
     pub fn known(&self, surface: &Mesh, meshes: &Path) -> Option<Made> {
-        let text = read_to_string(meshes.join(format!("{}.json", self.name(surface).ok()?))).ok()?;
+        let text = input::text(&meshes.join(format!("{}.json", self.name(surface).ok()?))).ok()?;
         let made: Made = serde_json::from_str(&text).ok()?;
         meshes.join(&made.mesh).is_dir().then_some(made)
     }
@@ -91,7 +91,7 @@ impl Snappy {
             let log = format!("log.{program}");
             let end = openfoam.run(program, arguments, 1, &folder, &log, cancel, &mut || {})?;
             let path = folder.join(&log);
-            let text = read_to_string(&path).unwrap_or_default();
+            let text = input::text(&path).unwrap_or_default();
             if end == End::Whole && text.contains(sign) {
                 return Ok(text);
             }
@@ -152,7 +152,7 @@ impl Snappy {
         for name in FILES {
             let path = folder.join("constant/polyMesh").join(name);
             let text =
-                read_to_string(&path).map_err(|e| RecordError::Read { path: path.clone(), reason: e.to_string() })?;
+                input::text(&path).map_err(|e| RecordError::Read { path: path.clone(), reason: e.to_string() })?;
             files.push((name, if name == "points" && self.turn_rad != 0.0 { back.of_points(&text) } else { text }));
         }
         Ok(files)

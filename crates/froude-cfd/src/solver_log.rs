@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::history::{HistoryError, starts};
+use crate::input;
 
 /// Of a solver's log.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -111,7 +112,7 @@ fn texts(case: &Path, object: &str, file: &str) -> Result<Vec<String>, HistoryEr
     let mut texts = Vec::new();
     for folder in starts(&case.join("postProcessing").join(object))? {
         let path = folder.join(file);
-        match std::fs::read(&path) {
+        match input::bytes(&path) {
             Ok(bytes) => texts.push(String::from_utf8_lossy(&bytes).into_owned()),
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {}
             Err(e) => {

@@ -15,10 +15,11 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use froude_records::output::stays;
 use serde::{Deserialize, Serialize};
 
 use crate::case::{CASE_FILE, Case};
-use crate::evidence;
+use crate::input;
 use crate::lock::{Holder, Lock};
 use crate::outcome::Status;
 use crate::result::{self, Attempted};
@@ -38,6 +39,7 @@ pub struct Store {
 
 /// What a campaign's file holds.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct Index {
     /// Its cases, each behind the one that it starts from.
     pub cases: Vec<Planned>,
@@ -93,9 +95,10 @@ impl Store {
     pub fn open(root: &Path) -> Result<Self, StoreError> {
         let path = root.join(CAMPAIGN_FILE);
         let wrong = |problem: String| {
-            StoreError::file(&path, format!("{problem}: the file of a CFD campaign is written by froude cfd plan"))
+            let next = "the file of a CFD campaign is written by froude cfd plan; move this one away, or name another folder in `cases`";
+            StoreError::file(&path, format!("{problem}: {next}"))
         };
-        let text = std::fs::read_to_string(&path).map_err(|e| match e.kind() {
+        let text = input::text(&path).map_err(|e| match e.kind() {
             std::io::ErrorKind::NotFound => {
                 StoreError::file(&path, "is not there: nothing is planned yet; froude cfd plan plans it".to_owned())
             }
@@ -171,21 +174,6 @@ impl Store {
         }
     }
 
-    /// The same, with the files that a result stands on compared with their checksums: all of them are read.
-    #[must_use]
-    pub fn verified(&self, id: &str) -> State {
-        match self.state(id) {
-            State::Done(attempted) => {
-                let attempt = result::attempt_folder(&self.case_folder(id), attempted.attempt);
-                match evidence::verify(&attempt, &attempted.files) {
-                    Ok(()) => State::Done(attempted),
-                    Err(error) => State::Edited(error.to_string()),
-                }
-            }
-            other => other,
-        }
-    }
-
     /// States of all cases by name.
     #[must_use]
     pub fn states(&self) -> BTreeMap<String, State> {
@@ -229,4 +217,22 @@ impl Store {
 pub(crate) fn is_name(id: &str) -> bool {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.+".contains(c);
     !id.is_empty() && id.len() <= 200 && id.chars().all(is_plain) && !id.starts_with(['.', '-'])
+}
+
+/// Checks that nothing below a campaign's folder leads out of it by a link.
+///
+/// # Errors
+///
+/// [`StoreError::File`]: the link.
+pub fn check_links(root: &Path) -> Result<(), StoreError> {
+    for folder in [root.to_owned(), root.join(CASES)] {
+        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+            if entry.file_type().is_ok_and(|kind| kind.is_symlink()) && !stays(root, &entry.path()) {
+                let problem =
+                    "is a link that leads out of the campaign's folder, which alone is written into; remove it";
+                return Err(StoreError::file(&entry.path(), problem));
+            }
+        }
+    }
+    Ok(())
 }

@@ -9,6 +9,7 @@ use crate::foam_binary::{List, MARK, find, numbers_of, split};
 use crate::foam_case::{FoamCaseError, times};
 use crate::foam_fields::fields;
 use crate::foam_mesh::FoamMesh;
+use crate::input;
 
 /// Writes the fields of `folder/0` from the last time of the case in `from`, each number scaled by the power of the ratio of speeds that its field has.
 ///
@@ -50,7 +51,7 @@ fn inflow_m_s(velocity: &[u8]) -> Option<f64> {
 }
 
 fn get(path: &Path) -> Result<Vec<u8>, FoamCaseError> {
-    std::fs::read(path).map_err(|e| FoamCaseError::at(path, e))
+    input::bytes(path).map_err(|e| FoamCaseError::at(path, e))
 }
 
 fn put(path: &Path, content: &[u8]) -> Result<(), FoamCaseError> {

@@ -14,6 +14,7 @@ use crate::args::{CfdCampaign, CfdJob, EngineName};
 use crate::failure::Failure;
 use crate::out::{self, Spinner, note, say};
 use crate::print;
+use crate::signals::{self, STOPPED};
 
 pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
     match job {
@@ -126,8 +127,9 @@ fn processors(jobs: Option<usize>) -> usize {
 /// Set by Ctrl-C and its like; a second one ends the program.
 fn cancel() -> Result<Arc<AtomicBool>, Failure> {
     let cancel = Arc::new(AtomicBool::new(false));
+    signals::take_over();
     for signal in [SIGINT, SIGTERM, SIGHUP] {
-        flag::register_conditional_default(signal, Arc::clone(&cancel)).map_err(Failure::Program)?;
+        flag::register_conditional_shutdown(signal, STOPPED.into(), Arc::clone(&cancel)).map_err(Failure::Program)?;
         flag::register(signal, Arc::clone(&cancel)).map_err(Failure::Program)?;
     }
     Ok(cancel)
@@ -162,6 +164,7 @@ fn cases(folders: &[PathBuf], ranks: usize) -> Result<(), Failure> {
     for folder in folders {
         match run_case(folder, ranks, &cancel) {
             Ok(line) => say!("{}: {line}", name(folder)),
+            Err(error) if error.was_stopped() => return Err(error.into()),
             // Another case may do better.
             Err(error) => {
                 note!("{}: {error}", name(folder));

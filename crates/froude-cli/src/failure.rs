@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use froude::records::units::UnitError;
 
+use crate::signals::STOPPED;
+
 /// Why the program ends without its result.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
@@ -158,8 +160,9 @@ impl Failure {
     /// 2 where the input is at fault, 1 where the machine is, and 130 of what was stopped as asked, as a shell has it after Ctrl-C.
     pub fn exit_code(&self) -> u8 {
         match self {
+            Self::Froude(error) if error.was_stopped() => STOPPED,
             Self::Froude(error) => 1 + u8::from(error.is_bad_input()),
-            Self::Cancelled { .. } => 130,
+            Self::Cancelled { .. } => STOPPED,
             Self::RunsFailed { .. } => 1,
             _ => 2,
         }

@@ -1,6 +1,6 @@
 //! The program `froude`: parse, call, print.
 //!
-//! Exit code 0: done, whatever the findings say. 1: failed. 2: bad input. With `--json` the result goes to
+//! Exit code 0: done, whatever the findings say. 1: failed. 2: bad input. 130: stopped by Ctrl-C. With `--json` the result goes to
 //! standard output as one JSON document; progress and messages go to standard error.
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
@@ -16,6 +16,7 @@ mod mistaken;
 mod out;
 mod print;
 mod side_by_side;
+mod signals;
 mod stage;
 mod swim;
 
@@ -30,12 +31,16 @@ use froude::swim::look::look;
 use froude::{demo, inspect, plan, predict, twin};
 
 fn main() -> ExitCode {
+    // Where signals cannot be watched they end the program as they always do.
+    let _ = signals::watch();
     last_word::guarded(|| {
         let cli = match Cli::try_parse() {
             Ok(cli) => cli,
             Err(error) => return out::usage(&error),
         };
-        match run(cli) {
+        let done = run(cli);
+        signals::wait_if_leaving();
+        match done {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => {
                 out::note!("froude: {error}");

@@ -217,7 +217,7 @@ const MOST_BYTES: u64 = 1 << 20;
 fn kind_of_toml(path: &Path) -> Option<Kind> {
     use std::io::Read as _;
     let mut bytes = Vec::new();
-    std::fs::File::open(path).ok()?.take(MOST_BYTES).read_to_end(&mut bytes).ok()?;
+    froude::records::read::open(path).ok()?.take(MOST_BYTES).read_to_end(&mut bytes).ok()?;
     let text = String::from_utf8_lossy(&bytes);
     let lines = || text.lines().map(str::trim);
     let has_section = |name: &str| {

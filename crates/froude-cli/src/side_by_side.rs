@@ -146,17 +146,20 @@ fn coefficient_pair(rows: &[&CoefficientComparison]) {
 /// A column of predicted loads or of E_n: its head, and a cell for each place.
 type Column = (String, Vec<String>);
 
-/// Predicted forces: a column per estimate, in blocks that fit beside each other.
+/// Predicted loads: a column per estimate, in blocks that fit beside each other.
 fn forces(c: &Comparison) {
-    say!("\nPredicted force over the common range");
     let has_links = c.loads.iter().any(|r| r.n_links.is_some());
+    // Forces and moments in one table: each row says its unit.
+    let is_one_unit = c.loads.iter().all(|r| r.unit == c.loads[0].unit);
+    say!("\nPredicted {} over the common range", if is_one_unit { "force" } else { "forces and moments" });
     let mut place = vec!["load".to_owned()];
     if has_links {
         place.push("links".to_owned());
     }
     place.extend(["speed [m/s]".to_owned(), "angle [deg]".to_owned()]);
     let at = |r: &LoadComparison| {
-        let mut row = vec![cell(&r.component)];
+        let mut row =
+            vec![if is_one_unit { cell(&r.component) } else { cell(format!("{} [{}]", r.component, r.unit)) }];
         if has_links {
             row.push(right(r.n_links.map_or_else(String::new, |k| format!("{k}"))));
         }
@@ -169,10 +172,11 @@ fn forces(c: &Comparison) {
     let rows_of = |id: &str| c.loads.iter().filter(|r| r.second.source == id).collect::<Vec<_>>();
     // Every other estimate has a row for each place, in one order.
     let places = rows_of(others[0]);
-    let mut columns = vec![vec![loads(first, places.iter().map(|r| &r.first))]];
+    let unit = if is_one_unit { format!(" [{}]", c.loads[0].unit) } else { String::new() };
+    let mut columns = vec![vec![loads(first, &unit, places.iter().map(|r| &r.first))]];
     for id in others {
         let rows = rows_of(id);
-        let mut own = vec![loads(id, rows.iter().map(|r| &r.second))];
+        let mut own = vec![loads(id, &unit, rows.iter().map(|r| &r.second))];
         if rows.iter().any(|r| r.e_n.is_some()) {
             own.push(("E_n".to_owned(), rows.iter().map(|r| normalised(r.e_n)).collect()));
         }
@@ -228,11 +232,11 @@ fn blocks(columns: &[Vec<Column>], room: usize) -> Vec<Vec<&Column>> {
     out
 }
 
-/// Head and cells of an estimate's forces.
-fn loads<'a>(id: &str, sides: impl Iterator<Item = &'a Side>) -> Column {
+/// Head and cells of an estimate's loads; `unit` is that of all rows, or empty.
+fn loads<'a>(id: &str, unit: &str, sides: impl Iterator<Item = &'a Side>) -> Column {
     let sides: Vec<&Side> = sides.collect();
     let is_stated = sides.iter().any(|side| side.standard_uncertainty.is_some());
-    let head = if is_stated { format!("{id} ± U [N]") } else { format!("{id} [N]") };
+    let head = if is_stated { format!("{id} ± U{unit}") } else { format!("{id}{unit}") };
     let cells = sides.iter().map(|side| match side.value {
         Some(force) if side.standard_uncertainty.is_none() => number::fixed(force, 4),
         _ => value_and_uncertainty(side),

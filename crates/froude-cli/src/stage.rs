@@ -4,8 +4,6 @@
 //! terminal takes it: who drives and records never waits for standard error, and a line that nobody reads is no failure.
 
 use std::io::{IsTerminal, Write};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -21,6 +19,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 
 use crate::failure::Failure;
+use crate::signals;
 
 /// Words that may wait for a slow terminal; more are dropped.
 const WORDS: usize = 256;
@@ -56,20 +55,18 @@ impl Stage {
         // Nobody who stops reading ends a drive half way.
         crate::out::go_on_unread();
         let switch = StopSwitch::default();
-        let is_over = Arc::new(AtomicBool::new(false));
         let watch = || {
             for signal in [SIGINT, SIGTERM, SIGHUP] {
-                // In this order: once the drive is over a signal ends the program, as it would without us.
-                flag::register_conditional_default(signal, Arc::clone(&is_over))?;
                 flag::register(signal, switch.stop_flag())?;
             }
             flag::register(SIGINT, switch.press_flag())
         };
         watch().map_err(Failure::Unwatched)?;
+        signals::take_over();
         let (words, heard) = sync_channel(WORDS);
         let terminal = Terminal::new(runs, switch.clone());
         let thread = std::thread::spawn(move || terminal.write(&heard));
-        let bar = Bar { words: words.clone(), thread: Some(thread), is_over, is_seen: std::io::stderr().is_terminal() };
+        let bar = Bar { words: words.clone(), thread: Some(thread), is_seen: std::io::stderr().is_terminal() };
         let person = Person { is_yes: yes, is_twin: prepared.is_twin(), has_asked: false, words };
         Ok(Self { switch, person, bar })
     }
@@ -216,15 +213,14 @@ impl Operator for Person {
 pub struct Bar {
     words: SyncSender<Word>,
     thread: Option<JoinHandle<()>>,
-    /// From then on a signal ends the program.
-    is_over: Arc<AtomicBool>,
     is_seen: bool,
 }
 
 impl Bar {
     /// The drive is over; waits until all is written.
     pub fn end(&mut self) {
-        self.is_over.store(true, Ordering::SeqCst);
+        // From now on a signal ends the program.
+        signals::give_back();
         let _ = self.words.send(Word::End);
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();

@@ -37,7 +37,7 @@ pub fn swim(args: SwimArgs, json: bool) -> Result<(), Failure> {
         bar.finish_and_clear();
         job.uncertain = Some(found?);
     }
-    let (answer, section, written) = match swim_anywhere(&job, &pitching)? {
+    let (answer, mut section, warnings, written) = match swim_anywhere(&job, &pitching)? {
         Answer::Plane(swum) => {
             let written = swum.written.iter();
             let written = written.flat_map(|w| {
@@ -48,18 +48,33 @@ pub fn swim(args: SwimArgs, json: bool) -> Result<(), Failure> {
                     ("record", &w.record),
                 ]
             });
-            (swum.as_json(), swum.section(), written.map(|(what, path)| (what, path.clone())).collect::<Vec<_>>())
+            (
+                swum.as_json(),
+                swum.section(),
+                swum.warnings(),
+                written.map(|(what, path)| (what, path.clone())).collect::<Vec<_>>(),
+            )
         }
         Answer::Space(swum) => {
             let written = swum.written.iter();
             let written =
                 written.flat_map(|w| [("report", &w.report), ("trajectory", &w.trajectory), ("record", &w.record)]);
-            (swum.as_json(), swum.section(), written.map(|(what, path)| (what, path.clone())).collect())
+            (
+                swum.as_json(),
+                swum.section(),
+                swum.warnings(),
+                written.map(|(what, path)| (what, path.clone())).collect(),
+            )
         }
     };
     if json {
         return print::json(&answer);
     }
+    // Before the figures, where nobody passes over them.
+    for warning in &warnings {
+        say!("\n{warning}");
+    }
+    section.paragraphs.retain(|sentence| !warnings.contains(sentence));
     print::summary(&section);
     for section in job.uncertain.iter().flat_map(Uncertain::sections) {
         print::summary(&section);

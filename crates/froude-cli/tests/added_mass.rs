@@ -1025,6 +1025,118 @@ fn cube(side_m: f64) -> Mesh {
     Mesh { vertices, panels: quads.map(|[a, b, c, d]| Panel::quad(a, b, c, d)).to_vec() }
 }
 
+/// Corners that files write once for each panel, and with other rounding each time, as programs do.
+#[test]
+fn corners_at_one_place_are_one_vertex_in_every_format() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let whole = ellipsoid([3.0, 1.5, 1.0], 4, 3);
+    write(at, "whole.obj", &whole);
+    // Up to 1e-8 m, a six-hundred-millionth of the length: far below a millionth, far above the rounding of a file.
+    let corners: Vec<Vec<Vec3>> = whole.panels.iter().map(|p| whole.corners(*p).collect()).collect();
+    let shaken = |k: usize, v: Vec3| core::array::from_fn(|i| v[i] + 1e-8 * ((7 * k + 3 * i) % 11) as f64 / 10.0);
+    let shaken = |k: usize| corners[k].iter().map(move |v| shaken(k, *v));
+    let all = || (0..corners.len()).flat_map(shaken);
+    let (mut ascii, mut obj, mut faces) = (String::from("solid egg\n"), String::new(), String::new());
+    let (mut gdf, mut nemoh, mut panels) =
+        (format!("egg\n1 9.81\n0 0\n{}\n", corners.len()), String::from("2 0\n"), String::new());
+    let mut msh = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", all().count());
+    let mut next = 1;
+    for k in 0..corners.len() {
+        let own: Vec<Vec3> = shaken(k).collect();
+        for triangle in [[0, 1, 2], [0, 2, 3]].iter().take(own.len() - 2) {
+            ascii += "facet normal 0 0 0\nouter loop\n";
+            for c in triangle {
+                ascii += &format!("vertex {} {} {}\n", own[*c][0], own[*c][1], own[*c][2]);
+            }
+            ascii += "endloop\nendfacet\n";
+        }
+        let four: Vec<usize> = (0..4).map(|c| c.min(own.len() - 1)).collect();
+        for c in &four {
+            gdf += &format!("{} {} {}\n", own[*c][0], own[*c][1], own[*c][2]);
+        }
+        panels += &four.iter().map(|c| (next + c).to_string()).collect::<Vec<_>>().join(" ");
+        panels += "\n";
+        faces += &format!("f {}\n", (0..own.len()).map(|c| (next + c).to_string()).collect::<Vec<_>>().join(" "));
+        next += own.len();
+    }
+    for (k, [x, y, z]) in (1..).zip(all()) {
+        obj += &format!("v {x} {y} {z}\n");
+        nemoh += &format!("{k} {x} {y} {z}\n");
+        msh += &format!("{k} {x} {y} {z}\n");
+    }
+    nemoh += &format!("0 0. 0. 0.\n{panels}0 0 0 0\n");
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\nelement face {}\nproperty list \
+         uchar int vertex_indices\nend_header\n{}{}",
+        next - 1,
+        corners.len(),
+        obj.replace("v ", ""),
+        faces.lines().map(|f| format!("{} {}\n", f.split(' ').count() - 1, zero_based(&f[2..]))).collect::<String>()
+    );
+    msh += &format!("$EndNodes\n$Elements\n{}\n", corners.len());
+    for (k, face) in (1..).zip(faces.lines()) {
+        let kind = if face.split(' ').count() == 4 { 2 } else { 3 };
+        msh += &format!("{k} {kind} 2 0 1 {}\n", &face[2..]);
+    }
+    msh += "$EndElements\n";
+    let files = [
+        ("egg.stl", ascii + "endsolid egg\n"),
+        ("egg.obj", obj.clone() + &faces),
+        ("egg.ply", ply),
+        ("egg.gdf", gdf),
+        ("egg.dat", nemoh),
+        ("egg.msh", msh),
+    ];
+    let options = ["--polyhedron", "--density", "1000 kg/m^3", "--tolerance", "20 %"];
+    let exact = matrix(&record(at, &[&["whole.obj"], &options[..]].concat()), 0);
+    for (name, content) in files {
+        std::fs::write(at.join(name), content).unwrap();
+        let text = lines(at, &[&[name], &options[..]].concat());
+        assert!(text.contains(" merged (closer than 0.000006 m), first at "), "{name}: {text}");
+        let a = matrix(&record(at, &[&[name], &options[..]].concat()), 0);
+        for i in 0..6 {
+            let part = a[i][i] / exact[i][i];
+            assert!((part - 1.0).abs() < SHAKEN, "{name}, A{0}{0}: {1} of {2}", i + 1, a[i][i], exact[i][i]);
+        }
+    }
+}
+
+/// Quadrilaterals that 1e-8 m warp are divided into triangles only above a millionth of their radius; an STL has triangles, and converges from another side.
+const SHAKEN: f64 = 0.01;
+
+/// Numbers that count from 1, counted from 0.
+fn zero_based(numbers: &str) -> String {
+    let each = numbers.split(' ').map(|n| (n.parse::<usize>().unwrap() - 1).to_string());
+    each.collect::<Vec<_>>().join(" ")
+}
+
+/// A box of 4 × 2 × 1 m below z = 0, closed by a lid in that plane.
+#[test]
+fn a_hull_closed_by_a_lid_at_the_surface_is_not_deeply_submerged() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let boxed = cube(1.0).mapped(|[x, y, z]| [4.0 * x - 2.0, 2.0 * y - 1.0, z - 1.0]);
+    let mut gdf = format!("barge\n1 9.80665\n0 0\n{}\n", boxed.panels.len());
+    for v in boxed.panels.iter().flat_map(|p| boxed.corners(*p)) {
+        gdf += &format!("{} {} {}\n", v[0], v[1], v[2]);
+    }
+    refuses(
+        &[("barge.gdf", gdf.as_bytes())],
+        &[&["barge.gdf"], &WATER[..]].concat(),
+        "barge.gdf: the mesh is closed by 1 panel in the plane z = 0, which is the water's surface in a WAMIT GDF file: this is a floating hull, and floating \
+         bodies are not computed here. If the body is submerged, state where the surface is: --surface \"5 m\" puts it 5 m above the origin of the mesh",
+    );
+    // Other formats do not define where the surface is.
+    write(at, "barge.obj", &boxed);
+    let text = lines(at, &[&["barge.obj", "--tolerance", "20 %", "--out", "a"], &WATER[..]].concat());
+    assert!(text.contains("lid-at-zero"), "{text}");
+    std::fs::write(at.join("barge.gdf"), gdf).unwrap();
+    let text =
+        lines(at, &[&["barge.gdf", "--surface", "5 m", "--tolerance", "20 %", "--out", "b"], &WATER[..]].concat());
+    assert!(text.contains("Zero-frequency limit") && !text.contains("lid-at-zero"), "{text}");
+}
+
 #[test]
 fn a_mesh_that_is_no_body_is_reported_panel_by_panel() {
     let changed = |change: fn(&mut Mesh)| {

@@ -172,7 +172,7 @@ fn lists_of_a_plan_multiply_to_a_million_observations_and_ten_thousand_runs() {
     };
     // 10 speeds, 25,000 angles, 4 repeats; one angle more.
     reads("c.toml", campaign("24.999"), &["inspect", "c.toml"]);
-    let told = "froude: c.toml:9:1: `repeats` and the lists beside it multiply to 1000040; at most 1000000 are made";
+    let told = "froude: c.toml:9:1: `configurations` (1) × `speed` (10) × `angle` (25001) × `pitch` (1) × `repeats` (4) is 1000040; at most 1000000 are made";
     refuses("c.toml", campaign("25"), &["inspect", "c.toml"], told);
 
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/towing-carriage/campaign.toml");
@@ -180,7 +180,7 @@ fn lists_of_a_plan_multiply_to_a_million_observations_and_ten_thousand_runs() {
     let many = example.replace("repeats = 5  ", "repeats = 1667  ");
     let (code, _, told) = froude(written("c.toml", many).path(), &["run", "c.toml", "--check"]);
     assert_eq!(code, Some(2));
-    assert!(told.ends_with("and the lists beside it multiply to 10002; at most 10000 are made"), "{told}");
+    assert!(told.ends_with("`speeds` (6) × `repeats` (1667) is 10002; at most 10000 are made"), "{told}");
     let long = example.replace(r#"still = "5 s""#, r#"still = "86401 s""#);
     let (code, _, told) = froude(written("c.toml", long).path(), &["run", "c.toml", "--check"]);
     assert_eq!(code, Some(2));

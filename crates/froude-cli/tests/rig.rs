@@ -234,7 +234,7 @@ fn a_person_may_take_their_time_and_ctrl_c_at_the_prompt_ends_it_without_enter()
     driven.until("the third run", |said| said.contains("3/") && board.watched().phases[0] == Phase::Moving);
     driven.signal(Signal::INT);
     let (status, said) = driven.end();
-    assert_eq!(status.code(), Some(1), "{said}");
+    assert_eq!(status.code(), Some(130), "{said}");
     assert!(said.contains("stopped by the operator in 003-"), "{said}");
 
     // Resumed: what is mounted, then the ways; a late answer, and no answer but Ctrl-C.
@@ -247,7 +247,7 @@ fn a_person_may_take_their_time_and_ctrl_c_at_the_prompt_ends_it_without_enter()
     driven.signal(Signal::INT);
     let (status, said) = driven.end();
     assert!(asked.elapsed() < Duration::from_secs(5), "{:?}", asked.elapsed());
-    assert_eq!(status.code(), Some(1), "{said}");
+    assert_eq!(status.code(), Some(130), "{said}");
     assert!(said.contains("stopped by the operator, who was asked: Homing moves both axes now"), "{said}");
 }
 
@@ -266,7 +266,7 @@ fn to_terminate_and_to_hang_up_however_often_stop_under_control() {
         std::thread::sleep(Duration::from_millis(50));
         driven.signal(signal);
         let (status, said) = driven.end();
-        assert_eq!(status.code(), Some(1), "{said}");
+        assert_eq!(status.code(), Some(130), "{said}");
         assert_eq!(end_of_record(&runs), (RunStatus::Interrupted, 1.0), "{said}");
         assert!(board.watched().speed_m_s[0].abs() < 0.05, "{:?}", board.watched());
     }
@@ -304,7 +304,7 @@ fn ctrl_c_stops_the_carriage_when_nobody_reads_what_is_said_and_again_cuts_the_t
         }
         // Braking from 0.55 m/s takes half a second: the second press comes into it.
         let status = ended(&mut child);
-        assert_eq!(status.code(), Some(1), "{presses} presses: {status:?}");
+        assert_eq!(status.code(), Some(130), "{presses} presses: {status:?}");
         let last = if presses == 1 { 1.0 } else { 0.0 };
         assert_eq!(end_of_record(&runs), (RunStatus::Interrupted, last), "{presses} presses");
     }
@@ -537,7 +537,8 @@ fn a_long_drive_with_prompts_signals_and_a_second_host_on_the_line_stays_in_its_
         let is_by_another = last.contains("another program on the line (session 00000bad)");
         stopped_by_another += usize::from(is_by_another);
         let is_explained = is_by_another || last.contains("stopped by the operator");
-        assert!(status.code() == Some(1) && is_explained, "{status} after {:?}: {said}", session.elapsed());
+        let code = if is_by_another { 1 } else { 130 };
+        assert!(status.code() == Some(code) && is_explained, "{status} after {:?}: {said}", session.elapsed());
         let logs = std::fs::read_dir(&runs)
             .unwrap()
             .filter(|e| e.as_ref().unwrap().path().extension().is_some_and(|e| e == "mcap"))

@@ -219,3 +219,30 @@ fn what_three_dimensions_do_not_have_is_refused_and_what_is_odd_is_said() {
     let heavy = swum(&changed(folder.path(), &[("\"1.310244e-3 m^3\"", "\"1.29e-3 m^3\"")]), &[]);
     assert!(number(&heavy, "sinking_m_s") > 0.0 && heavy["remarks"].to_string().contains("not neutral"), "{heavy}");
 }
+
+/// A body that nothing rights, with volumes rounded in digits that were and were not given: within them it is neutral and swims as in the plane, at 0.189 m/s. It rose at 3e-7 m/s over the ground, nose up, for 1e-7 of its weight.
+#[test]
+fn a_robot_that_is_neutral_within_its_digits_swims_as_in_the_plane() {
+    let folder = tempfile::tempdir().unwrap();
+    let plane = number(&swum(&changed(folder.path(), &[PITCH, LOW, ("\"3d\"", "\"planar\"")]), &[]), "speed_m_s");
+    for volume in ["1.310244e-3", "1.31024e-3", "1.3102e-3", "1.310e-3", "1.31e-3"] {
+        let rounded = ("\"1.310244e-3 m^3\"", format!("\"{volume} m^3\""));
+        let changes = [PITCH, LOW, (rounded.0, rounded.1.as_str())];
+        let found = swum(&changed(folder.path(), &changes), &[]);
+        let speed = number(&found, "speed_m_s");
+        assert!((speed / plane - 1.0).abs() < 1e-6 && (plane - 0.189).abs() < 5e-4, "{volume}: {speed} {plane}");
+        assert!(number(&found, "sinking_m_s").abs() < 1e-9, "{found}");
+        assert!(found["remarks"].to_string().contains("neutral within the digits given"), "{found}");
+    }
+    // One per cent is no rounding, however few the digits.
+    let found = swum(&changed(folder.path(), &[("\"1.310244e-3 m^3\"", "\"1.3e-3 m^3\"")]), &[]);
+    assert!(found["remarks"].to_string().contains("not neutral") && number(&found, "sinking_m_s") > 0.0, "{found}");
+    // The equilibrium is stated before the figures.
+    let robot = changed(folder.path(), &[PITCH, LOW]);
+    let output = froude(&[&["swim", text(&robot)], &GAIT[..]].concat());
+    let told = String::from_utf8(output.stdout).unwrap();
+    let (warned, figures) = (told.find("no stable equilibrium").unwrap(), told.find("speed, level").unwrap());
+    assert!(warned < figures && told.matches("no stable equilibrium").count() == 1, "{told}");
+    let output = froude(&["robot", "inspect", text(&robot), "--json"]);
+    assert!(String::from_utf8(output.stdout).unwrap().contains("no stable equilibrium"));
+}

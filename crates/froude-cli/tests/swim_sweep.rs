@@ -67,11 +67,11 @@ fn rows_are_the_gaits_alone_and_say_why_there_is_none() {
     let statuses: Value = serde_json::json!({"periodic": 2, "limit": 2, "still": 2});
     assert_eq!(found["statuses"], statuses, "{found}");
     assert!(found["remarks"].to_string().contains("2 of 6 gaits ask for more than the joints allow"), "{found}");
-    // Whatever the order of the work: nothing is left beside the table.
+    // Whatever the order of the work: nothing is left beside the results and their list.
     let mut left: Vec<String> =
         std::fs::read_dir(out.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     left.sort();
-    assert_eq!(left, ["report.html", "result.json", "sweep.parquet"]);
+    assert_eq!(left, ["froude-files.json", "report.html", "result.json", "sweep.parquet"]);
     // Two axes are maps with the best gait marked and gaits without an answer hatched; one axis is lines.
     let page = || std::fs::read_to_string(out.path().join("report.html")).unwrap();
     for part in ["Map of speed [m/s]", "Map of cost of transport [J/m]", "fastest", "Hatched: gaits without an answer"]

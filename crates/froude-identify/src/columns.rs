@@ -18,7 +18,8 @@ use froude_records::units::Dimension;
 use indexmap::IndexSet;
 
 use crate::dataset::{Dataset, LOADS};
-use crate::law::{ForceLaw, Kind, aliased};
+use crate::formula::aliased;
+use crate::law::{ForceLaw, Kind};
 use crate::lint::repeats::REPEATS_WITHIN;
 use crate::validation::{STD_ITERATIVE, STD_NUMERICAL};
 
@@ -104,7 +105,27 @@ pub fn unused(data: &Dataset, campaign: &Campaign, source: &Source, laws: &[Forc
         ));
     }
     findings.extend(left_out(data));
+    findings.extend(letters(data, campaign, source, laws));
     findings
+}
+
+/// Names that the campaign uses and that are columns of the table as well as letters of other columns.
+fn letters(data: &Dataset, campaign: &Campaign, source: &Source, laws: &[ForceLaw]) -> Vec<Finding> {
+    let used = laws.iter().flat_map(ForceLaw::channels);
+    let kept = source.keep.iter().flat_map(|keep| &keep.clauses).map(|clause| clause.column.as_str());
+    let blocks = campaign.identify.cross_validation.iter().map(|block| block.column.as_str());
+    let budget = source.uncertainty.iter().map(|entry| entry.quantity.as_str());
+    let names: IndexSet<&str> = used.chain(kept).chain(blocks).chain(budget).collect();
+    let own = names.into_iter().filter(|name| data.channels.contains_key(*name) && aliased(name) != *name);
+    own.map(|name| {
+        let column = aliased(name);
+        let text = format!(
+            "{name} is read as the table's column `{}`, not as the alias of {column}; write {column} if you mean that, or rename the column",
+            data.header(name)
+        );
+        Finding::new(Severity::Note, "column-like-alias", text)
+    })
+    .collect()
 }
 
 /// Columns that the sidecar passes over.
@@ -180,7 +201,7 @@ fn is_used(name: &str, data: &Dataset, campaign: &Campaign, source: &Source, law
     {
         return is_in(load, laws);
     }
-    let is_asked_for = |asked: &str| aliased(asked) == name;
+    let is_asked_for = |asked: &str| data.meant(asked) == name;
     let kept = source.keep.iter().flat_map(|keep| &keep.clauses);
     is_in(name, laws)
         || kept.filter(|clause| matches!(clause.value, KeepValue::Quantity(_))).any(|c| is_asked_for(&c.column))
@@ -194,7 +215,7 @@ pub(crate) fn is_in(name: &str, laws: &[ForceLaw]) -> bool {
         law.responses.iter().any(|r| r == name)
             || match &law.kind {
                 Kind::Drag { .. } => matches!(name, "v_x" | "v_y"),
-                Kind::Formulas(formulas) => formulas.iter().flat_map(|f| &f.channels).any(|c| aliased(c) == name),
+                Kind::Formulas(formulas) => formulas.iter().flat_map(|f| &f.channels).any(|c| c == name),
                 Kind::PowerLaw { channel, .. } => channel == name,
             }
     })

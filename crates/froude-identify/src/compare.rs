@@ -32,6 +32,7 @@ use coefficients::coefficient_rows;
 use contradiction::{axes_not_tied, contradiction, differing_constants};
 use froude_records::comparison::Comparison;
 use froude_records::finding::{Finding, Severity};
+pub use independence::observations;
 use independence::{has_likes, have_other_tables, is_one_source, origins, same_data, same_data_finding};
 use joint::joint;
 use prediction::predict_forces;

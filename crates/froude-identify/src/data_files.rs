@@ -8,6 +8,9 @@ use indexmap::IndexMap;
 
 use crate::result::ReadFile;
 
+/// Role of a file that was not read: observations behind a record that numbers were taken from.
+pub const INHERITED: &str = "inherited";
+
 /// Files in the order of their first naming.
 pub struct DataFiles<'a> {
     /// How a path is written.
@@ -58,6 +61,21 @@ impl<'a> DataFiles<'a> {
             }
         }
         Ok(out)
+    }
+
+    /// A file by its key.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&DataFile> {
+        let at: usize = key.strip_prefix('d')?.parse().ok()?;
+        self.files.get(at.checked_sub(1)?).map(|(_, file)| file)
+    }
+
+    /// Lists a file behind a record that numbers were taken from, as that record names it; once.
+    pub fn inherit(&mut self, file: &DataFile) {
+        if self.files.iter().all(|(_, known)| known.sha256 != file.sha256) {
+            let file = DataFile { role: Some(INHERITED.to_owned()), steps: Vec::new(), ..file.clone() };
+            self.files.push((PathBuf::new(), file));
+        }
     }
 
     /// All of them by key.

@@ -7,6 +7,8 @@
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
+use crate::formula::aliased;
+
 /// One channel: a number per row, SI, with its dimension.
 #[derive(Debug, Clone)]
 pub struct Channel {
@@ -114,6 +116,12 @@ impl Dataset {
     #[must_use]
     pub fn dimension(&self, name: &str) -> Option<Dimension> {
         self.channels.get(name).map(|c| c.dimension)
+    }
+
+    /// The channel that a name means: the table's own column of that name, else the one that `u v w p q r` or `X Y Z K M N` stands for.
+    #[must_use]
+    pub fn meant<'a>(&self, name: &'a str) -> &'a str {
+        if self.channels.contains_key(name) { name } else { aliased(name) }
     }
 
     /// The loads that the table measures.

@@ -10,7 +10,7 @@ use froude_hydro::{Axis, DragModel, Setting};
 use froude_records::campaign::{BudgetEntry, Shared};
 
 use crate::dataset::Dataset;
-use crate::law::{ForceLaw, Kind, REFERENCE_SPEED_M_S, aliased};
+use crate::law::{ForceLaw, Kind, REFERENCE_SPEED_M_S};
 
 /// The velocity as a table of tows states it, which the drag models are fitted in.
 const POLAR: [&str; 2] = ["speed", "angle"];
@@ -20,8 +20,8 @@ const DIFFERENCE_STEP: f64 = 6e-6;
 
 /// Whether an entry of the budget is an error that the regression in variables of this law takes care of.
 #[must_use]
-pub fn is_input_error(entry: &BudgetEntry, law: &ForceLaw) -> bool {
-    let quantity = aliased(&entry.quantity);
+pub fn is_input_error(entry: &BudgetEntry, law: &ForceLaw, data: &Dataset) -> bool {
+    let quantity = data.meant(&entry.quantity);
     let is_read = || !matches!(law.kind, Kind::Drag { .. }) && law.channels().contains(&quantity);
     entry.shared == Shared::Sample && (POLAR.contains(&quantity) || is_read())
 }
@@ -51,20 +51,20 @@ impl Inputs {
     /// JCGM 100:2008 (GUM), 5.1.2.
     #[must_use]
     pub fn of_budget(law: &ForceLaw, data: &Dataset, budget: &[BudgetEntry]) -> Option<Self> {
-        let entries: Vec<&BudgetEntry> = budget.iter().filter(|entry| is_input_error(entry, law)).collect();
+        let entries: Vec<&BudgetEntry> = budget.iter().filter(|entry| is_input_error(entry, law, data)).collect();
         // Of a table of tows both, though one may be exact.
-        let is_polar = |entry: &&&BudgetEntry| POLAR.contains(&aliased(&entry.quantity));
+        let is_polar = |entry: &&&BudgetEntry| POLAR.contains(&data.meant(&entry.quantity));
         let mut names: Vec<String> =
             entries.iter().find(is_polar).map_or_else(Vec::new, |_| POLAR.map(str::to_owned).to_vec());
         for entry in &entries {
-            let name = aliased(&entry.quantity);
+            let name = data.meant(&entry.quantity);
             if !names.iter().any(|other| other == name) {
                 names.push(name.to_owned());
             }
         }
         let mut standard = Mat::zeros(data.rows, names.len());
         for entry in &entries {
-            let name = aliased(&entry.quantity);
+            let name = data.meant(&entry.quantity);
             let Some(k) = names.iter().position(|other| other == name) else { continue };
             for i in 0..data.rows {
                 let value = data.values(name).map_or(0.0, |v| v[i]);

@@ -127,6 +127,22 @@ pub enum IdentifyError {
         model: String,
     },
 
+    /// A channel of the data that is another quantity than the input of that name in a record.
+    #[error(
+        "estimate {id}: its law reads {channel} in {recorded}, and the data have {channel} in {found}: another quantity under the same name; \
+         rename it in the data, or map it with a sidecar"
+    )]
+    InputUnit {
+        /// Id of the estimate.
+        id: String,
+        /// The channel.
+        channel: String,
+        /// SI unit in the record.
+        recorded: String,
+        /// SI unit in the data.
+        found: String,
+    },
+
     /// A coefficient that a prediction needs and its record has no value of.
     #[error(
         "estimate {id}: {coefficient} has no value, as its data do not determine it; forces follow from a law whose coefficients all have one"

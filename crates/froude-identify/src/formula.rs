@@ -5,9 +5,11 @@
 //! program that computes its regressor and the unit of that program. So reading a law
 //! proves that it is linear in its coefficients, and finds the unit of each of them.
 //!
-//! **Names.** A constant given by name, `pi`, a channel of the table, an alias
+//! **Names.** A constant given by name, `pi`, a column of the table, else an alias
 //! (`u v w p q r` for `v_x v_y v_z w_x w_y w_z`); every other name is a coefficient,
 //! unless it is the name of a load or of a column that the table could have had.
+//! A column of the table that is called like an alias or like the letter of a load
+//! (`X Y Z K M N`) comes before it.
 //! **Grammar.** `+ - * / ^`, parentheses, `abs sqrt sin cos tan exp ln sign`.
 //! `-v^2` is `-(v^2)`, `a/b*c` is `(a/b)*c`; `a^b^c` is refused as ambiguous.
 //! **Units.** SI dimensions; a coefficient has the load's unit over its regressor's.
@@ -34,7 +36,7 @@ use unit::Unit;
 pub use crate::formula::limits::{COEFFICIENT_LIMIT, DEPTH_LIMIT, LENGTH_LIMIT};
 pub use crate::formula::unit::Dim;
 pub use error::FormulaError;
-pub use names::{channel_of_alias, load_column};
+pub use names::{aliased, channel_of_alias, load_column};
 
 /// A law for one load, linear in its coefficients.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,7 +9,7 @@ use faer::Mat;
 use froude_hydro::power_law::PowerLaw;
 use froude_hydro::{Axis, Body, CrossTerm, DragModel, Link, Setting};
 use froude_records::estimate::{Estimate, Measured};
-use froude_records::units::Dimension;
+use froude_records::units::{Dimension, parse_unit};
 use indexmap::IndexMap;
 
 use crate::dataset::Dataset;
@@ -19,6 +19,9 @@ use crate::formula::{Formula, channel_of_alias, load_column};
 
 /// Reference speed of the linear coefficients of f1 and of the power law, m/s.
 pub const REFERENCE_SPEED_M_S: f64 = 1.0;
+
+/// Relative difference of two reference speeds that the conversion of a unit explains: some units in the last place.
+const SAME_SPEED: f64 = 1e-12;
 
 /// A coefficient as the record names it.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,16 +97,26 @@ impl ForceLaw {
     ///
     /// What is wrong with a formula, with the model's name and the load.
     pub fn formulas(name: &str, texts: &IndexMap<String, String>, data: &Dataset) -> Result<Self, IdentifyError> {
+        Self::reading(name, texts, data, &|name| data.dimension(name))
+    }
+
+    /// The same over the channels that `channel` knows.
+    fn reading(
+        name: &str,
+        texts: &IndexMap<String, String>,
+        data: &Dataset,
+        channel: &dyn Fn(&str) -> Option<Dimension>,
+    ) -> Result<Self, IdentifyError> {
         let mut formulas = Vec::new();
         let mut coefficients: IndexMap<String, Dimension> = IndexMap::new();
         for (response, text) in texts {
-            let target = aliased(response);
+            let target = response_of(data, response);
             let wanted = data.dimension(target).ok_or_else(|| IdentifyError::NoSuchChannel {
                 model: name.to_owned(),
                 channel: target.to_owned(),
                 known: data.channels.keys().cloned().collect(),
             })?;
-            let channel = |n: &str| data.dimension(n).map(exponents);
+            let channel = |n: &str| channel(n).map(exponents);
             let formula = Formula::parse(target, text, &channel, exponents(wanted), &[]).map_err(|source| {
                 IdentifyError::Formula { model: name.to_owned(), response: response.clone(), source: Box::new(source) }
             })?;
@@ -125,7 +138,7 @@ impl ForceLaw {
         Ok(Self {
             name: name.to_owned(),
             kind: Kind::Formulas(formulas),
-            responses: texts.keys().map(|r| aliased(r).to_owned()).collect(),
+            responses: texts.keys().map(|r| response_of(data, r).to_owned()).collect(),
             coefficients: coefficients
                 .iter()
                 .map(|(name, d)| CoefficientSpec { name: name.clone(), unit: d.to_string() })
@@ -157,8 +170,36 @@ impl ForceLaw {
     ///
     /// # Errors
     ///
-    /// A built-in drag model without its geometry, or an unknown model.
+    /// A built-in drag model without its geometry, an unknown model, a coefficient in a unit that does not fit the law, or a reference speed other
+    /// than 1 m/s.
     pub fn of_estimate(estimate: &Estimate, data: &Dataset) -> Result<Self, IdentifyError> {
+        let law = Self::named_by(estimate, data)?;
+        let wrong = |what: String| IdentifyError::Campaign { place: format!("estimate {}", estimate.id), what };
+        for spec in &law.coefficients {
+            let Some(c) = estimate.coefficients.get(&spec.name) else { continue };
+            let [own, stated] = [&spec.unit, &c.unit].map(|unit| parse_unit(unit).ok().map(|unit| unit.dimension));
+            if own.is_some() && own != stated {
+                return Err(wrong(format!(
+                    "coefficient {} is in {}, and its law needs it in {}: correct the unit in the record",
+                    spec.name, c.unit, spec.unit
+                )));
+            }
+        }
+        for key in ["v_ref", "U_ref"] {
+            if let Some(m) = estimate.law.constants.get(key)
+                && (m.value / REFERENCE_SPEED_M_S - 1.0).abs() > SAME_SPEED
+            {
+                return Err(wrong(format!(
+                    "its {key} is {} m/s; laws are evaluated with {REFERENCE_SPEED_M_S} m/s: state the coefficients for this speed",
+                    m.value
+                )));
+            }
+        }
+        Ok(law)
+    }
+
+    /// The law by its name or its formulas.
+    fn named_by(estimate: &Estimate, data: &Dataset) -> Result<Self, IdentifyError> {
         if let Some(model) = DragModel::from_name(&estimate.law.name) {
             let body = body_of(estimate)?;
             let cross_term = match estimate.law.constants.get("epsilon") {
@@ -169,7 +210,7 @@ impl ForceLaw {
         }
         let formulas = estimate.law.formulas();
         if !formulas.is_empty() {
-            return Self::formulas(&estimate.law.name, &formulas, data);
+            return Self::as_recorded(estimate, &formulas, data);
         }
         if estimate.law.name.starts_with("power_law")
             && let Some(axis) = estimate.coefficients.keys().find_map(|n| n.strip_prefix("n_"))
@@ -182,6 +223,34 @@ impl ForceLaw {
             return Ok(Self { name: estimate.law.name.clone(), ..Self::power_law(&response, &channel, in_logarithms) });
         }
         Err(IdentifyError::NoForceLaw { id: estimate.id.clone(), model: estimate.law.name.clone() })
+    }
+
+    /// A record's formulas over the channels that it names as its inputs; a letter that it does not name is read as in a campaign.
+    fn as_recorded(
+        estimate: &Estimate,
+        texts: &IndexMap<String, String>,
+        data: &Dataset,
+    ) -> Result<Self, IdentifyError> {
+        let inputs = &estimate.law.inputs;
+        let stated = |name: &str| inputs.get(name).and_then(|unit| parse_unit(unit).ok()).map(|unit| unit.dimension);
+        for name in inputs.keys() {
+            if let (Some(recorded), Some(found)) = (stated(name), data.dimension(name))
+                && recorded != found
+            {
+                return Err(IdentifyError::InputUnit {
+                    id: estimate.id.clone(),
+                    channel: name.clone(),
+                    recorded: recorded.to_string(),
+                    found: found.to_string(),
+                });
+            }
+        }
+        // The letter of an input that the record names by its column is that column, whatever else the table holds.
+        let is_other = |name: &str| {
+            !inputs.contains_key(name) && channel_of_alias(name).is_some_and(|column| inputs.contains_key(column))
+        };
+        let channel = |name: &str| stated(name).or_else(|| data.dimension(name).filter(|_| !is_other(name)));
+        Self::reading(&estimate.law.name, texts, data, &channel)
     }
 
     /// Derivatives of every response by every coefficient: rows stacked response by response,
@@ -221,11 +290,8 @@ impl ForceLaw {
             }
             Kind::Formulas(formulas) => {
                 for (r, formula) in formulas.iter().enumerate() {
-                    let columns = formula
-                        .channels
-                        .iter()
-                        .map(|c| self.channel(data, aliased(c)))
-                        .collect::<Result<Vec<_>, _>>()?;
+                    let columns =
+                        formula.channels.iter().map(|c| self.channel(data, c)).collect::<Result<Vec<_>, _>>()?;
                     let place: Vec<usize> =
                         formula.coefficients.iter().filter_map(|(name, _)| self.position(name)).collect();
                     let mut values = vec![0.0; columns.len()];
@@ -275,7 +341,7 @@ impl ForceLaw {
         let all: Vec<&str> = match &self.kind {
             Kind::Drag { .. } => vec!["v_x", "v_y", "n_links", "density"],
             Kind::PowerLaw { channel, .. } => vec![channel],
-            Kind::Formulas(formulas) => formulas.iter().flat_map(|f| &f.channels).map(|c| aliased(c)).collect(),
+            Kind::Formulas(formulas) => formulas.iter().flat_map(|f| &f.channels).map(String::as_str).collect(),
         };
         for channel in all {
             if !out.contains(&channel) {
@@ -301,7 +367,7 @@ impl ForceLaw {
         match &self.kind {
             Kind::Drag { .. } => is_meant("v_x"),
             Kind::PowerLaw { channel, .. } => is_meant(channel),
-            Kind::Formulas(formulas) => formulas[response].channels.iter().any(|c| is_meant(aliased(c))),
+            Kind::Formulas(formulas) => formulas[response].channels.iter().any(|c| is_meant(c)),
         }
     }
 
@@ -354,12 +420,6 @@ impl ForceLaw {
     }
 }
 
-/// The channel name behind the ship theorist's letters: `u v w p q r` and `X Y Z K M N`.
-#[must_use]
-pub fn aliased(name: &str) -> &str {
-    channel_of_alias(name).or_else(|| load_column(name)).unwrap_or(name)
-}
-
 /// A dimension as the formula room writes it: exponents of m, kg, s, K and A.
 fn exponents(d: Dimension) -> Dim {
     [d.m, d.kg, d.s, d.k, d.a]
@@ -400,4 +460,9 @@ pub fn geometry_of(body: &Body) -> IndexMap<String, Measured> {
         ("head_side_area".to_owned(), m(body.head_side_area_m2, "m^2")),
         ("tail_side_area".to_owned(), m(body.tail_side_area_m2, "m^2")),
     ])
+}
+
+/// The channel that a law gives: on the left of a formula `X Y Z K M N` are loads, also beside a column of the table with that name.
+fn response_of<'a>(data: &Dataset, name: &'a str) -> &'a str {
+    load_column(name).unwrap_or_else(|| data.meant(name))
 }

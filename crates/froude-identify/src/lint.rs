@@ -4,7 +4,7 @@
 //! Every limit is a constant with its reason.
 
 pub(crate) mod motion;
-pub(crate) mod repeats;
+pub mod repeats;
 mod volumes;
 
 use froude_records::campaign::Campaign;

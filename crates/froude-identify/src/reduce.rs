@@ -431,8 +431,9 @@ fn kept(keep: &Keep, data: &Dataset, source: &Source) -> Result<Vec<usize>, Iden
         };
         match &clause.value {
             KeepValue::Quantity(limit) => {
-                let values = data.values(crate::law::aliased(&clause.column)).ok_or_else(unknown)?;
-                let dimension = data.dimension(crate::law::aliased(&clause.column));
+                let column = data.meant(&clause.column);
+                let values = data.values(column).ok_or_else(unknown)?;
+                let dimension = data.dimension(column);
                 if dimension != Some(limit.unit.dimension) {
                     return Err(IdentifyError::Campaign {
                         place: source.place.to_string(),

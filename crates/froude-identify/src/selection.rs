@@ -280,7 +280,7 @@ pub fn range_block(model: &ModelFit, data: &Dataset, block: &RangeBlock) -> Opti
     if model.law.is_nonlinear() {
         return None;
     }
-    let values = data.values(crate::law::aliased(&block.column))?;
+    let values = data.values(data.meant(&block.column))?;
     let inside = |i: usize| values[i] >= block.low - 1e-12 && values[i] <= block.high + 1e-12;
     let n = data.rows;
     let train: Vec<bool> = (0..model.problem.response.len()).map(|row| inside(row % n)).collect();

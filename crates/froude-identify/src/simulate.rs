@@ -162,7 +162,7 @@ pub fn observations(campaign: &Campaign, source: &Source, stream: u64) -> Result
     let setups = labels(&data.setup);
     let n_setups = distinct(&data.setup).len();
     for sensor in &simulate.sensors {
-        let quantity = crate::law::aliased(&sensor.quantity);
+        let quantity = data.meant(&sensor.quantity);
         let Some(channel) = data.channels.get_mut(quantity) else {
             return Err(IdentifyError::Campaign {
                 place: "[[simulate.sensor]]".to_owned(),

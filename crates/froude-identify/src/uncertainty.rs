@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 use crate::dataset::{Dataset, labels};
 use crate::error::IdentifyError;
-use crate::law::{ForceLaw, aliased};
+use crate::law::ForceLaw;
 
 /// The scatter itself as an input of the budget: no error that rows share.
 pub const SCATTER: &str = "scatter of the observations";
@@ -211,7 +211,7 @@ pub fn common_key(entry: &BudgetEntry, campaign: &str) -> Option<String> {
 /// A load errs by itself. A wrong motion or density makes the fit use X(q + e) for X(q):
 /// the response is then wrong by −∂(Xβ)/∂q·e, taken by central differences.
 pub(crate) fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, IdentifyError> {
-    let quantity = aliased(&entry.quantity);
+    let quantity = fit.data.meant(&entry.quantity);
     let n = fit.data.rows;
     let values = fit.data.values(quantity).ok_or_else(|| IdentifyError::Campaign {
         place: "[[source.uncertainty]]".to_owned(),
@@ -391,7 +391,7 @@ pub fn monte_carlo(
             let mut rng = Pcg64::new(u128::from(seed), d as u128);
             let mut moved = data.clone();
             for entry in budget {
-                let quantity = aliased(&entry.quantity);
+                let quantity = data.meant(&entry.quantity);
                 let groups = groups(data, entry.shared);
                 let count = groups.iter().max().map_or(0, |m| m + 1);
                 let errors: Vec<f64> = (0..count).map(|_| StandardNormal.sample(&mut rng)).collect();

@@ -135,23 +135,56 @@ fn corner(mesh: &Mesh, panel: usize) -> Vec3 {
     mesh.vertices[mesh.panels[panel].corners()[0] as usize]
 }
 
-/// Each vertex becomes the first one near it; a grid of cells as large as the tolerance finds it.
+/// Vertices closer than this part of the extent are one where no length is given \[-\]: above the rounding of any file, far below any panel.
+pub const WELD: f64 = 1e-6;
+
+/// The mesh of a file with the vertices merged that lie within [`WELD`] of its extent, and a sentence for each change.
+///
+/// Programs write the same corner twice, once for each panel or with other rounding; unmerged, its panels would be neighbours of none.
+/// Panels that this leaves with fewer than three corners have no area and are removed. A mesh with unreadable vertices stays as it is.
+#[must_use]
+pub fn merged(mesh: Mesh) -> (Mesh, Vec<String>) {
+    if first_unreadable(&mesh).is_some() {
+        return (mesh, Vec::new());
+    }
+    let mut reported = Vec::new();
+    let mut out = welded(&mesh, WELD * extent(&mesh), &mut reported);
+    let collapsed = |panel: &Panel| {
+        let mut corners = panel.corners().to_vec();
+        corners.sort_unstable();
+        corners.dedup();
+        corners.len() < 3
+    };
+    let first = out.panels.iter().position(collapsed);
+    if let Some(first) = first {
+        let (before, at) = (out.panels.len(), corner(&out, first));
+        out.panels.retain(|panel| !collapsed(panel));
+        reported.push(Repair::NoArea { count: before - out.panels.len(), at });
+    }
+    (out, reported.iter().map(ToString::to_string).collect())
+}
+
+/// Cells of the grid over the tolerance: a vertex then rarely lies so near a side that a second cell must be searched.
+const CELLS: f64 = 16.0;
+
+/// Each vertex becomes the first one within `weld_m` of it, found by a grid of cells.
 fn welded(mesh: &Mesh, weld_m: f64, reported: &mut Vec<Repair>) -> Mesh {
     let weld_m = if weld_m.is_finite() { weld_m.max(0.0) } else { 0.0 };
     let low = |axis: usize| mesh.vertices.iter().map(|v| v[axis]).fold(f64::INFINITY, f64::min);
     let low = [low(0), low(1), low(2)];
     // Cells that are too small would not be counted by whole numbers.
-    let cell = weld_m.max(1e-12 * extent(mesh)).max(f64::MIN_POSITIVE);
-    let cell_of = |v: Vec3| [0, 1, 2].map(|i| ((v[i] - low[i]) / cell).floor() as i64);
+    let cell = (CELLS * weld_m).max(1e-12 * extent(mesh)).max(f64::MIN_POSITIVE);
+    let cells_of = |v: Vec3, offset_m: f64| [0, 1, 2].map(|i| ((v[i] + offset_m - low[i]) / cell).floor() as i64);
     let mut grid: IndexMap<[i64; 3], Vec<u32>> = IndexMap::new();
     let mut out = Mesh::default();
     let mut first = None;
     let mut numbers = Vec::with_capacity(mesh.vertices.len());
     for &vertex in &mesh.vertices {
-        let [i, j, k] = cell_of(vertex);
-        let around = (-1..=1).flat_map(|a| (-1..=1).flat_map(move |b| (-1..=1).map(move |c| [a, b, c])));
+        let (from, to) = (cells_of(vertex, -weld_m), cells_of(vertex, weld_m));
+        let around = (from[0]..=to[0])
+            .flat_map(|i| (from[1]..=to[1]).flat_map(move |j| (from[2]..=to[2]).map(move |k| [i, j, k])));
         let near = around
-            .filter_map(|[a, b, c]| grid.get(&[i.saturating_add(a), j.saturating_add(b), k.saturating_add(c)]))
+            .filter_map(|cell| grid.get(&cell))
             .flatten()
             .copied()
             .find(|kept| norm(sub(out.vertices[*kept as usize], vertex)) <= weld_m);
@@ -160,7 +193,7 @@ fn welded(mesh: &Mesh, weld_m: f64, reported: &mut Vec<Repair>) -> Mesh {
             first.get_or_insert(vertex);
         } else {
             out.vertices.push(vertex);
-            grid.entry([i, j, k]).or_default().push(number);
+            grid.entry(cells_of(vertex, 0.0)).or_default().push(number);
         }
         numbers.push(number);
     }

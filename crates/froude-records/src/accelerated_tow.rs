@@ -108,6 +108,12 @@ pub(crate) fn accelerated_plan(s: &Section<'_>) -> Result<AcceleratedPlan, Recor
     if out.acceleration_m_s2.iter().any(|a| *a <= 0.0) {
         return Err(s.wrong("acceleration", acceleration, "must be larger than zero; the sign is that of the speed"));
     }
-    at_most(s, &[out.configurations.len(), out.speed_m_s.len(), out.acceleration_m_s2.len(), out.repeats], MOST_RUNS)?;
+    let numbers = [
+        ("configurations", out.configurations.len()),
+        ("speed", out.speed_m_s.len()),
+        ("acceleration", out.acceleration_m_s2.len()),
+        ("repeats", out.repeats),
+    ];
+    at_most(s, &numbers, MOST_RUNS)?;
     Ok(out)
 }

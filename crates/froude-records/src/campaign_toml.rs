@@ -1,6 +1,7 @@
 //! The campaign's TOML, section by section. Names and defaults are the contract of the book's conventions page.
 
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use indexmap::IndexMap;
@@ -29,7 +30,7 @@ use crate::plausible;
 use crate::rotation::{rotation, rotation_plan};
 use crate::run::{ACCELERATED_TOW, EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, ROTATION, STEADY, WEIGHT_TOW};
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
-use crate::section_values::{at_most, count, one_of, series};
+use crate::section_values::{Asks, at_most, count, one_of, plan_of, product, series};
 use crate::steady::steady;
 use crate::table::known_dimension;
 use crate::units::{Dimension, Unit};
@@ -273,6 +274,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     let of_its_own = [FORCED_OSCILLATION, ROTATION, EXCITED_RESPONSE, WEIGHT_TOW, ACCELERATED_TOW];
     let planned = of_its_own.into_iter().find(|name| is_method(name)).or(is_decay.then_some(FREE_DECAY));
     let blocks_of = |name: Option<&str>| if planned == name { blocks.as_slice() } else { &[] };
+    let (of_rows, most_rows) = most_of(&input);
     Ok(Source {
         name,
         kind,
@@ -288,20 +290,48 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         tare,
         decay: s.section("decay")?.map(|s| decay(&s)).transpose()?,
         added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
-        decay_plan: blocks_of(Some(FREE_DECAY)).iter().map(decay_plan).collect::<Result<_, _>>()?,
+        decay_plan: plan_of(blocks_of(Some(FREE_DECAY)), OF_RUNS, MOST_RUNS, decay_plan, |p| {
+            let count = p.displacement.len() * p.repeats;
+            Asks { count, samples: count as f64 * (p.held_s + p.free_s) * p.rate_hz }
+        })?,
         oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
         rotation: s.section(ROTATION)?.map(|s| rotation(&s)).transpose()?,
-        rotation_plan: blocks_of(Some(ROTATION)).iter().map(rotation_plan).collect::<Result<_, _>>()?,
+        rotation_plan: plan_of(blocks_of(Some(ROTATION)), OF_RUNS, MOST_RUNS, rotation_plan, |p| {
+            let count = p.amplitude_rad.len() * p.omega_rad_s.len() * p.repeats;
+            swings(count, &p.omega_rad_s, p.periods, p.still_s, p.rate_hz)
+        })?,
         excited: s.section(EXCITED_RESPONSE)?.map(|s| excited(&s)).transpose()?,
-        excited_plan: blocks_of(Some(EXCITED_RESPONSE)).iter().map(excited_plan).collect::<Result<_, _>>()?,
+        excited_plan: plan_of(blocks_of(Some(EXCITED_RESPONSE)), OF_RUNS, MOST_RUNS, excited_plan, |p| {
+            let count = p.period_s.len() * (p.held + p.free);
+            let lasts_s = p.still_s + p.ramp_s + p.travel_s + p.lasts_s;
+            Asks { count, samples: count as f64 * lasts_s * p.rate_hz }
+        })?,
         weight_tow: s.section(WEIGHT_TOW)?.map(|s| weight_tow(&s)).transpose()?,
-        weight_plan: blocks_of(Some(WEIGHT_TOW)).iter().map(weight_plan).collect::<Result<_, _>>()?,
+        weight_plan: plan_of(blocks_of(Some(WEIGHT_TOW)), OF_RUNS, MOST_RUNS, weight_plan, |p| Asks {
+            count: p.configurations.len() * p.weight_n.len() * p.angle_rad.len() * p.repeats,
+            samples: 0.0,
+        })?,
         cfd: s.section("cfd")?.map(|s| cfd(&s)).transpose()?,
         accelerated_tow: s.section(ACCELERATED_TOW)?.map(|s| accelerated_tow(&s)).transpose()?,
-        accelerated_plan: blocks_of(Some(ACCELERATED_TOW)).iter().map(accelerated_plan).collect::<Result<_, _>>()?,
+        accelerated_plan: plan_of(blocks_of(Some(ACCELERATED_TOW)), OF_RUNS, MOST_RUNS, accelerated_plan, |p| {
+            let count = p.configurations.len() * p.speed_m_s.len() * p.acceleration_m_s2.len() * p.repeats;
+            let fastest = p.speed_m_s.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+            let slowest = p.acceleration_m_s2.iter().fold(f64::INFINITY, |least, a| a.min(least));
+            let lasts_s = p.steady_s + 2.0 * p.still_s + 2.0 * fastest / slowest;
+            Asks { count, samples: count as f64 * lasts_s * p.rate_hz }
+        })?,
         steady: s.section(STEADY)?.map(|s| steady(&s)).transpose()?,
-        plan: blocks_of(None).iter().map(|b| plan_block(b, &input)).collect::<Result<_, _>>()?,
-        oscillation_plan: blocks_of(Some(FORCED_OSCILLATION)).iter().map(oscillation_plan).collect::<Result<_, _>>()?,
+        plan: plan_of(
+            blocks_of(None),
+            of_rows,
+            most_rows,
+            |b| plan_block(b, &input),
+            |p| Asks { count: product(&numbers(p)), samples: 0.0 },
+        )?,
+        oscillation_plan: plan_of(blocks_of(Some(FORCED_OSCILLATION)), OF_RUNS, MOST_RUNS, oscillation_plan, |p| {
+            let lists = p.configurations.len() * p.amplitude_rad.len() * p.omega_rad_s.len() * p.flow_m_s.len();
+            swings(lists * p.repeats, &p.omega_rad_s, p.periods, p.still_s, p.rate_hz)
+        })?,
         place: INPUTS
             .into_iter()
             .find_map(|key| s.get(key))
@@ -411,13 +441,46 @@ fn plan_block(s: &Section<'_>, input: &Input) -> Result<PlanBlock, RecordError> 
         pitch_rad: s.get("pitch").map_or(Ok(vec![0.0]), |v| series(s, "pitch", v, Dimension::ONE))?,
         repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
     };
-    let angles = out.angle_rad.len().saturating_mul(out.pitch_rad.len());
-    at_most(s, &[out.configurations.len(), out.speed_m_s.len(), angles, out.repeats], MOST_OBSERVATIONS)?;
+    at_most(s, &numbers(&out), most_of(input).1)?;
     Ok(out)
 }
 
-/// Most observations that one block of a plan makes.
+/// What the lists of a block multiply to.
+fn numbers(block: &PlanBlock) -> [(&'static str, usize); 5] {
+    [
+        ("configurations", block.configurations.len()),
+        ("speed", block.speed_m_s.len()),
+        ("angle", block.angle_rad.len()),
+        ("pitch", block.pitch_rad.len()),
+        ("repeats", block.repeats),
+    ]
+}
+
+/// Most observations that the plan of a source makes: a table of some hundred megabytes.
 const MOST_OBSERVATIONS: usize = 1_000_000;
+/// Most computed cases of a source: each is a folder with a mesh's fields, and at two minutes they are two weeks of a processor.
+const MOST_CASES: usize = 10_000;
+/// Most planned runs of a source: at two minutes a run two weeks in the tank.
+const MOST_RUNS: usize = 10_000;
+
+/// Why so many, in the message.
+const OF_RUNS: [&str; 2] = ["runs", "two weeks in the tank"];
+
+/// What the plan of a source without a form of its own makes, why no more, and how many at most.
+fn most_of(input: &Input) -> ([&'static str; 2], usize) {
+    match input {
+        Input::Cases(_) => (["cases", "two weeks of a processor"], MOST_CASES),
+        Input::Runs { .. } => (OF_RUNS, MOST_RUNS),
+        _ => (["observations", "a table of some hundred megabytes"], MOST_OBSERVATIONS),
+    }
+}
+
+/// Samples of a run of periods with still water before and behind it.
+fn swings(count: usize, omega_rad_s: &[f64], periods: f64, still_s: f64, rate_hz: f64) -> Asks {
+    // Every frequency stands in an equal part of the runs.
+    let mean_s = omega_rad_s.iter().map(|w| TAU * periods / w).sum::<f64>() / omega_rad_s.len().max(1) as f64;
+    Asks { count, samples: count as f64 * (mean_s + 2.0 * still_s) * rate_hz }
+}
 
 fn bound_kind(s: &Section<'_>, key: &str, value: &Spanned<DeValue<'_>>) -> Result<BoundKind, RecordError> {
     match value.get_ref().as_str() {

@@ -32,7 +32,7 @@ use toml::de::DeValue;
 use crate::added_mass_options::GivenOption;
 use crate::error::RecordError;
 use crate::section::Section;
-use crate::section_values::{count, one_of, series};
+use crate::section_values::{at_most, count, one_of, series};
 use crate::units::Dimension;
 
 /// Most cells in one direction.
@@ -41,6 +41,8 @@ const MOST_CELLS: u64 = 2000;
 const MOST_LAYERS: u64 = 100;
 /// Most cells of a mesh.
 const MOST_CELLS_IN_ALL: usize = 20_000_000;
+/// Most cases of one study of a configuration: it repeats some settings of a plan, not all.
+const MOST_STUDIED: usize = 1_000;
 /// Most iterations of a case.
 const MOST_ITERATIONS: u64 = 100_000;
 /// Least and most grids of a study: three have an order, and the sixth has 64 times the cells of the third.
@@ -322,14 +324,22 @@ fn study(s: &Section<'_>) -> Result<StudySpec, RecordError> {
         (None, _) if radius.is_empty() => USUAL_GRIDS,
         (None, _) => 0,
     };
-    Ok(StudySpec {
+    let out = StudySpec {
         configurations: s.texts("configurations")?,
         speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
         angle_rad: angles("angle")?,
         pitch_rad: angles("pitch")?,
         grids,
         radius,
-    })
+    };
+    let numbers = [
+        ("speed", out.speed_m_s.len()),
+        ("angle", out.angle_rad.len()),
+        ("pitch", out.pitch_rad.len()),
+        ("grids + radius", out.grids + out.radius.len()),
+    ];
+    at_most(s, &numbers, MOST_STUDIED)?;
+    Ok(out)
 }
 
 fn lies(s: &Section<'_>) -> Result<Vec<GivenOption>, RecordError> {

@@ -6,7 +6,6 @@
 //!
 //! Not as there: a line break within a quoted cell ends the chunk's row, and is refused.
 
-use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
@@ -16,6 +15,7 @@ use crate::error::{Place, RecordError, utf8};
 use crate::fast_csv::{FastCsvError, Layout, Lines, Memory, Reader};
 use crate::parquet_table;
 use crate::raw_column::Raw;
+use crate::read;
 use crate::sidecar::Sidecar;
 use crate::table::Table;
 use crate::table_file::{Format, sidecar_of};
@@ -68,7 +68,7 @@ pub fn has_more_rows(path: &Path, limit: usize) -> bool {
 
 /// Lines below the first, which names the columns; counted until there are more than `most`.
 fn n_lines(path: &Path, most: usize) -> std::io::Result<usize> {
-    let mut file = File::open(path)?;
+    let mut file = read::open(path).map_err(std::io::Error::other)?;
     let mut buffer = vec![0; CHUNK_BYTES];
     let mut lines = 0_usize;
     while lines.saturating_sub(1) <= most {

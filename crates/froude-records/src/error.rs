@@ -131,6 +131,18 @@ pub enum RecordError {
         /// What kind of file it was read as.
         what: &'static str,
     },
+    /// A file that Froude did not write, where it would write one of its own.
+    #[error(
+        "{} {}, and would be replaced; move it away, or name another folder",
+        .path.display(),
+        if *.is_changed { "was changed after Froude wrote it" } else { "was not written by Froude" }
+    )]
+    NotOurs {
+        /// The file.
+        path: PathBuf,
+        /// Froude wrote it, and somebody changed it.
+        is_changed: bool,
+    },
     /// The machine has not the memory that the file needs.
     #[error("{}: {source}; close other programs, or read a smaller file", path.display())]
     Memory {
@@ -465,6 +477,9 @@ pub(crate) fn reason(error: &std::io::Error) -> String {
         std::io::ErrorKind::NotADirectory => "its folder is not a folder".to_owned(),
         std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
         std::io::ErrorKind::ReadOnlyFilesystem => "the disk is read-only".to_owned(),
+        std::io::ErrorKind::FileTooLarge => {
+            "the file would be larger than the limit of this shell (ulimit -f) or of the disk".to_owned()
+        }
         _ => error.to_string(),
     }
 }
@@ -473,18 +488,14 @@ pub(crate) fn reason(error: &std::io::Error) -> String {
 pub(crate) fn read_bytes(path: &Path, limit: u64, what: &'static str) -> Result<Vec<u8>, RecordError> {
     use std::io::Read as _;
     let failed = |error: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&error) };
-    let file = std::fs::File::open(path).map_err(failed)?;
-    let metadata = file.metadata().map_err(failed)?;
-    if metadata.is_dir() {
-        return Err(RecordError::Read { path: path.to_owned(), reason: "it is a folder".to_owned() });
-    }
-    let bytes = metadata.len();
+    let file = crate::read::open(path)?;
+    let bytes = file.metadata().map_err(failed)?.len();
     if bytes > limit {
         return Err(RecordError::TooLarge { path: path.to_owned(), bytes, limit, what });
     }
     let mut content = Vec::new();
     reserve(&mut content, bytes as usize + 1).map_err(|e| RecordError::memory(path, e))?;
-    // A pipe or a growing file has no honest length: stop one byte past the limit.
+    // A growing file, or one of /proc, has no honest length: stop one byte past the limit.
     file.take(limit + 1).read_to_end(&mut content).map_err(failed)?;
     if content.len() as u64 > limit {
         let bytes = content.len() as u64;

@@ -15,7 +15,10 @@ use crate::comparison::Comparison;
 use crate::finding::Finding;
 use crate::run::step::Step;
 
+mod units;
 pub mod v1;
+
+pub(crate) use units::{BadUnit, to_si};
 
 /// Name and major version of the record, as it stands in `schema`.
 pub const ESTIMATE_SCHEMA: &str = "froude/estimate/2";

@@ -160,6 +160,6 @@ pub(crate) fn excited_plan(s: &Section<'_>) -> Result<ExcitedPlan, RecordError> 
             return Err(s.wrong(key, value, "is negative; a time that passes is not"));
         }
     }
-    at_most(s, &[out.period_s.len(), out.held + out.free], MOST_RUNS)?;
+    at_most(s, &[("period", out.period_s.len()), ("held + free", out.held + out.free)], MOST_RUNS)?;
     Ok(out)
 }

@@ -50,6 +50,7 @@ use std::path::{Path, PathBuf};
 use memchr::{memchr, memchr_iter, memrchr};
 use number::{fast_number, separators, slow_number, without_blanks};
 
+use crate::error::RecordError;
 pub use crate::fast_csv::error::FastCsvError;
 
 /// Bytes read at a time: raw text and columns stay in the second-level cache.
@@ -257,10 +258,12 @@ pub(crate) struct Reader {
 impl Reader {
     /// Opens a file that is to be read `chunk_bytes` at a time.
     pub(crate) fn open(path: &Path, chunk_bytes: usize) -> Result<Self, FastCsvError> {
-        let read = |error: std::io::Error| FastCsvError::Read { path: path.to_owned(), reason: error.to_string() };
         Ok(Self {
             path: path.to_owned(),
-            file: File::open(path).map_err(read)?,
+            file: crate::read::open(path).map_err(|error| match error {
+                RecordError::Read { path, reason } => FastCsvError::Read { path, reason },
+                other => FastCsvError::Read { path: path.to_owned(), reason: other.to_string() },
+            })?,
             chunk_bytes: chunk_bytes.clamp(64, 1 << 30),
             carry: Vec::new(),
             next_line: 1,

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use crate::error::{RecordError, reason};
-use crate::unfinished;
+use crate::unfinished::{self, Listed, uninterrupted};
 use crate::write::sync_folder;
 
 /// A folder in the making; dropped before it has taken its place, it leaves nothing.
@@ -21,6 +21,7 @@ use crate::write::sync_folder;
 pub struct UnfinishedFolder {
     target: PathBuf,
     folder: TempDir,
+    _listed: Listed,
     // After the folder that lies in them: they go last.
     made: MadeParents,
     _held: Option<File>,
@@ -43,7 +44,7 @@ impl UnfinishedFolder {
         };
         let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
         let made = MadeParents::of(parent).map_err(failed)?;
-        let (folder, held) = unfinished::folder_in(parent).map_err(failed)?;
+        let (folder, listed, held) = unfinished::folder_in(parent).map_err(failed)?;
         put_back(&whole).map_err(failed)?;
         if whole.exists() {
             if !whole.is_dir() {
@@ -56,7 +57,7 @@ impl UnfinishedFolder {
                 return Err(refuse("a disk is mounted there; name a folder inside it".to_owned()));
             }
         }
-        Ok(Self { target: whole, folder, made, _held: held })
+        Ok(Self { target: whole, folder, _listed: listed, made, _held: held })
     }
 
     /// Where it grows.
@@ -76,10 +77,10 @@ impl UnfinishedFolder {
         if let Ok(old) = std::fs::metadata(&self.target) {
             std::fs::set_permissions(self.folder.path(), old.permissions()).map_err(failed)?;
         }
-        match std::fs::symlink_metadata(&self.target) {
+        uninterrupted(|| match std::fs::symlink_metadata(&self.target) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => std::fs::rename(self.folder.path(), &self.target),
             _ => exchange(self.folder.path(), &self.target),
-        }
+        })
         .map_err(failed)?;
         self.made.0.clear();
         sync_folder(self.target.parent().unwrap_or(Path::new(".")));

@@ -33,7 +33,7 @@ pub fn sha256_of_file(path: &Path) -> Result<String, RecordError> {
 /// As [`sha256_of_file`].
 pub fn fingerprint_of_file(path: &Path) -> Result<Fingerprint, RecordError> {
     let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
-    let mut file = std::fs::File::open(path).map_err(failed)?;
+    let mut file = crate::read::open(path)?;
     fingerprint_of(&mut file).map_err(failed)
 }
 

@@ -17,8 +17,8 @@ use crate::checksum;
 use crate::comparison::Comparison;
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::estimate::{
-    Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Interval, Law,
-    NamedCorrelation, SharedError, Status, TypeA, v1,
+    BadUnit, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Interval, Law,
+    NamedCorrelation, SharedError, Status, TypeA, to_si, v1,
 };
 use crate::finding::Finding;
 use crate::hash::sha256_of_file;
@@ -39,7 +39,7 @@ const NEWEST: u64 = 2;
 ///
 /// Not JSON, another or a newer schema, a key or an id twice, a covariance that is not
 /// square, a negative uncertainty, a value where the status says undetermined; [`RecordError::Checksum`] where the content is not
-/// the one that its checksum was written for. A record without a checksum is read as it is.
+/// the one that its checksum was written for; a unit that cannot be read or does not fit. All numbers are in SI when they are returned. A record without a checksum is read as it is.
 pub fn read_estimates(path: &Path) -> Result<EstimateFile, RecordError> {
     let bytes = read_bytes(path, LARGEST_BYTES, "an estimate record")?;
     parse_estimates(path, utf8(path, &bytes)?)
@@ -58,13 +58,29 @@ pub fn parse_estimates(path: &Path, text: &str) -> Result<EstimateFile, RecordEr
     if let Some(sum) = &head.checksum {
         check_sum(path, text, sum)?;
     }
-    let file = if head.schema.as_ref().and_then(|s| s.as_str()) == Some(v1::SCHEMA) {
+    let mut file = if head.schema.as_ref().and_then(|s| s.as_str()) == Some(v1::SCHEMA) {
         EstimateFile::from(serde_json::from_str::<v1::FileV1>(text).map_err(|e| syntax(path, text, &e))?)
     } else {
         serde_json::from_str(text).map_err(|e| syntax(path, text, &e))?
     };
     check(path, text, &file)?;
+    to_si(&mut file).map_err(|bad| bad_unit(path, text, &bad))?;
     Ok(file)
+}
+
+/// A unit that is rejected, with its line where the text shows it.
+fn bad_unit(path: &Path, text: &str, bad: &BadUnit) -> RecordError {
+    let BadUnit { estimate, path: keys, unit, problem } = bad;
+    // A law's inputs hold the unit itself, all others an object with a unit.
+    let key = keys.last().map_or("unit", String::as_str);
+    let from = line_of(text, key, None, 0).unwrap_or(1);
+    let written = serde_json::Value::from(unit.as_str()).to_string();
+    let line = text.lines().enumerate().skip(from - 1).find(|(_, line)| line.contains(&written)).map(|(at, _)| at + 1);
+    let whose = estimate.as_ref().map_or_else(String::new, |id| format!("estimate {id}: "));
+    RecordError::Syntax {
+        place: line.map_or_else(|| Place::whole(path), |line| Place::line(path, line)),
+        problem: format!("{whose}the unit of {} is rejected: {problem}", keys.join(".")),
+    }
 }
 
 impl EstimateFile {

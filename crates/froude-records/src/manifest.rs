@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Place, RecordError, read_bytes, reason, utf8};
 use crate::hash::sha256_of_file;
-use crate::write::write_atomically;
+use crate::write::{Prepared, write_atomically};
 
 /// Its name.
 pub const MANIFEST: &str = "froude-files.json";
@@ -31,7 +31,17 @@ struct Manifest {
     /// SHA-256 by name, as seen from the folder, with `/`.
     files: BTreeMap<String, String>,
     /// Folders with a manifest of their own.
+    #[serde(default)]
     folders: BTreeSet<String>,
+    /// SHA-256 of files that are replaced one by one, in a folder that is not replaced as a whole: the one before and the newest.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    single: BTreeMap<String, Vec<String>>,
+}
+
+impl Default for Manifest {
+    fn default() -> Self {
+        Self { schema: SCHEMA.to_owned(), files: BTreeMap::new(), folders: BTreeSet::new(), single: BTreeMap::new() }
+    }
 }
 
 /// Something in a folder of results that is a person's.
@@ -49,7 +59,7 @@ pub struct Alien {
 ///
 /// A file that cannot be read, or the manifest cannot be written.
 pub fn write_manifest(folder: &Path) -> Result<(), RecordError> {
-    let mut manifest = Manifest { schema: SCHEMA.to_owned(), files: BTreeMap::new(), folders: BTreeSet::new() };
+    let mut manifest = Manifest::default();
     walk(folder, "", &mut |name, path, kind| {
         match kind {
             Kind::File => _ = manifest.files.insert(name, sha256_of_file(path)?),
@@ -58,8 +68,12 @@ pub fn write_manifest(folder: &Path) -> Result<(), RecordError> {
         }
         Ok(())
     })?;
+    write(folder, &manifest)
+}
+
+fn write(folder: &Path, manifest: &Manifest) -> Result<(), RecordError> {
     let path = folder.join(MANIFEST);
-    let mut text = serde_json::to_string_pretty(&manifest)
+    let mut text = serde_json::to_string_pretty(manifest)
         .map_err(|e| RecordError::Write { path: path.clone(), reason: e.to_string() })?;
     text.push('\n');
     write_atomically(&path, text.as_bytes())
@@ -88,6 +102,54 @@ pub fn first_alien(folder: &Path) -> Result<Option<Alien>, RecordError> {
     })?;
     // The order of a directory is no order.
     Ok(found.into_iter().min_by(|a, b| a.path.cmp(&b.path)))
+}
+
+/// Whether a file may be replaced: nothing is there, or what Froude wrote last. For before a long computation.
+///
+/// # Errors
+///
+/// [`RecordError::NotOurs`]; a list of results that is none.
+pub fn may_replace(path: &Path) -> Result<(), RecordError> {
+    let (folder, name) = split(path);
+    single(&folder, &name, path).map(drop)
+}
+
+/// Puts a file into a folder that holds other files too, and lists its fingerprint there. A file in its place is replaced only if Froude wrote
+/// it and nobody changed it since.
+///
+/// # Errors
+///
+/// [`RecordError::NotOurs`]; a disk that is full. What stood there is untouched.
+pub fn take_own_place(file: Prepared) -> Result<(), RecordError> {
+    let (folder, name) = split(file.path());
+    let (mut manifest, before) = single(&folder, &name, file.path())?;
+    manifest.files.remove(&name);
+    // Both are listed first: killed before or after the rename, what stands there is known.
+    manifest.single.insert(name, before.into_iter().chain([file.sha256()?]).collect());
+    write(&folder, &manifest)?;
+    file.take_place()
+}
+
+/// The list of a folder, and the fingerprint of what stands in a file's place.
+fn single(folder: &Path, name: &str, path: &Path) -> Result<(Manifest, Option<String>), RecordError> {
+    let list = folder.join(MANIFEST);
+    let manifest = if list.is_file() { read(&list)? } else { Manifest::default() };
+    if path.symlink_metadata().is_err() {
+        return Ok((manifest, None));
+    }
+    // A file of results that were written as a whole folder is Froude's as well.
+    let mut listed = manifest.single.get(name).into_iter().flatten().chain(manifest.files.get(name)).peekable();
+    let is_changed = listed.peek().is_some();
+    let found = if path.is_file() { Some(sha256_of_file(path)?) } else { None };
+    match found {
+        Some(found) if listed.any(|own| *own == found) => Ok((manifest, Some(found))),
+        _ => Err(RecordError::NotOurs { path: path.to_owned(), is_changed }),
+    }
+}
+
+fn split(path: &Path) -> (PathBuf, String) {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    (folder.to_owned(), path.file_name().unwrap_or_default().to_string_lossy().into_owned())
 }
 
 fn read(path: &Path) -> Result<Manifest, RecordError> {
@@ -143,4 +205,34 @@ fn walk(
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+
+    use super::*;
+
+    fn put(path: &Path, content: &str) -> Result<(), RecordError> {
+        take_own_place(Prepared::new(path, |out| out.write_all(content.as_bytes()))?)
+    }
+
+    #[test]
+    fn a_file_is_replaced_only_while_it_is_what_froude_wrote() {
+        let folder = tempfile::tempdir().unwrap();
+        let (ours, theirs) = (folder.path().join("a.csv"), folder.path().join("b.csv"));
+        put(&ours, "1").unwrap();
+        put(&ours, "2").unwrap();
+        // Killed before the rename: the old content under the new list.
+        std::fs::write(&ours, "1").unwrap();
+        put(&ours, "3").unwrap();
+        std::fs::write(&ours, "mine").unwrap();
+        let said = put(&ours, "4").unwrap_err().to_string();
+        assert!(said.contains("a.csv was changed after Froude wrote it, and would be replaced"), "{said}");
+        std::fs::write(&theirs, "mine").unwrap();
+        assert!(matches!(may_replace(&theirs), Err(RecordError::NotOurs { is_changed: false, .. })));
+        assert_eq!(std::fs::read_to_string(&theirs).unwrap(), "mine");
+        // A folder of results takes no account of them: they are not replaced as a whole.
+        assert!(first_alien(folder.path()).unwrap().is_some());
+    }
 }

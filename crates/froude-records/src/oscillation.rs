@@ -191,11 +191,14 @@ pub(crate) fn oscillation_plan(s: &Section<'_>) -> Result<OscillationPlan, Recor
             return Err(s.wrong(key, value, format!("is {}; all must be larger than zero", found(value))));
         }
     }
-    at_most(
-        s,
-        &[out.configurations.len(), out.amplitude_rad.len(), out.omega_rad_s.len(), out.flow_m_s.len(), out.repeats],
-        MOST_RUNS,
-    )?;
+    let numbers = [
+        ("configurations", out.configurations.len()),
+        ("amplitude", out.amplitude_rad.len()),
+        ("frequency", out.omega_rad_s.len()),
+        ("flow", out.flow_m_s.len()),
+        ("repeats", out.repeats),
+    ];
+    at_most(s, &numbers, MOST_RUNS)?;
     Ok(out)
 }
 

@@ -24,7 +24,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
 use crate::assemble::{CHUNK_ROWS, Room, Want, assemble, plan};
-use crate::error::{Place, RecordError, reason};
+use crate::error::{Place, RecordError};
 use crate::parquet_sums::{self, Sum};
 use crate::raw_column::Raw;
 use crate::sidecar::Sidecar;
@@ -57,12 +57,7 @@ pub fn read_parquet(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, Rec
 }
 
 fn open(path: &Path) -> Result<File, RecordError> {
-    let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
-    let file = File::open(path).map_err(failed)?;
-    if file.metadata().map_err(failed)?.is_dir() {
-        return Err(RecordError::Read { path: path.to_owned(), reason: "it is a folder".to_owned() });
-    }
-    Ok(file)
+    crate::read::open(path)
 }
 
 /// The same from anything that holds a Parquet file; `path` is for messages.

@@ -14,11 +14,11 @@
 
 use std::path::PathBuf;
 
-use crate::campaign::{Campaign, PriorRecord, PriorSpec};
+use crate::campaign::{Campaign, PriorRecord, PriorSpec, StatedUnit};
 use crate::error::RecordError;
 use crate::estimate::Estimate;
 use crate::json::read_estimates;
-use crate::units::{Dimension, parse_unit};
+use crate::units::{Dimension, Unit, parse_unit};
 
 /// Reads every record that a prior or a known coefficient is taken from.
 ///
@@ -31,12 +31,14 @@ pub(crate) fn resolve(campaign: &mut Campaign) -> Result<(), RecordError> {
         if let Some(from) = prior.record.clone() {
             let found = value(prior, &from, density)?;
             (prior.value, prior.standard_uncertainty) = (found.value, found.standard);
+            campaign.identify.stated_units.extend(found.stated_unit(prior, &from));
         }
     }
     let mut of_records = Vec::new();
     for known in &mut campaign.identify.known {
         let found = known.record.clone().map(|from| value(known, &from, density)).transpose()?;
-        if let Some(found) = &found {
+        if let (Some(found), Some(from)) = (&found, &known.record) {
+            campaign.identify.stated_units.extend(found.stated_unit(known, from));
             (known.value, known.standard_uncertainty, known.dof) = (found.value, found.standard, found.dof);
         }
         of_records.push(found);
@@ -65,6 +67,20 @@ struct Found {
 }
 
 impl Found {
+    /// The unit of the value, to be compared with that of the coefficient in each law.
+    fn stated_unit(&self, of: &PriorSpec, from: &PriorRecord) -> Option<StatedUnit> {
+        let unit = match from.volume_m3 {
+            Some(_) => Unit::one(),
+            None => parse_unit(&self.estimate.coefficients.get(&self.entry)?.unit).ok()?,
+        };
+        Some(StatedUnit {
+            coefficient: of.coefficient.clone(),
+            model: of.model.clone(),
+            unit,
+            place: from.place.clone(),
+        })
+    }
+
     /// Covariance with another entry; none of another estimate.
     fn covariance_with(&self, other: &Self) -> f64 {
         let is_one = self.path == other.path && self.estimate.id == other.estimate.id;

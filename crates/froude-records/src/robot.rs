@@ -112,6 +112,8 @@ pub struct RobotFile {
     pub axes: Vec<JointAxis>,
     /// Where a trajectory begins; `None`: with the motion that repeats.
     pub start: Option<StartFile>,
+    /// What a URDF was taken as: links in others, joints of the opposite sign.
+    pub remarks: Vec<String>,
 }
 
 /// One module.
@@ -129,6 +131,8 @@ pub struct ModuleFile {
     pub ahead_m: f64,
     /// What it displaces, m³.
     pub volume_m3: Option<f64>,
+    /// By which part of itself its mass may differ from the water that it displaces, by the digits in which mass, volume and density are written: half a unit of the last of each.
+    pub neutral_within: f64,
     /// What the plane does not see.
     pub spatial: SpatialModule,
 }
@@ -264,6 +268,9 @@ fn parse(path: &Path, text: &str, chain: Option<&[UrdfLink]>) -> Result<RobotFil
         Some(chain) => urdf::modules(&root, chain)?,
         None => modules(source, &root, spatial.is_3d)?,
     };
+    let density_digit = root.section("fluid")?.map_or(0.0, |fluid| fluid.half_digit("density"));
+    let modules: Vec<ModuleFile> =
+        modules.into_iter().map(|m| ModuleFile { neutral_within: m.neutral_within + density_digit, ..m }).collect();
     let names: Vec<&str> = modules.iter().map(|m| m.name.as_str()).collect();
     let (joint, mut joints, axes) = joints(&root, &names, spatial.is_3d)?;
     for (own, link) in joints.iter_mut().zip(chain.unwrap_or_default()) {
@@ -285,6 +292,7 @@ fn parse(path: &Path, text: &str, chain: Option<&[UrdfLink]>) -> Result<RobotFil
         joints,
         axes,
         start,
+        remarks: chain.map_or_else(Vec::new, urdf::remarks),
     })
 }
 
@@ -438,6 +446,7 @@ fn module(source: Source<'_>, s: &Section<'_>, is_3d: bool) -> Result<(ModuleFil
         inertia_kg_m2: inertia_kg_m2[2],
         ahead_m: centre_of_mass_m[0],
         volume_m3,
+        neutral_within: s.half_digit("mass") + s.half_digit("volume"),
         spatial: SpatialModule { centre_of_mass_m, centre_of_buoyancy_m, inertia_kg_m2, added },
     };
     Ok((module, count(s, "count", MOST_MODULES)?.unwrap_or(1)))

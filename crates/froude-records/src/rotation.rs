@@ -140,6 +140,8 @@ pub(crate) fn rotation_plan(s: &Section<'_>) -> Result<RotationPlan, RecordError
             return Err(s.wrong(key, value, format!("is {}; all must be larger than zero", found(value))));
         }
     }
-    at_most(s, &[out.amplitude_rad.len(), out.omega_rad_s.len(), out.repeats], MOST_RUNS)?;
+    let numbers =
+        [("amplitude", out.amplitude_rad.len()), ("frequency", out.omega_rad_s.len()), ("repeats", out.repeats)];
+    at_most(s, &numbers, MOST_RUNS)?;
     Ok(out)
 }

@@ -199,6 +199,12 @@ impl<'a> Section<'a> {
         self.get(key).map(|v| self.as_quantity_of(key, v, dimension)).transpose()
     }
 
+    /// Half a unit in the last digit of a quantity as it is written, as a part of it; 0 where it is missing.
+    pub fn half_digit(&self, key: &'static str) -> f64 {
+        let text = self.get(key).and_then(|value| value.get_ref().as_str());
+        text.map_or(0.0, |text| crate::units::half_digit(text.trim_start()))
+    }
+
     /// The same, larger than zero.
     pub fn positive(&self, key: &'static str, dimension: Dimension) -> Result<Option<f64>, RecordError> {
         let Some(value) = self.get(key) else { return Ok(None) };

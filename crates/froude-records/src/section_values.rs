@@ -42,18 +42,66 @@ pub(crate) fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Opt
 }
 
 /// What a section multiplies out to is checked against a limit: each of its numbers may be small, and their product not.
-pub(crate) fn at_most(s: &Section<'_>, numbers: &[usize], most: usize) -> Result<(), RecordError> {
-    let product = numbers.iter().fold(1_usize, |product, n| product.saturating_mul(*n));
+pub(crate) fn at_most(s: &Section<'_>, numbers: &[(&str, usize)], most: usize) -> Result<(), RecordError> {
+    let product = product(numbers);
     if product <= most {
         return Ok(());
     }
+    let others: Vec<String> = numbers.iter().skip(1).map(|(key, n)| format!(" × `{key}` ({n})")).collect();
+    let (first, n) = numbers.first().copied().unwrap_or_default();
     Err(RecordError::Value {
         place: s.place(),
-        key: "repeats".to_owned(),
-        problem: format!("and the lists beside it multiply to {product}; at most {most} are made"),
+        key: first.to_owned(),
+        problem: format!("({n}){} is {product}; at most {most} are made", others.concat()),
     })
 }
 
+pub(crate) fn product(numbers: &[(&str, usize)]) -> usize {
+    numbers.iter().fold(1_usize, |product, (_, n)| product.saturating_mul(*n))
+}
+
+/// What one block of a plan asks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Asks {
+    /// Runs, observations or cases.
+    pub count: usize,
+    /// Samples of all its runs; 0 where none are simulated.
+    pub samples: f64,
+}
+
+/// Reads the blocks of a plan. What they ask for is summed as they are read, so that the first one too many ends it before more is made.
+pub(crate) fn plan_of<T>(
+    sections: &[Section<'_>],
+    [what, most_text]: [&str; 2],
+    most: usize,
+    read: impl Fn(&Section<'_>) -> Result<T, RecordError>,
+    asks: impl Fn(&T) -> Asks,
+) -> Result<Vec<T>, RecordError> {
+    let mut out = Vec::new();
+    let mut sum = Asks { count: 0, samples: 0.0 };
+    for section in sections {
+        let block = read(section)?;
+        let own = asks(&block);
+        sum = Asks { count: sum.count.saturating_add(own.count), samples: sum.samples + own.samples };
+        let refuse = |found: String, most: String| {
+            let problem =
+                format!("asks for {found} up to this block; {most}: make lists shorter, or split the campaign");
+            Err(RecordError::Value { place: section.place(), key: "plan".to_owned(), problem })
+        };
+        if sum.count > most {
+            return refuse(format!("{} {what}", sum.count), format!("at most {most} are made ({most_text})"));
+        }
+        if sum.samples > MOST_SAMPLES {
+            let found = format!("{} runs with {:.0} samples", sum.count, sum.samples);
+            return refuse(found, format!("at most {MOST_SAMPLES:.0} samples are simulated"));
+        }
+        out.push(block);
+    }
+    Ok(out)
+}
+
+/// Most samples of all runs of a plan: every run is simulated whole to say what to expect, at some 100 bytes a sample.
+pub(crate) const MOST_SAMPLES: f64 = 1e7;
 /// One value, a list, or start, stop and step.
 pub(crate) fn series<'a>(
     s: &Section<'a>,

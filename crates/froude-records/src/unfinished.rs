@@ -5,11 +5,15 @@
 //! **Life.** Their maker locks each (`flock`) for as long as it lives; the system takes the lock from a process that is
 //! killed. What nobody holds was left by a dead one, however young or old it is, and is cleared by the next that writes
 //! there. A disk without locks (some network disks) keeps what was left on it: nothing is ever cleared by its age.
+//!
+//! **Interruption.** A program that is told to stop removes its own with [`abandon`] before it exits.
 
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs::{File, TryLockError};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 
@@ -19,28 +23,71 @@ const PREFIX: &str = ".froude-unfinished-";
 /// New names, where another process takes the one that was just made for left over.
 const MOST_TRIES: usize = 8;
 
+/// Unfinished files and folders of this process. Whoever renames one holds this lock.
+static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Keeps a path listed as unfinished until it is dropped.
+#[derive(Debug)]
+pub(crate) struct Listed(PathBuf);
+
+impl Listed {
+    fn new(path: &Path) -> Self {
+        live().insert(path.to_owned());
+        Self(path.to_owned())
+    }
+}
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        live().remove(&self.0);
+    }
+}
+
+/// Renames without an interruption in between: [`abandon`] waits for its end.
+pub(crate) fn uninterrupted<T>(rename: impl FnOnce() -> T) -> T {
+    let _live = live();
+    rename()
+}
+
+/// Removes the unfinished files and folders of this process. For a program that exits next: from now on nothing takes its place any more, and
+/// a thread that tries waits for ever.
+pub fn abandon() {
+    let live = live();
+    for path in live.iter() {
+        // What cannot be removed is cleared by the next that writes there.
+        let _ = if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
+    }
+    std::mem::forget(live);
+}
+
 /// A file that is private to this process until it is persisted; dropped, it is gone.
-pub(crate) fn file_in(folder: &Path) -> io::Result<NamedTempFile> {
+pub(crate) fn file_in(folder: &Path) -> io::Result<(NamedTempFile, Listed)> {
     clear(folder);
     for _ in 0..MOST_TRIES {
         let file = builder(0o666).tempfile_in(folder)?;
         let _ = file.as_file().lock();
         if file.path().exists() {
-            return Ok(file);
+            let listed = Listed::new(file.path());
+            return Ok((file, listed));
         }
     }
     Err(lost())
 }
 
 /// The same for a folder, with what holds its lock.
-pub(crate) fn folder_in(folder: &Path) -> io::Result<(TempDir, Option<File>)> {
+pub(crate) fn folder_in(folder: &Path) -> io::Result<(TempDir, Listed, Option<File>)> {
     clear(folder);
     for _ in 0..MOST_TRIES {
         let made = builder(0o777).tempdir_in(folder)?;
         // Some systems open no folder and lock none.
         let held = File::open(made.path()).ok().filter(|held| held.lock().is_ok());
         if made.path().exists() {
-            return Ok((made, held));
+            let listed = Listed::new(made.path());
+            return Ok((made, listed, held));
         }
     }
     Err(lost())
@@ -95,7 +142,7 @@ mod tests {
     #[test]
     fn what_a_dead_process_left_is_cleared_but_not_looked_for_in_a_folder_that_grows() {
         let folder = tempfile::tempdir().unwrap();
-        let (growing, _held) = folder_in(folder.path()).unwrap();
+        let (growing, _listed, _held) = folder_in(folder.path()).unwrap();
         let inside = growing.path().join("figures");
         std::fs::create_dir(&inside).unwrap();
         let leave = |folder: &Path| {

@@ -260,6 +260,15 @@ pub(crate) fn number_length(text: &str) -> usize {
     at
 }
 
+/// Half a unit in the last digit of the number at the beginning of `text`, as a part of the number; 0 of none and of zero.
+pub(crate) fn half_digit(text: &str) -> f64 {
+    let number = &text[..number_length(text)];
+    let mantissa = number.split(['e', 'E']).next().unwrap_or_default();
+    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let size = mantissa.parse::<f64>().map_or(0.0, f64::abs);
+    if size > 0.0 { 0.5 * 0.1_f64.powi(decimals as i32) / size } else { 0.0 }
+}
+
 /// The beginning of a long text, for messages.
 pub(crate) fn shorten(text: &str) -> String {
     const KEPT: usize = 60;

@@ -135,6 +135,12 @@ pub(crate) fn weight_plan(s: &Section<'_>) -> Result<WeightPlan, RecordError> {
     if out.weight_n.iter().any(|w| *w <= 0.0) {
         return Err(s.wrong("weight", weight, "must be larger than zero"));
     }
-    at_most(s, &[out.configurations.len(), out.weight_n.len(), out.angle_rad.len(), out.repeats], MOST_RUNS)?;
+    let numbers = [
+        ("configurations", out.configurations.len()),
+        ("weight", out.weight_n.len()),
+        ("angle", out.angle_rad.len()),
+        ("repeats", out.repeats),
+    ];
+    at_most(s, &numbers, MOST_RUNS)?;
     Ok(out)
 }

@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use crate::error::{RecordError, reason};
-use crate::unfinished;
+use crate::hash::sha256_of_file;
+use crate::unfinished::{self, Listed, uninterrupted};
 
 /// Writes a file so that either the old or the new content stands there, never a part.
 ///
@@ -39,6 +40,8 @@ pub struct Prepared {
     path: PathBuf,
     folder: PathBuf,
     temporary: NamedTempFile,
+    // After the file: it goes first.
+    _listed: Listed,
 }
 
 impl Prepared {
@@ -66,7 +69,7 @@ impl Prepared {
         if path.is_dir() {
             return Err(refuse("it is a folder".to_owned()));
         }
-        let mut temporary = unfinished::file_in(folder).map_err(failed)?;
+        let (mut temporary, listed) = unfinished::file_in(folder).map_err(failed)?;
         {
             let mut buffered = io::BufWriter::new(temporary.as_file_mut());
             fill(&mut buffered).map_err(failed)?;
@@ -77,7 +80,22 @@ impl Prepared {
             temporary.as_file().set_permissions(old.permissions()).map_err(failed)?;
         }
         temporary.as_file().sync_all().map_err(failed)?;
-        Ok(Self { path: path.to_owned(), folder: folder.to_owned(), temporary })
+        Ok(Self { path: path.to_owned(), folder: folder.to_owned(), temporary, _listed: listed })
+    }
+
+    /// What it will be.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// SHA-256 of its content.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Read`].
+    pub fn sha256(&self) -> Result<String, RecordError> {
+        sha256_of_file(self.temporary.path())
     }
 
     /// Takes the place of what stands there.
@@ -88,7 +106,7 @@ impl Prepared {
     pub fn take_place(self) -> Result<(), RecordError> {
         let refuse =
             |e: tempfile::PersistError| RecordError::Write { path: self.path.clone(), reason: reason(&e.error) };
-        self.temporary.persist(&self.path).map_err(refuse)?;
+        uninterrupted(|| self.temporary.persist(&self.path)).map_err(refuse)?;
         sync_folder(&self.folder);
         Ok(())
     }
@@ -101,7 +119,7 @@ impl Prepared {
     pub fn take_free_place(self) -> Result<(), RecordError> {
         let refuse =
             |e: tempfile::PersistError| RecordError::Write { path: self.path.clone(), reason: reason(&e.error) };
-        self.temporary.persist_noclobber(&self.path).map_err(refuse)?;
+        uninterrupted(|| self.temporary.persist_noclobber(&self.path)).map_err(refuse)?;
         sync_folder(&self.folder);
         Ok(())
     }

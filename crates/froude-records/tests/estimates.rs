@@ -9,8 +9,8 @@ use froude_records::comparison::{
 };
 use froude_records::estimate::{
     Attitude, Clusters, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, ErrorKind, Estimate,
-    EstimateFile, Frame, Interval, Law, Measured, MethodUsed, NamedCorrelation, Output, Range, ReferencePoint,
-    SharedError, Signs, Status, TypeA, keyed,
+    EstimateFile, FormulaOf, Frame, Interval, Law, Measured, MethodUsed, NamedCorrelation, Output, Range,
+    ReferencePoint, SharedError, Signs, Status, TypeA, keyed,
 };
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::{parse_estimates, read_estimates, write_estimates};
@@ -503,4 +503,142 @@ proptest! {
         prop_assert_eq!(found.to_bits(), value.to_bits());
         prop_assert_eq!(read, file);
     }
+}
+
+/// Relative error that a factor of 100 and its inverse make: some units in the last place.
+const ROUNDING: f64 = 1e-14;
+
+/// Every `unit` of a JSON value, and every unit of a law's inputs, as JSON pointers.
+fn unit_places(value: &serde_json::Value, at: &str, out: &mut Vec<String>) {
+    let Some(object) = value.as_object() else {
+        for (i, inner) in value.as_array().into_iter().flatten().enumerate() {
+            unit_places(inner, &format!("{at}/{i}"), out);
+        }
+        return;
+    };
+    for (key, inner) in object {
+        let here = format!("{at}/{}", key.replace('~', "~0").replace('/', "~1"));
+        if inner.is_string() && (key == "unit" || at.ends_with("/inputs")) {
+            out.push(here);
+        } else {
+            unit_places(inner, &here, out);
+        }
+    }
+}
+
+/// What the schema says of a unit: `unit_converted` or `unit_si`.
+fn stated_in_schema<'a>(schema: &'a serde_json::Value, pointer: &str) -> &'a str {
+    fn resolve<'a>(root: &'a serde_json::Value, at: &'a serde_json::Value) -> &'a serde_json::Value {
+        let target = at["$ref"].as_str().map(|to| root.pointer(to.trim_start_matches('#')).unwrap());
+        target.map_or(at, |target| resolve(root, target))
+    }
+    let mut at = schema;
+    for key in pointer.split('/').skip(1) {
+        let level = resolve(schema, at);
+        at = [&level["properties"][key], &level["items"], &level["additionalProperties"]]
+            .into_iter()
+            .find(|next| next.is_object())
+            .unwrap_or_else(|| panic!("{pointer}: {key}"));
+    }
+    at["$ref"].as_str().and_then(|to| to.strip_prefix("#/$defs/")).unwrap_or_else(|| panic!("{pointer} says nothing"))
+}
+
+fn assert_close(a: &serde_json::Value, b: &serde_json::Value, at: &str) {
+    match (a, b) {
+        (serde_json::Value::Object(x), serde_json::Value::Object(y)) => {
+            assert!(x.keys().eq(y.keys()), "{at}");
+            x.iter()
+                .filter(|(key, _)| *key != "checksum")
+                .for_each(|(key, v)| assert_close(v, &y[key], &format!("{at}/{key}")));
+        }
+        (serde_json::Value::Array(x), serde_json::Value::Array(y)) => {
+            assert_eq!(x.len(), y.len(), "{at}");
+            x.iter().zip(y).for_each(|(v, w)| assert_close(v, w, at));
+        }
+        _ => match (a.as_f64(), b.as_f64()) {
+            (Some(x), Some(y)) => assert!((x - y).abs() <= ROUNDING * x.abs(), "{at}: {x} and {y}"),
+            _ => assert_eq!(a, b, "{at}"),
+        },
+    }
+}
+
+/// Every unit of a record, one by one: in percent of itself with numbers a hundred times as large the record says the same, or it is rejected as the
+/// schema states; a unit that is no unit, or one of another quantity, is rejected with its line.
+#[test]
+fn every_unit_of_a_record_is_converted_or_rejected() {
+    let schema: serde_json::Value = serde_json::from_str(ESTIMATE_JSON_SCHEMA).unwrap();
+    let mut file = sample();
+    file.comparison.as_mut().unwrap().validation.retain(|v| !v.unit.is_empty());
+    let formula_of = FormulaOf {
+        estimate: "tank/f6".to_owned(),
+        largest_difference: [("f_x".to_owned(), measured(0.1, "N"))].into(),
+        widened: 1.2,
+    };
+    file.estimates[0].formula_of = Some(formula_of);
+    let mut whole = serde_json::to_value(&file).unwrap();
+    whole.as_object_mut().unwrap().remove("checksum");
+    let mut places = Vec::new();
+    unit_places(&whole, "", &mut places);
+    let (mut converted, mut rejected) = (0, 0);
+    for place in &places {
+        let unit = whole.pointer(place).unwrap().as_str().unwrap().to_owned();
+        let mut other = whole.clone();
+        *other.pointer_mut(place).unwrap() = format!("% {unit}").replace("% 1", "%").into();
+        let parent = place.rsplit_once('/').unwrap().0.to_owned();
+        match stated_in_schema(&schema, place) {
+            "unit_si" => {
+                let said = parse(&serde_json::to_string_pretty(&other).unwrap()).expect_err(place);
+                assert!(
+                    said.starts_with("estimate.json:") && said.contains("is not converted here; write the SI unit"),
+                    "{said}"
+                );
+                rejected += 1;
+            }
+            "unit_converted" => {
+                let beside = other.pointer_mut(&parent).unwrap().as_object_mut().unwrap();
+                for (key, number) in beside.iter_mut().filter(|(key, _)| *key != "effective_dof") {
+                    let times = |v: &mut serde_json::Value| {
+                        if let Some(x) = v.as_f64() {
+                            *v = (100.0 * x).into();
+                        }
+                    };
+                    assert!(key != "matrix", "{place}");
+                    times(number);
+                    number.as_array_mut().into_iter().flatten().for_each(times);
+                }
+                if place.ends_with("/C_d_I/unit") {
+                    let estimate = &mut other["estimates"][0];
+                    estimate["type_a"]["matrix"] = serde_json::json!([[100.0]]);
+                    estimate["errors"]["cal/1"]["sensitivity"] = serde_json::json!([[20.0]]);
+                }
+                let read = parse(&other.to_string()).unwrap_or_else(|e| panic!("{place}: {e}"));
+                let mut read = serde_json::to_value(&read).unwrap();
+                read.as_object_mut().unwrap().remove("checksum");
+                assert_close(&whole, &read, place);
+                converted += 1;
+            }
+            said => panic!("{place}: {said}"),
+        }
+        let mut other = whole.clone();
+        *other.pointer_mut(place).unwrap() = "nonsense".into();
+        let said = parse(&serde_json::to_string_pretty(&other).unwrap()).expect_err(place);
+        assert!(
+            said.starts_with("estimate.json:") && said.contains("is rejected: unknown unit `nonsense`"),
+            "{place}: {said}"
+        );
+    }
+    assert_eq!((converted, rejected), (10, 5), "{places:#?}");
+}
+
+#[test]
+fn a_unit_of_another_quantity_is_rejected_with_its_line() {
+    let at = 1 + line_with("\"density\": {");
+    let unit = 1 + at;
+    refused(
+        "\"unit\": \"kg/m^3\"",
+        "\"unit\": \"kg\"",
+        &format!(
+            "estimate.json:{unit}: estimate tank/f4: the unit of refers_to.density is rejected: `kg` is a mass (kg); expected a density (kg/m^3)"
+        ),
+    );
 }

@@ -9,6 +9,7 @@ use froude_identify::dataset::distinct as distinct_texts;
 use froude_identify::method::MethodError;
 use froude_identify::runs::{files, logs_in, recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
+use froude_records::campaign::{BudgetEntry, Shared};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::clocks::is_own;
 use froude_records::run::step::Step;
@@ -91,6 +92,7 @@ pub(crate) fn read_averaging(
         }
         out.findings.extend(long_logs::note(&log));
         conditioning::condition(&mut log, method)?;
+        out.findings.extend(from_its_start(&mut log));
         out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
         let sidecar = path.with_extension("toml");
         out.files.push(ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role.name()) });
@@ -100,6 +102,43 @@ pub(crate) fn read_averaging(
         out.runs.push(log);
     }
     Ok(out)
+}
+
+/// Times that start this long after zero, some 12 days, are those of a calendar, s.
+const OF_A_CALENDAR_S: f64 = 1e6;
+
+/// Counts the times of a log from its first sample where they are those of a calendar: at 1.7·10⁹ s a double resolves 0.2 µs, which steps of a delay and
+/// squares of times lose.
+fn from_its_start(log: &mut ImportedRun) -> Option<Finding> {
+    let start_s = *log.log.time_s.first()?;
+    if start_s.abs() < OF_A_CALENDAR_S {
+        return None;
+    }
+    log.log.time_s.iter_mut().for_each(|t| *t -= start_s);
+    for mark in &mut log.declared.marks {
+        mark.from_s -= start_s;
+        mark.to_s -= start_s;
+    }
+    let text = format!("{}: times start at {start_s} s and are counted from there", log.log.path.display());
+    Some(Finding::new(Severity::Note, "times-from-start", text))
+}
+
+/// Refuses an entry of the budget that not all runs share: these methods have one gain for all.
+///
+/// # Errors
+///
+/// `shared` is another than `campaign`.
+pub(crate) fn is_of_all_runs(entry: &BudgetEntry) -> Result<(), MethodError> {
+    if entry.shared == Shared::Campaign {
+        return Ok(());
+    }
+    let what = format!(
+        "shared = {:?} of {} is not used here: this method counts one error that all runs share, which does not average down; write shared = \"campaign\", \
+         or leave the entry out where the scatter of the runs shows it",
+        entry.shared.name(),
+        entry.quantity
+    );
+    Err(MethodError::Undeclared { place: entry.place.to_string(), what })
 }
 
 /// The logs of a folder, in the order of their names: those of other programs, and those of `method` that Froude recorded.

@@ -15,9 +15,10 @@ pub mod swing;
 use std::path::{Path, PathBuf};
 
 use froude_cfd::case::Water;
-use froude_cfd::store::Store;
+use froude_cfd::store::{Store, check_links};
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
 use froude_records::cfd::CfdSpec;
+use froude_records::output::inside;
 
 pub(crate) use self::computed::Computed;
 use crate::Error;
@@ -85,6 +86,8 @@ impl Asked {
             );
             return Err(refused(problem).into());
         }
+        inside(path, source.input.path(), &source.place, "cases", "froude cfd")?;
+        check_links(source.input.path())?;
         Self::of(&campaign, source, source.input.path().to_owned())
     }
 

@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_cfd::openfoam::OpenFoamError;
 use froude_identify::compare::too_many;
 use froude_identify::method::MethodError;
 use froude_records::run::FREE_DECAY;
 use froude_records::text::counted;
+use froude_rig::campaign::error::CampaignError;
+use froude_rig::campaign::runner::RunnerError;
 
 /// Why a job of the pipeline failed.
 #[derive(Debug, thiserror::Error)]
@@ -78,6 +81,10 @@ pub enum Error {
     /// OpenFOAM cannot be run.
     #[error(transparent)]
     OpenFoam(#[from] froude_cfd::openfoam::OpenFoamError),
+
+    /// Stopped as asked, where nothing else says so.
+    #[error("stopped as asked, nothing is lost: the same command resumes")]
+    Stopped,
 
     /// A sweep does not begin.
     #[error(transparent)]
@@ -164,7 +171,7 @@ pub enum Error {
         estimates: usize,
     },
 
-    /// Results would replace a record that is read.
+    /// Results would replace a file that is read.
     #[error(
         "{} holds {}, which is read: results there would replace it. Name another folder with --out",
         .out.display(),
@@ -173,8 +180,26 @@ pub enum Error {
     ReplacesInput {
         /// The folder of the results.
         out: PathBuf,
+        /// The file.
+        record: PathBuf,
+    },
+
+    /// Data behind a record are fitted too.
+    #[error(
+        "{}: {key}: {} was itself fitted to {file}, which this job fits again: the same data would count twice, and the interval would be too \
+         narrow. Take the {key} from a record of other data, or leave it out",
+        .campaign.display(),
+        .record.display()
+    )]
+    CountedTwice {
+        /// The campaign.
+        campaign: PathBuf,
+        /// `prior`, `known` or `tare`.
+        key: &'static str,
         /// The record.
         record: PathBuf,
+        /// The file in common, as this job names it.
+        file: String,
     },
 
     /// The result of a part would replace that of more runs, or of others.
@@ -239,6 +264,7 @@ impl Error {
             | Self::NoSource { .. }
             | Self::TooMany { .. }
             | Self::ReplacesInput { .. }
+            | Self::CountedTwice { .. }
             | Self::ReplacesMore { .. }
             | Self::OfAnotherMethod { .. }
             | Self::Drag(_)
@@ -251,7 +277,18 @@ impl Error {
             | Self::Sweep(_)
             | Self::Draws(_)
             | Self::Swim(_) => true,
-            Self::Runner(_) | Self::OpenFoam(_) | Self::Report(_) | Self::Output { .. } => false,
+            Self::Stopped | Self::Runner(_) | Self::OpenFoam(_) | Self::Report(_) | Self::Output { .. } => false,
+        }
+    }
+
+    /// True where the job ended because it was asked to (Ctrl-C), and the same command resumes.
+    #[must_use]
+    pub fn was_stopped(&self) -> bool {
+        let is_asked = |e: &RunnerError| matches!(e, RunnerError::Stopped { .. } | RunnerError::StoppedWaiting { .. });
+        match self {
+            Self::Stopped | Self::OpenFoam(OpenFoamError::Cancelled { .. }) => true,
+            Self::Runner(e) | Self::Campaign(CampaignError::Runner(e)) => is_asked(e),
+            _ => false,
         }
     }
 

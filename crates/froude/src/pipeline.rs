@@ -1,6 +1,7 @@
 //! From a campaign, a bare table, runs or records to estimates side by side and a report.
 
 mod job;
+mod origins;
 mod validation;
 
 use std::collections::BTreeSet;
@@ -10,6 +11,7 @@ use froude_carriage::axis::held_against;
 use froude_identify::answer::Answer;
 use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared};
 use froude_identify::data_files::DataFiles;
+use froude_identify::dataset::Dataset;
 use froude_identify::method::{Export, Found, Method, observes};
 use froude_identify::reduce::reduce;
 use froude_identify::{IdentifyError, asked, observations};
@@ -17,11 +19,13 @@ use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
+use froude_records::hash::sha256_of_file;
 use froude_records::json::read_estimates;
 use froude_records::page::DocumentSection;
 use froude_records::text::in_a_file_name;
+use indexmap::IndexMap;
 
-use crate::predict::of_rows;
+use crate::predict::{of_rows, same_rows};
 use crate::{Error, campaign_page, method, results};
 
 pub(crate) use crate::pipeline::job::default_out;
@@ -76,6 +80,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         progress(&format!("{}: held against the fits", source.name));
         gathered.validate(source, &campaign, job.purpose)?;
     }
+    origins::inherit(&campaign, &gathered.sources, &mut files)?;
     let nobodys = asked::held_by_no_law(&campaign.identify, gathered.sources.iter().flat_map(Answer::estimates));
     if let (Some([place, what]), true) = (&nobodys, job.models.is_empty() && !gathered.has_not_fitted()) {
         return Err(IdentifyError::Campaign { place: place.clone(), what: what.clone() }.into());
@@ -227,7 +232,18 @@ impl Gathered {
 
     /// Holds the recommended estimates against the rows of a source that none of them was fitted to.
     fn validate(&mut self, source: &Source, campaign: &Campaign, purpose: Option<Purpose>) -> Result<(), Error> {
+        let fitted = campaign.sources.iter().filter(|other| !other.is_validation);
+        let same_file = fitted.map(|other| other.input.path()).find(|path| is_same_file(path, source.input.path()));
         if method::is_of_a_servo(source, purpose)? {
+            if let Some(path) = same_file {
+                let text = format!(
+                    "{} has the SHA-256 of {}, which was fitted: this is no validation, its errors are smaller than on new data",
+                    source.input.path().display(),
+                    path.display()
+                );
+                let finding = Finding::new(Severity::Warning, "validation-on-fitted-rows", text);
+                self.findings.push(finding.of_source(&source.name));
+            }
             let all: Vec<&Estimate> = self.sources.iter().flat_map(Answer::estimates).collect();
             let (findings, section) = held_against(source.input.path(), source.sidecar.as_deref(), &source.name, &all)?;
             self.findings.extend(findings.into_iter().map(|f| f.of_source(&source.name)));
@@ -244,13 +260,34 @@ impl Gathered {
                     .to_owned();
             return Err(IdentifyError::Campaign { place: format!("source {:?}", source.name), what }.into());
         }
-        let found = of_rows(&all, observations.data)?;
+        let seen = self.seen(&all, source, campaign, &observations.data);
+        let found = of_rows(&all, observations.data)?.seen(seen);
         for predicted in &found.estimates {
             self.findings.push(found.finding(predicted).of_source(&source.name));
             let section = found.section(predicted);
             self.blocks.push(DocumentSection { title: format!("{}: {}", source.name, section.title), ..section });
         }
         Ok(())
+    }
+
+    /// Why rows of a validation are those that an estimate was fitted to, by its id.
+    fn seen(
+        &self,
+        all: &[&Estimate],
+        source: &Source,
+        campaign: &Campaign,
+        data: &Dataset,
+    ) -> IndexMap<String, String> {
+        let why = |estimate: &&&Estimate| {
+            let fitted = campaign.sources.iter().find(|other| !other.is_validation && other.name == estimate.source)?;
+            let (own, other) = (source.input.path(), fitted.input.path());
+            if is_same_file(own, other) && source.keep == fitted.keep {
+                return Some(format!("{} has the SHA-256 of {}", own.display(), other.display()));
+            }
+            let found = self.sources.iter().filter_map(Answer::fitted).find(|found| found.name == estimate.source)?;
+            same_rows(data, &found.data).map(|why| format!("{why} of source {:?}", fitted.name))
+        };
+        all.iter().filter_map(|estimate| Some((estimate.id.clone(), why(&estimate)?))).collect()
     }
 
     /// A name that no other export has: the source's before the file's own, and a number where two sources come to the same one.
@@ -282,18 +319,20 @@ fn side_by_side(all: &[(String, EstimateFile)], input: &Input) -> Result<Option<
     Ok(Some(out))
 }
 
-/// Refuses results in the folder of a record that is read, as an estimate or as a tare: they would take its place.
+/// Whether two files have the same content.
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    a.is_file()
+        && b.is_file()
+        && sha256_of_file(a).ok().is_some_and(|sum| sha256_of_file(b).is_ok_and(|own| own == sum))
+}
+
+/// Refuses results in the folder of a file that is read: they would take its place.
 fn reads_nothing_in(out: &Path, campaign: &Campaign) -> Result<(), Error> {
-    let Ok(out) = std::fs::canonicalize(out) else { return Ok(()) };
-    let records = campaign.sources.iter().flat_map(|source| {
-        let own = Some(source.input.path()).filter(|_| matches!(source.input, campaign::Input::Record { .. }));
-        own.into_iter().chain(source.tare.as_ref().map(|tare| tare.record.as_path()))
+    let sources = campaign.sources.iter().filter(|source| {
+        matches!(source.input, campaign::Input::Record { .. } | campaign::Input::Table(_) | campaign::Input::Mesh(_))
     });
-    let is_replaced = |path: &&Path| std::fs::canonicalize(path).is_ok_and(|path| path.starts_with(&out));
-    match records.into_iter().find(is_replaced) {
-        None => Ok(()),
-        Some(record) => Err(Error::ReplacesInput { out, record: record.to_owned() }),
-    }
+    let inputs = sources.map(|source| source.input.path()).chain(origins::records(campaign));
+    results::spares(out, inputs.chain([campaign.path.as_path()]))
 }
 
 /// What a record states about itself that a comparison must take into account.

@@ -1,23 +1,31 @@
 //! `froude predict`: a record's forces on the rows of any table, with bands, errors and one number over all rows.
 
+use std::collections::BTreeSet;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use froude_identify::dataset::Dataset;
+use froude_identify::compare::observations;
+use froude_identify::dataset::{Dataset, LOADS};
+use froude_identify::lint::repeats::identical_copies;
 use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate};
 use froude_identify::reduce::rows_of;
 use froude_records::csv_table::csv_bytes;
-use froude_records::estimate::Estimate;
+use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
+use froude_records::hash::sha256_of_file;
 use froude_records::json::read_estimates;
+use froude_records::manifest::take_own_place;
 use froude_records::number::{dof, p_equation, percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::text::{counted, in_a_file_name};
 use froude_records::units::{Dimension, Unit, parse_unit};
-use froude_records::write::write_atomically;
+use froude_records::write::Prepared;
+use indexmap::IndexMap;
 use serde_json::{Value, json};
 
 use crate::Error;
+use crate::results::spares;
 
 /// Chance below which a record does not hold.
 const CONTRADICTED: f64 = 0.01;
@@ -48,6 +56,8 @@ pub struct Prediction {
     pub findings: Vec<Finding>,
     /// Tables that were written.
     pub written: Vec<PathBuf>,
+    /// Why these rows are rows that an estimate was fitted to, by its id.
+    seen: IndexMap<String, String>,
     data: Dataset,
 }
 
@@ -58,15 +68,29 @@ pub struct Prediction {
 /// A record or a table that cannot be read; a law that the record does not have, that is none of forces, or that reads what the table lacks; a folder that cannot be written.
 pub fn predict(job: &Job) -> Result<Prediction, Error> {
     let record = read_estimates(&job.record)?;
-    let (data, findings) = rows_of(&job.table, job.sidecar.as_deref())?;
+    let (mut data, mut findings) = rows_of(&job.table, job.sidecar.as_deref())?;
+    // Settings without a load are no observations: they may repeat.
+    if !data.loads().is_empty() {
+        let (unique, copies) = identical_copies(&data);
+        data = data.subset(&unique);
+        findings.extend(copies);
+    }
     let chosen = chosen(&record.estimates, &job.laws).map_err(|what| refused(&job.record, what))?;
-    let mut out = of_rows(&chosen, data)?;
+    let mut seen = IndexMap::new();
+    for estimate in &chosen {
+        if let Some(why) = fitted_to(job, &record, estimate, &data)? {
+            seen.insert(estimate.id.clone(), why);
+        }
+    }
+    let mut out = of_rows(&chosen, data)?.seen(seen);
     out.findings = [findings, out.findings].concat();
     if let Some(folder) = &job.out {
         std::fs::create_dir_all(folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
         for predicted in &out.estimates {
             let path = folder.join(format!("predicted-{}.csv", in_a_file_name(&predicted.id)));
-            write_atomically(&path, &csv_bytes(&out.table(predicted, &path))?)?;
+            spares(&path, [job.record.as_path(), job.table.as_path()].into_iter().chain(job.sidecar.as_deref()))?;
+            let bytes = csv_bytes(&out.table(predicted, &path))?;
+            take_own_place(Prepared::new(&path, |file| file.write_all(&bytes))?)?;
             out.written.push(path);
         }
     }
@@ -82,7 +106,45 @@ pub fn of_rows(estimates: &[&Estimate], data: Dataset) -> Result<Prediction, Err
     let of = |estimate: &&Estimate| of_estimate(estimate, &with_density(&data, estimate));
     let findings = estimates.iter().filter_map(|estimate| without_bands(estimate)).collect();
     let estimates = estimates.iter().map(of).collect::<Result<_, _>>()?;
-    Ok(Prediction { estimates, findings, written: Vec::new(), data })
+    Ok(Prediction { estimates, findings, written: Vec::new(), seen: IndexMap::new(), data })
+}
+
+/// Why the rows of a table are rows that an estimate was fitted to: its file by the fingerprint, or its rows where that file is still beside the record.
+fn fitted_to(job: &Job, record: &EstimateFile, estimate: &Estimate, data: &Dataset) -> Result<Option<String>, Error> {
+    let own = sha256_of_file(&job.table)?;
+    let fitted = observations(record, estimate).into_iter();
+    for file in fitted.filter(|file| file.role.as_deref().is_none_or(|role| role == "table")) {
+        if file.sha256 == own {
+            return Ok(Some(format!(
+                "{} has the SHA-256 of {}, which it was fitted to",
+                job.table.display(),
+                file.path
+            )));
+        }
+        // A record lies beside its campaign, or in a folder of results there.
+        let folders = job.record.ancestors().skip(1).take(2).map(|folder| folder.join(&file.path));
+        let is_as_fitted = |path: &PathBuf| path.is_file() && sha256_of_file(path).is_ok_and(|sum| sum == file.sha256);
+        if let Some((fitted, _)) = folders.into_iter().find(is_as_fitted).and_then(|path| rows_of(&path, None).ok())
+            && let Some(why) = same_rows(data, &fitted)
+        {
+            return Ok(Some(format!("{why} of {}, which it was fitted to", file.path)));
+        }
+    }
+    Ok(None)
+}
+
+/// That more than half of the rows of a data set are rows of another one, in every number that both tables have, a load among them: readings of coarse steps coincide in fewer.
+pub(crate) fn same_rows(data: &Dataset, fitted: &Dataset) -> Option<String> {
+    const DIGITS: usize = 9;
+    let names: Vec<&String> = data.channels.keys().filter(|name| fitted.channels.contains_key(*name)).collect();
+    let has_load = names.iter().any(|name| LOADS.contains(&name.as_str()));
+    let key = |of: &Dataset, row: usize| -> Vec<String> {
+        let digits = |name: &&String| of.values(name).map_or_else(String::new, |v| format!("{:.DIGITS$e}", v[row]));
+        names.iter().map(digits).collect()
+    };
+    let known: BTreeSet<Vec<String>> = (0..fitted.rows).map(|row| key(fitted, row)).collect();
+    let same = (0..data.rows).filter(|&row| known.contains(&key(data, row))).count();
+    (has_load && 2 * same > data.rows).then(|| format!("{same} of {} are rows", counted(data.rows, "row", "rows")))
 }
 
 /// That one cluster decides a coefficient, and what follows for forces.
@@ -177,6 +239,11 @@ fn by_load(predicted: &Predicted) -> Vec<OfLoad> {
 }
 
 impl Prediction {
+    /// With what says that rows are no others than those of a fit, by the ids of estimates.
+    pub(crate) fn seen(self, seen: IndexMap<String, String>) -> Self {
+        Self { seen, ..self }
+    }
+
     /// What an estimate is worth on these rows, as a finding: its errors by load, |E_n| beyond 1, and the one number over all rows.
     #[must_use]
     pub fn finding(&self, predicted: &Predicted) -> Finding {
@@ -195,11 +262,16 @@ impl Prediction {
         };
         let loads: Vec<String> = by_load(predicted).iter().filter_map(of).collect();
         let is_contradicted = predicted.joint.and_then(|joint| joint.p).is_some_and(|p| p < CONTRADICTED);
-        let (severity, code) =
-            if is_contradicted { (Severity::Warning, "validation-fails") } else { (Severity::Note, "validation") };
+        let seen = self.seen.get(&predicted.id);
+        let (severity, code) = match (seen, is_contradicted) {
+            (Some(_), _) => (Severity::Warning, "validation-on-fitted-rows"),
+            (None, true) => (Severity::Warning, "validation-fails"),
+            (None, false) => (Severity::Note, "validation"),
+        };
         let number = predicted.joint.as_ref().map_or_else(|| "no scatter is known, and so no χ²".to_owned(), joint);
         let loads = if loads.is_empty() { "no load lies within its ranges".to_owned() } else { loads.join("; ") };
-        Finding::new(severity, code, format!("{} on rows that it was not fitted to: {loads}; {number}", predicted.id))
+        let on = seen.map_or_else(|| "rows that it was not fitted to".to_owned(), |why| no_validation(why));
+        Finding::new(severity, code, format!("{} on {on}: {loads}; {number}", predicted.id))
     }
 
     /// What a person reads of an estimate.
@@ -250,6 +322,9 @@ impl Prediction {
             });
         }
         let mut paragraphs: Vec<String> = predicted.joint.iter().map(joint).collect();
+        if let Some(why) = self.seen.get(&predicted.id) {
+            paragraphs.push(format!("On {}", no_validation(why)));
+        }
         let outside = predicted.rows.iter().filter(|row| !row.outside.is_empty()).count();
         if outside > 0 {
             paragraphs.push(format!(
@@ -337,6 +412,7 @@ impl Prediction {
             json!({
                 "estimate": predicted.id,
                 "law": predicted.law,
+                "fitted_to_these_rows": self.seen.get(&predicted.id),
                 "joint": joint,
                 "rows": predicted.rows.iter().map(row).collect::<Vec<_>>(),
             })
@@ -347,6 +423,12 @@ impl Prediction {
             "written": self.written,
         })
     }
+}
+
+fn no_validation(why: &str) -> String {
+    format!(
+        "rows that it was fitted to ({why}), which is no validation: its errors and χ² are smaller there than on new rows"
+    )
 }
 
 fn joint(found: &Joint) -> String {

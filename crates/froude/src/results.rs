@@ -64,6 +64,20 @@ fn only_own(out: &Path) -> Result<(), Error> {
     }
 }
 
+/// Refuses results in a folder that holds one of these inputs, or in place of one.
+///
+/// # Errors
+///
+/// [`Error::ReplacesInput`].
+pub fn spares<'a>(out: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> Result<(), Error> {
+    let Ok(out) = std::fs::canonicalize(out) else { return Ok(()) };
+    let is_replaced = |path: &&Path| std::fs::canonicalize(path).is_ok_and(|path| path.starts_with(&out));
+    match inputs.into_iter().find(is_replaced) {
+        None => Ok(()),
+        Some(record) => Err(Error::ReplacesInput { out, record: record.to_owned() }),
+    }
+}
+
 /// Replaces the folder `out` by what `fill` writes into the folder that it is given; the results of an earlier job are gone then.
 ///
 /// # Errors

@@ -16,7 +16,7 @@ mod water;
 use std::path::{Path, PathBuf};
 
 use froude_records::parquet_table::write_parquet;
-use froude_records::robot::{ModuleFile, RobotFile, read_robot};
+use froude_records::robot::{AddedFile, ModuleFile, RobotFile, read_robot};
 use froude_records::write::write_atomically;
 use froude_swim::joints::Drives;
 use froude_swim::robot::Robot;
@@ -76,6 +76,8 @@ pub struct Swum {
     pub drives: Drives,
     /// Half height, half width and half length of its modules, m.
     pub sections: Vec<[f64; 3]>,
+    /// What its URDF was taken as.
+    pub remarks: Vec<String>,
     /// The highest frequency at which the motors give what the gait needs, rad/s.
     pub fastest_rad_s: Option<f64>,
     /// What the coefficients' uncertainty makes of it.
@@ -145,7 +147,24 @@ pub fn swim_anywhere(job: &Job, pitching: &Pitching) -> Result<Answer, Error> {
     Ok(Answer::Plane(Box::new(in_plane(file, job)?)))
 }
 
+/// Refuses results in the folder of a file that the robot is made of, or that it moves by.
+fn spares_inputs(file: &RobotFile, job: &Job) -> Result<(), Error> {
+    let Some(out) = &job.out else { return Ok(()) };
+    let added = file.modules.iter().map(|module| module.spatial.added.as_ref().unwrap_or(&file.added_mass));
+    let records = added.filter_map(|added| match added {
+        AddedFile::Record(from) => Some(from.path.as_path()),
+        AddedFile::Declared(_) => None,
+    });
+    let moves = match &job.moves {
+        Moves::File { path, .. } | Moves::Track(path) => Some(path.as_path()),
+        Moves::Wave(_) => None,
+    };
+    let others = [job.robot.as_path(), file.drag.path.as_path()].into_iter().chain(moves).chain(job.motor.as_deref());
+    results::spares(out, records.chain(others))
+}
+
 fn in_plane(file: RobotFile, job: &Job) -> Result<Swum, Error> {
+    spares_inputs(&file, job)?;
     let robot = Robot::of(&file)?;
     let joints = robot.chain.joints();
     let drives = drives(&file, job.motor.as_deref())?;
@@ -165,6 +184,7 @@ fn in_plane(file: RobotFile, job: &Job) -> Result<Swum, Error> {
         robot,
         drives,
         sections,
+        remarks: file.remarks,
         fastest_rad_s,
         uncertain: job.uncertain.clone(),
         written: None,

@@ -3,13 +3,13 @@
 //! A campaign may come from anybody: only its own folder is written into, and a folder of runs is replaced only when nothing but the twin's own
 //! files lies in it.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use froude_identify::method::MethodError;
 use froude_identify::simulate::tables::{self, SimulateError};
-use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
 use froude_records::folder::UnfinishedFolder;
+use froude_records::output;
 
 use crate::{Error, method};
 
@@ -84,21 +84,8 @@ fn inside<'a>(campaign: &Campaign, source: &'a Source) -> Result<&'a Path, Error
         return Err(Error::Method(MethodError::Undeclared { place: source.place.to_string(), what }));
     };
     let path = source.input.path();
-    let own = campaign.path.parent().unwrap_or(Path::new(""));
-    let rest = path.strip_prefix(own).unwrap_or(path);
-    let is_below = rest.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
-    let real = |folder: &Path| if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.canonicalize();
-    // A link on the way may lead anywhere; a folder that does not exist yet is made.
-    let there = path.ancestors().find(|p| p.exists()).unwrap_or(own);
-    let stays = matches!((real(own), real(there)), (Ok(own), Ok(there)) if there.starts_with(&own));
-    if is_below && stays && rest.components().any(|c| matches!(c, Component::Normal(_))) {
-        return Ok(path);
-    }
-    let problem = format!(
-        "is {:?}, which leads out of the campaign's folder; froude simulate writes below it only: name a folder there",
-        rest.display().to_string()
-    );
-    Err(RecordError::Value { place: source.place.clone(), key: "runs".to_owned(), problem }.into())
+    output::inside(&campaign.path, path, &source.place, "runs", "froude simulate")?;
+    Ok(path)
 }
 
 /// A file of a folder that `is_known` does not know; `None` where the folder is empty or not there.

@@ -57,12 +57,21 @@ pub fn sections(reduction: &Reduction) -> (DocumentSection, Vec<DocumentSection>
     (drag, more)
 }
 
+/// Value and 95 % interval: `20.1 ± 0.2` where that is symmetric about the value within 1 % of its half-width, `0.22 [−0.18, 0.82]` where it is not.
+fn with_interval(value: f64, [low, high]: [f64; 2]) -> String {
+    let half = 0.5 * (high - low);
+    if (0.5 * (low + high) - value).abs() <= 0.01 * half {
+        number::plus_minus(value, half)
+    } else {
+        format!("{} {}", number::plain(value, 4), number::interval([low, high]))
+    }
+}
+
 /// What the runs say, in sentences.
 fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     let mut out = Vec::new();
     if let Some(c) = report.coefficients.iter().find(|c| Some(c.method) == report.recommended) {
-        let half = c.interval_95.map(|[l, h]| 0.5 * (h - l));
-        let value = half.map_or_else(|| number::plain(c.value, 4), |h| number::plus_minus(c.value, h));
+        let value = c.interval_95.map_or_else(|| number::plain(c.value, 4), |ends| with_interval(c.value, ends));
         out.push(format!("Recommended: {}, D_d = {value} N s²/m² (95 %).", c.method.words()));
     } else {
         let has_interval = report.coefficients.iter().any(|c| c.interval_95.is_some());

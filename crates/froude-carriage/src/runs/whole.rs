@@ -13,6 +13,7 @@ use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::carriage::plan::{PlannedRun, Step, order_seed, plan};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
+use froude_records::read;
 use froude_records::run::{CAMPAIGN_COPY, LAST_RUN, Role, RunMeta, RunStatus, STOPPED_EARLY, read_run_meta};
 use froude_records::text::counted;
 
@@ -114,7 +115,7 @@ struct EarlyStop {
 
 impl EarlyStop {
     fn read(folder: &Path) -> Option<Self> {
-        let text = std::fs::read_to_string(folder.join(STOPPED_EARLY)).ok()?;
+        let text = read::text(&folder.join(STOPPED_EARLY), read::OWN_BYTES, "a note").ok()?;
         let last = text.lines().find_map(|line| line.strip_prefix(LAST_RUN)).map(str::to_owned);
         Some(Self { why: text.lines().next().unwrap_or_default().to_owned(), last })
     }

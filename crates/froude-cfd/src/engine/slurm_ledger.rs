@@ -16,6 +16,7 @@ use froude_records::hash::short_key;
 use froude_records::write::write_atomically;
 
 use crate::engine::slurm_queue::{self, number_in};
+use crate::input;
 use crate::store::is_name;
 use crate::store_error::StoreError;
 
@@ -58,7 +59,7 @@ impl Submission {
             }
             let read = |file: &str| {
                 let path = folder.join(file);
-                std::fs::read_to_string(&path).map_err(|e| StoreError::file(&path, e.to_string()))
+                input::text(&path).map_err(|e| StoreError::file(&path, e.to_string()))
             };
             let (name, text) = (read("name")?, read("tasks")?);
             if !is_name(&name) {
@@ -94,7 +95,7 @@ impl Submission {
     ///
     /// `None`: it was never submitted.
     pub fn number(&self) -> Result<Option<u64>, StoreError> {
-        let text = std::fs::read_to_string(self.number_file()).unwrap_or_default();
+        let text = input::text(&self.number_file()).unwrap_or_default();
         if let Some(number) = number_in(&text) {
             return Ok(Some(number));
         }

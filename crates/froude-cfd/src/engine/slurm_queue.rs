@@ -7,6 +7,7 @@ use std::fs::File;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use crate::input;
 use crate::store_error::StoreError;
 
 /// Tasks of an array where the cluster does not say how many there may be: Slurm's own default.
@@ -98,7 +99,7 @@ pub(crate) fn submit(arguments: &[String], number: &Path) -> Result<u64, StoreEr
     if !output.status.success() {
         return Err(failed(String::from_utf8_lossy(&output.stderr).trim().to_owned()));
     }
-    let text = std::fs::read_to_string(number).map_err(|e| StoreError::file(number, e.to_string()))?;
+    let text = input::text(number).map_err(|e| StoreError::file(number, e.to_string()))?;
     number_in(&text).ok_or_else(|| failed(format!("it said {text:?}, and a number was expected")))
 }
 

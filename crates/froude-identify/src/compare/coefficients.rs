@@ -2,6 +2,7 @@
 
 use froude_records::comparison::CoefficientComparison;
 use froude_records::estimate::{Coefficient, Status};
+use froude_records::units::parse_unit;
 
 use crate::common::{Common, Number};
 use crate::compare::named::Named;
@@ -31,7 +32,9 @@ pub(super) fn coefficient_rows(
         .filter_map(|(name, x)| b.estimate.coefficients.get(name).map(|y| (name, x, y)))
         .map(|(name, x, y)| {
             let sides = [Number::of_coefficient(a.estimate, name), Number::of_coefficient(b.estimate, name)];
-            let e_n = if x.unit == y.unit {
+            // Records are in SI: units of one dimension are one unit, however it is written.
+            let [of_x, of_y] = [x, y].map(|c| parse_unit(&c.unit).ok().map(|unit| unit.dimension));
+            let e_n = if x.unit == y.unit || (of_x.is_some() && of_x == of_y) {
                 e_n([&sides[0], &sides[1]], common, [first, second], is_same_data).and_then(|e_n| {
                     not_free(x, first)
                         .or_else(|| not_free(y, second))

@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use froude_records::estimate::{DataFile, Estimate};
+use froude_records::estimate::{DataFile, Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 
 use crate::compare::named::Named;
+use crate::data_files::INHERITED;
 
 /// What is read as something else than observations: it is the same error under its own key, or no error at all.
-const NOT_OBSERVED: [&str; 3] = ["campaign", "sidecar", "record"];
+const NOT_OBSERVED: [&str; 4] = ["campaign", "sidecar", "record", INHERITED];
 
 /// Runs with known weights: observations of a calibration, and of nothing else.
 const CALIBRATION: &str = "calibration";
@@ -29,6 +30,13 @@ fn is_observed(estimate: &Estimate, data: &DataFile) -> bool {
 /// Fingerprints of the observations of an estimate among files.
 fn fingerprints<'a>(estimate: &Estimate, files: impl Iterator<Item = &'a DataFile>) -> BTreeSet<&'a str> {
     files.filter(|data| is_observed(estimate, data)).map(|data| data.sha256.as_str()).collect()
+}
+
+/// The files that hold observations of an estimate; of an old record, which does not say whose they are, all of them.
+#[must_use]
+pub fn observations<'a>(file: &'a EstimateFile, estimate: &'a Estimate) -> Vec<&'a DataFile> {
+    let own: Vec<_> = file.data_of(estimate).filter(|data| is_observed(estimate, data)).collect();
+    if own.is_empty() { file.data.values().filter(|data| is_observed(estimate, data)).collect() } else { own }
 }
 
 /// Where an estimate comes from, as far as its record shows.

@@ -12,25 +12,36 @@ use super::independence::{origins, same_data};
 use crate::common::{self, Common, Number};
 use crate::compare::named::Named;
 use crate::compare::stated::Stated;
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, LOADS, unit_text};
 use crate::law::ForceLaw;
 
 /// Speeds and angles at which forces are predicted, per axis of the common range.
 const FORCE_POINTS: usize = 5;
 
-/// Whether an estimate's law gives forces along the body or across it from the motion that is set side by side; others have no part in its range.
-pub(super) fn gives_forces(estimate: &Estimate) -> bool {
+/// Why an estimate gives no load from a steady motion of stated speed and angle; `None` where it gives one. Others have no part in the common range.
+pub(super) fn gives_no_load(estimate: &Estimate) -> Option<String> {
     let one = Range { low: 1.0, high: 1.0, unit: String::new() };
     let data = operating_points(&one, &one, &[1.0], 1000.0);
-    ForceLaw::of_estimate(estimate, &data).is_ok_and(|law| {
-        law.responses.iter().any(|r| r == "f_x" || r == "f_y")
-            && law.channels().iter().all(|c| data.values(c).is_some())
-    })
+    let law = match ForceLaw::of_estimate(estimate, &data) {
+        Ok(law) => law,
+        Err(why) => return Some(format!("its law cannot be evaluated at a stated speed and angle ({why})")),
+    };
+    if !law.responses.iter().any(|r| LOADS.contains(&r.as_str())) {
+        return Some(format!("its law gives {}, which is no load", law.responses.join(", ")));
+    }
+    let lacking: Vec<&str> = law.channels().into_iter().filter(|c| data.values(c).is_none()).collect();
+    if !lacking.is_empty() {
+        return Some(format!("its law reads {}, which speed and angle do not state", lacking.join(", ")));
+    }
+    let has_value = |name: &str| estimate.coefficients.get(name).is_some_and(|c| c.value.is_some());
+    let unknown: Vec<&str> = law.coefficients.iter().map(|c| c.name.as_str()).filter(|name| !has_value(name)).collect();
+    (!unknown.is_empty()).then(|| format!("its record has no value of {}", unknown.join(", ")))
 }
 
 /// Forces by the recommended estimates over the common range of speed and angle.
 pub(super) fn predict_forces(all: &[Named<'_>], labels: &[String], out: &mut Comparison) {
-    let all: Vec<(&Named<'_>, &String)> = all.iter().zip(labels).filter(|(n, _)| gives_forces(n.estimate)).collect();
+    let all: Vec<(&Named<'_>, &String)> =
+        all.iter().zip(labels).filter(|(n, _)| gives_no_load(n.estimate).is_none()).collect();
     let recommended: Vec<_> = all.iter().copied().filter(|(n, _)| n.estimate.recommended).collect();
     let chosen = if recommended.len() >= 2 { recommended } else { all };
     let points = match Points::shared(&chosen) {
@@ -160,7 +171,7 @@ fn loads(predictions: &[Prediction<'_>], points: &Points) -> Vec<LoadComparison>
         (0..named.len()).map(|j| same_data([&named[0], &named[j]], [&origins[0], &origins[j]])).collect();
     let commons: Vec<Common<'_>> = named.iter().map(|n| Common::of(named[0].estimate, n.estimate)).collect();
     let mut out = Vec::new();
-    for component in ["f_x", "f_y"] {
+    for component in LOADS {
         for i in 0..data.rows {
             let sides: Vec<Number<'_>> = predictions.iter().map(|p| p.number(component, i, data.rows)).collect();
             let forces: Vec<Stated> = sides.iter().map(|side| side.stated).collect();
@@ -176,7 +187,7 @@ fn loads(predictions: &[Prediction<'_>], points: &Points) -> Vec<LoadComparison>
                 });
                 out.push(LoadComparison {
                     component: component.to_owned(),
-                    unit: "N".to_owned(),
+                    unit: unit_text(data, component),
                     n_links: data.values("n_links").map(|v| v[i]).filter(|_| points.has_links),
                     speed_m_s: data.values("speed").map_or(0.0, |v| v[i]),
                     angle_rad: data.values("angle").map_or(0.0, |v| v[i]),
@@ -215,8 +226,10 @@ fn operating_points(speed: &Range, angle: &Range, links: &[f64], density: f64) -
     data.put("angle", a, Dimension::ONE);
     data.put("n_links", k, Dimension::ONE);
     data.put("density", vec![density; rows], Dimension::DENSITY);
-    data.put("f_x", vec![0.0; rows], Dimension::FORCE);
-    data.put("f_y", vec![0.0; rows], Dimension::FORCE);
+    for load in LOADS {
+        let dimension = if load.starts_with("m_") { Dimension::MOMENT } else { Dimension::FORCE };
+        data.put(load, vec![0.0; rows], dimension);
+    }
     data.velocity_from_speed_and_angle();
     data
 }

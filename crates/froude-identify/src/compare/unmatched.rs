@@ -7,7 +7,7 @@ use froude_records::finding::{Finding, Severity};
 
 use super::MOST_COMPARED;
 use super::independence::{has_likes, is_one_source};
-use super::prediction::gives_forces;
+use super::prediction::gives_no_load;
 use crate::compare::named::Named;
 
 /// Estimates named where nothing could be compared.
@@ -24,7 +24,8 @@ pub fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> 
         let estimate = n.estimate;
         let loads: Vec<&str> = estimate.law.outputs.keys().map(String::as_str).collect();
         let law = if loads.is_empty() { "no formula".to_owned() } else { loads.join(", ") };
-        format!("{} ({}; {law})", estimate.id, estimate.law.name)
+        let why = gives_no_load(estimate).map_or_else(String::new, |why| format!("; predicts no load: {why}"));
+        format!("{} ({}; {law}{why})", estimate.id, estimate.law.name)
     });
     let each: Vec<String> = each.take(MOST_NAMED).collect();
     let more = if all.len() > MOST_NAMED { format!(" and {} more", all.len() - MOST_NAMED) } else { String::new() };
@@ -32,7 +33,7 @@ pub fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> 
         Severity::Warning,
         "nothing-compared",
         format!(
-            "nothing could be compared: no two estimates have the same model, and fewer than two give forces over a common range of \
+            "nothing could be compared: no two estimates have the same model, and fewer than two give loads over a common range of \
              speed; there are {}{more}",
             each.join(", ")
         ),
@@ -57,10 +58,16 @@ pub fn left_out(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
                 "the other sources' estimates by its model have no coefficient in common with it"
             }
             1.. => "its method is compared with its own kind only",
-            0 if gives_forces(n.estimate) => {
-                "no other source has its model, and forces are compared for recommended models only"
-            }
-            0 => "no other source has its model, and it gives no force along or across from a steady motion",
+            0 => match gives_no_load(n.estimate) {
+                Some(why) => &format!("no other source has its model, and it predicts no load: {why}"),
+                None if !n.estimate.validity.contains_key("speed") => {
+                    "no other source has its model, and it states no range of speed for its loads"
+                }
+                None if !n.estimate.recommended => {
+                    "no other source has its model, and loads are compared for recommended models only"
+                }
+                None => "no other source has its model, and none gives loads over a range of speed that it shares",
+            },
         };
         format!("{} ({}): {why}", n.estimate.id, n.estimate.law.name)
     };

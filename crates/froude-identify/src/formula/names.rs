@@ -35,6 +35,12 @@ pub fn load_column(name: &str) -> Option<&'static str> {
     })
 }
 
+/// The column behind `u v w p q r` and `X Y Z K M N`; any other name is itself.
+#[must_use]
+pub fn aliased(name: &str) -> &str {
+    channel_of_alias(name).or_else(|| load_column(name)).unwrap_or(name)
+}
+
 /// Names of columns that a table may have: never a coefficient by oversight.
 fn is_column_name(name: &str) -> bool {
     let base = name.strip_suffix("_dot").unwrap_or(name);
@@ -104,12 +110,15 @@ impl<'a> Resolved<'a> {
         if name == "pi" {
             return Ok(Affine::known_as(name, Op::Number(std::f64::consts::PI), Unit::ONE));
         }
-        if load_column(name).is_some() {
+        let load = load_column(name);
+        // A column of the table hides a letter, never the other way round; a load itself is what the formula gives.
+        let own = channels(name).filter(|_| load != Some(name));
+        if load.is_some() && own.is_none() {
             return Err(FormulaError::LoadName { name: name.to_owned() });
         }
+        let of = |column: &'static str| channels(column).map(|dim| (column, dim));
         let aliased = channel_of_alias(name);
-        let column = aliased.filter(|column| channels(column).is_some()).unwrap_or(name);
-        if let Some(dim) = channels(column) {
+        if let Some((column, dim)) = own.map(|dim| (name, dim)).or_else(|| of(aliased?)) {
             return Ok(Affine::known_as(name, Op::Channel(self.index_of(column)), Unit::of(dim)));
         }
         if let Some(column) = aliased {

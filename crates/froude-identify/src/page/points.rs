@@ -5,7 +5,7 @@ use froude_records::units::Dimension;
 
 use crate::IdentifyError;
 use crate::dataset::{Dataset, unit_text};
-use crate::law::{Kind, aliased};
+use crate::law::Kind;
 use crate::regression::ModelFit;
 
 /// The channel that a response is drawn against: speed where there is motion, else the first channel of its law.
@@ -16,7 +16,7 @@ pub(super) fn abscissa(model: &ModelFit, data: &Dataset) -> Option<String> {
         return None;
     }
     let used: Vec<String> = match &model.law.kind {
-        Kind::Formulas(f) => f.iter().flat_map(|f| f.channels.iter().map(|c| aliased(c).to_owned())).collect(),
+        Kind::Formulas(f) => f.iter().flat_map(|f| f.channels.clone()).collect(),
         _ => Vec::new(),
     };
     used.into_iter().find(|c| c != "density")

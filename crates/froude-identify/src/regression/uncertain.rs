@@ -52,7 +52,7 @@ impl Uncertainty {
         let mut declared = contributions(at, settings.budget, settings.campaign, settings.shared_errors, is_measured)?;
         if in_variables {
             for (part, entry) in declared.iter_mut().zip(settings.budget) {
-                part.in_scatter |= eiv::is_input_error(entry, law);
+                part.in_scatter |= eiv::is_input_error(entry, law, data);
             }
         }
         let known = known::parts(law, settings, problem, fitted);

@@ -10,7 +10,7 @@ use indexmap::IndexMap;
 
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
-use crate::law::{ForceLaw, aliased};
+use crate::law::ForceLaw;
 use crate::lint::motion::moving;
 use crate::validity::{AT_REST, off_axis};
 
@@ -62,7 +62,7 @@ pub fn asked_models(campaign: &Campaign, source: &Source) -> Result<Vec<String>,
 ///
 /// The first that is not, with its place, the channels that there are and the likely one.
 pub fn check_budget(source: &Source, data: &Dataset) -> Result<(), IdentifyError> {
-    let Some(entry) = source.uncertainty.iter().find(|e| data.values(aliased(&e.quantity)).is_none()) else {
+    let Some(entry) = source.uncertainty.iter().find(|e| data.values(data.meant(&e.quantity)).is_none()) else {
         return Ok(());
     };
     let known: Vec<&str> = data.channels.keys().map(String::as_str).collect();

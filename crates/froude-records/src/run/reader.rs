@@ -111,11 +111,7 @@ impl RunReader<BufReader<File>> {
     /// A file that cannot be read or is no MCAP file, a sidecar or metadata that cannot be read. Never an end that is
     /// missing.
     pub fn open(path: &Path) -> Result<Self, RecordError> {
-        let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
-        let file = File::open(path).map_err(failed)?;
-        if file.metadata().map_err(failed)?.is_dir() {
-            return Err(RecordError::Read { path: path.to_owned(), reason: "it is a folder".to_owned() });
-        }
+        let file = crate::read::open(path)?;
         let is_being_recorded = match file.try_lock_shared() {
             Err(TryLockError::WouldBlock) => true,
             Ok(()) => file.unlock().is_err(),
@@ -398,7 +394,7 @@ impl<R: Read + Seek> RunReader<R> {
 /// What a log states about itself at its beginning; `None` where that cannot be read.
 pub(crate) fn head_of(path: &Path) -> Result<Option<RunMeta>, RecordError> {
     let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
-    let Some(mut walk) = Walk::new(BufReader::new(File::open(path).map_err(failed)?)).map_err(failed)? else {
+    let Some(mut walk) = Walk::new(BufReader::new(crate::read::open(path)?)).map_err(failed)? else {
         return Ok(None);
     };
     while let Step::Record { opcode: op::METADATA, .. } = walk.next().map_err(failed)? {

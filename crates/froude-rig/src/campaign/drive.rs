@@ -5,6 +5,7 @@ use std::path::Path;
 use froude_control::config::Limits;
 use froude_records::carriage::RigKind;
 use froude_records::hash::sha256_of_bytes;
+use froude_records::read;
 use froude_records::run::{CAMPAIGN_COPY, CampaignMark, check_names};
 use froude_records::write::write_atomically;
 use indexmap::IndexMap;
@@ -100,15 +101,12 @@ fn own_folder(folder: &Path, campaign: &Path) -> Result<String, CampaignError> {
         move |source| CampaignError::Output { path, source }
     };
     std::fs::create_dir_all(folder).map_err(failed(folder))?;
-    let text = std::fs::read(campaign).map_err(failed(campaign))?;
+    let text = read::whole(campaign, read::OWN_BYTES, "a campaign")?;
     let copy = folder.join(CAMPAIGN_COPY);
-    match std::fs::read(&copy) {
-        Ok(there) if there == text => {}
-        Ok(_) => {
-            return Err(CampaignError::OtherCampaign { folder: folder.to_owned() });
-        }
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => write_atomically(&copy, &text)?,
-        Err(e) => return Err(failed(&copy)(e)),
+    match read::if_there(&copy, read::OWN_BYTES, "a campaign")? {
+        Some(there) if there == text => {}
+        Some(_) => return Err(CampaignError::OtherCampaign { folder: folder.to_owned() }),
+        None => write_atomically(&copy, &text)?,
     }
     Ok(sha256_of_bytes(&text))
 }

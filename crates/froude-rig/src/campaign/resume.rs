@@ -18,6 +18,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use froude_records::read::{OWN_BYTES, if_there};
 use froude_records::run::{CampaignMark, Pair, RunStatus, check_pair, read_run_meta};
 
 use super::runner::RunnerError;
@@ -63,11 +64,8 @@ pub(super) fn look(folder: &Path, id: &str, campaign: CampaignMark<'_>) -> Resul
 
 /// A sidecar is there, and not a word in it.
 fn is_blank(sidecar: &Path) -> Result<bool, RunnerError> {
-    match std::fs::read(sidecar) {
-        Err(e) if e.kind() == ErrorKind::NotFound => Ok(false),
-        Err(e) => Err(failed(sidecar, &e)),
-        Ok(bytes) => Ok(bytes.iter().all(|b| b.is_ascii_whitespace() || *b == 0)),
-    }
+    let bytes = if_there(sidecar, OWN_BYTES, "a sidecar")?;
+    Ok(bytes.is_some_and(|bytes| bytes.iter().all(|b| b.is_ascii_whitespace() || *b == 0)))
 }
 
 /// More interruptions of one run than anybody has the patience for.

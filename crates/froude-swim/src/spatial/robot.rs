@@ -14,6 +14,11 @@ use super::vector::{Axis, Inertia};
 use crate::added::added_masses;
 use crate::robot::{Robot, RobotError};
 
+/// A body whose mass is written in one or two digits is neutral within this part of it at most.
+const NEUTRAL: f64 = 0.005;
+/// A sum of masses is exact to this part.
+const SUMMED: f64 = 1e-12;
+
 /// A robot that can swim in three dimensions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpatialRobot {
@@ -25,6 +30,8 @@ pub struct SpatialRobot {
     pub righting_m: f64,
     /// How far the mass lies ahead of the buoyancy then, m: what brings its bow down.
     pub trim_m: f64,
+    /// Its mass less that of the water that it displaces, kg; zero where both are equal within the digits in which they are written.
+    pub heavy_kg: f64,
     /// Drag up and down over that across, of each module, where the file does not say it.
     pub heave_by_area: Option<Vec<f64>>,
 }
@@ -44,12 +51,13 @@ impl SpatialRobot {
         let heave = |module: &ModuleFile| {
             file.spatial.heave_drag.unwrap_or(module.link.minor_semi_axis_m / module.link.major_semi_axis_m)
         };
+        let displaced = displaced_kg(&file.modules, file.density_kg_m3);
         let links: Vec<Link> = file
             .modules
             .iter()
             .zip(&plane.chain.links)
-            .zip(&added)
-            .map(|((module, flat), added)| {
+            .zip(added.iter().zip(&displaced))
+            .map(|((module, flat), (added, displaced_kg))| {
                 let own = &module.spatial;
                 let [roll, pitch, yaw] = own.inertia_kg_m2;
                 let tensor = [[roll, 0.0, 0.0], [0.0, pitch, 0.0], [0.0, 0.0, yaw]];
@@ -66,8 +74,7 @@ impl SpatialRobot {
                     },
                     weight_n: module.mass_kg * GRAVITY_M_S2,
                     centre_of_mass_m: own.centre_of_mass_m,
-                    // A file of three dimensions has all volumes.
-                    buoyancy_n: module.volume_m3.unwrap_or(0.0) * file.density_kg_m3 * GRAVITY_M_S2,
+                    buoyancy_n: displaced_kg * GRAVITY_M_S2,
                     centre_of_buoyancy_m: own.centre_of_buoyancy_m,
                 }
             })
@@ -77,14 +84,34 @@ impl SpatialRobot {
             JointAxis::Pitch => Axis::Pitch,
         };
         let [trim_m, righting_m] = apart(&links);
+        let heavy_kg = plane.mass_kg - displaced.iter().sum::<f64>();
+        // The sum of so many masses is rounded.
+        let heavy_kg = if heavy_kg.abs() > SUMMED * plane.mass_kg { heavy_kg } else { 0.0 };
         Ok(Self {
             chain: Chain { links, joints: file.axes.iter().map(axis).collect() },
             plane,
             righting_m,
             trim_m,
+            heavy_kg,
             heave_by_area: file.spatial.heave_drag.is_none().then(|| file.modules.iter().map(heave).collect()),
         })
     }
+}
+
+/// Water that each module displaces, kg. A robot that is neutral within the digits of its masses, volumes and density is exactly neutral: a difference beyond these digits
+/// would turn a body that nothing rights, and lift or sink it. Modules that are neutral within their own digits are so by themselves, and the rest is scaled in equal parts.
+fn displaced_kg(modules: &[ModuleFile], density_kg_m3: f64) -> Vec<f64> {
+    // A file of three dimensions has all volumes.
+    let stated = |m: &ModuleFile| m.volume_m3.unwrap_or(0.0) * density_kg_m3;
+    let within = |m: &ModuleFile| m.neutral_within.min(NEUTRAL) * m.mass_kg;
+    let heavy_kg: f64 = modules.iter().map(|m| m.mass_kg - stated(m)).sum();
+    if heavy_kg.abs() > modules.iter().map(within).sum() {
+        return modules.iter().map(stated).collect();
+    }
+    let own = |m: &ModuleFile| if (m.mass_kg - stated(m)).abs() <= within(m) { m.mass_kg } else { stated(m) };
+    let mass_kg: f64 = modules.iter().map(|m| m.mass_kg).sum();
+    let factor = mass_kg / modules.iter().map(own).sum::<f64>();
+    modules.iter().map(|m| factor * own(m)).collect()
 }
 
 /// The centre of mass less that of buoyancy of a straight, level chain, ahead and down.

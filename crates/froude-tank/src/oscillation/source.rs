@@ -7,6 +7,7 @@ use froude_identify::dataset::Dataset;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
 use froude_identify::source::laws;
 use froude_records::campaign::{Campaign, Source};
+use froude_records::finding::{Finding, Severity};
 use froude_records::oscillation::OscillationSpec;
 use froude_records::run::marks::Mark;
 use froude_records::run::{Channel, Declared, FORCED_OSCILLATION, ImportedRun, Role};
@@ -94,12 +95,23 @@ fn identified(
         logs::add_step(&mut files, log, logs::cycles_step(log, motion));
     }
     let fastest_hz: Vec<f64> = motions.iter().map(|m| setup.harmonics as f64 / m.angle.period_s()).collect();
-    let mut fits = Vec::new();
+    let (mut fits, mut failed) = (Vec::new(), Vec::new());
     for drag in drags(campaign, source, &setup)? {
         progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));
-        let fit = fit(&runs, &motions, &setup, &drag, &campaign.identify).map_err(MethodError::refused)?;
-        fits.push((drag, fit));
+        match fit(&runs, &motions, &setup, &drag, &campaign.identify) {
+            Ok(fit) => fits.push((drag, fit)),
+            Err(why) => failed.push((drag.law.name.clone(), why)),
+        }
     }
+    // A law that fails costs itself alone; where all fail, nothing is found.
+    if fits.is_empty()
+        && let Some((_, why)) = failed.pop()
+    {
+        return Err(MethodError::refused(why));
+    }
+    findings.extend(failed.into_iter().map(|(law, why)| {
+        Finding::new(Severity::Warning, "not-fitted", format!("{law} could not be fitted and is left out: {why}"))
+    }));
     let chosen = record::chosen(&fits);
     findings.extend(findings::of_runs(&runs, &motions, &setup, campaign));
     findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
@@ -171,6 +183,7 @@ pub fn setup_of(
         ..Setup::new(uncertain(spec.radius_m), density, bodies)
     };
     for entry in &source.uncertainty {
+        logs::is_of_all_runs(entry)?;
         let part = if entry.relative { entry.standard } else { f64::NAN };
         let gain = match entry.quantity.as_str() {
             "density" => {

@@ -160,6 +160,7 @@ pub fn setup_of(campaign: &Campaign, source: &Source, spec: &RotationSpec) -> Re
         link: campaign.body.as_ref().and_then(|b| b.link),
     };
     for entry in &source.uncertainty {
+        logs::is_of_all_runs(entry)?;
         let refuse = |what: String| Err(MethodError::Undeclared { place: entry.place.to_string(), what });
         let part = match entry.quantity.as_str() {
             "density" => {

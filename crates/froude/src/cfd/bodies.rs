@@ -7,20 +7,28 @@ use froude_cfd::body::{Shaped, shaped};
 use froude_cfd::surface::asymmetry;
 use froude_mesh::check::{Trouble, check};
 use froude_mesh::crossing::crossings;
+use froude_mesh::files::MeshFile;
 use froude_mesh::mesh::Mesh;
 use froude_mesh::parts::part_troubles;
 use froude_mesh::plausible::{LARGEST_M, too_large};
 use froude_mesh::vector::dot;
 use froude_records::body::read_body;
+use froude_records::table::links_of_configuration;
 
 use super::{Asked, CfdInput};
 use crate::Error;
 
+/// Most links of a body: as many modules as a robot file has.
+const MOST_LINKS: u32 = 1_000;
 /// Faults of a mesh that are told one by one.
 const MOST_TOLD: usize = 6;
 
-/// The bodies of configurations, in the order in which they are named first.
-pub(super) fn bodies<'a>(asked: &Asked, named: impl IntoIterator<Item = &'a String>) -> Result<Vec<Shaped>, Error> {
+/// Hands over the bodies of configurations, in the order in which they are named first, one at a time: a plan may have hundreds.
+pub(super) fn each<'a>(
+    asked: &Asked,
+    named: impl IntoIterator<Item = &'a String>,
+    take: &mut dyn FnMut(Shaped) -> Result<(), Error>,
+) -> Result<(), Error> {
     let mut names: Vec<&String> = Vec::new();
     for name in named {
         if !names.contains(&name) {
@@ -28,35 +36,36 @@ pub(super) fn bodies<'a>(asked: &Asked, named: impl IntoIterator<Item = &'a Stri
         }
     }
     let refused = |problem: String| CfdInput { path: asked.body.clone(), problem };
-    let found = if is_body_file(&asked.body) {
-        if let Some(given) = asked.spec.lies.first() {
-            return Err(refused(format!("is a body file, which has its units and axes; take {given} out")).into());
-        }
-        let file = read_body(&asked.body)?;
-        names.into_iter().map(|name| shaped(&file, name).map_err(refused)).collect::<Result<Vec<_>, _>>()?
-    } else {
+    let checked = |body: Shaped| match asymmetry(&body.surface).filter(|_| asked.spec.is_half) {
+        Some(asymmetry) => Err(refused(format!("{asymmetry}; write domain = \"full\" in [source.cfd]"))),
+        None => Ok(body),
+    };
+    if !is_body_file(&asked.body) {
         let [name] = names[..] else {
             let problem =
                 "is a mesh, which is one body, and the plan names several configurations; write a source for each";
             return Err(refused(problem.to_owned()).into());
         };
-        vec![surface(asked, name)?]
-    };
-    for body in &found {
-        let off = if asked.spec.is_half { asymmetry(&body.surface) } else { None };
-        if let Some(asymmetry) = off {
-            let problem = format!("{asymmetry}; write domain = \"full\" in [source.cfd]");
-            return Err(refused(problem).into());
-        }
+        return take(checked(surface(asked, name)?)?);
     }
-    Ok(found)
+    if let Some(given) = asked.spec.lies.first() {
+        return Err(refused(format!("is a body file, which has its units and axes; take {given} out")).into());
+    }
+    let file = read_body(&asked.body)?;
+    let body = |name: &&String| match links_of_configuration(name) {
+        Some(links) if links > MOST_LINKS => {
+            Err(refused(format!("is planned as {name:?}, and at most {MOST_LINKS} links are meshed")))
+        }
+        _ => shaped(&file, name).map_err(refused).and_then(checked),
+    };
+    names.iter().try_for_each(|name| take(body(name)?))
 }
 
 /// A closed surface, turned into x forward, y to starboard, z down.
 fn surface(asked: &Asked, name: &str) -> Result<Shaped, Error> {
     let refused = |problem: String| CfdInput { path: asked.body.clone(), problem };
     let lies = Lies::read(&asked.body, &asked.spec.lies)?;
-    let (mesh, _) = read_mesh(&asked.body, lies.unit_m)?;
+    let MeshFile { mesh, notes, .. } = read_mesh(&asked.body, lies.unit_m)?;
     let troubles = troubles(&mesh);
     if !troubles.is_empty() {
         let unit = lies.unit_m.map_or_else(String::new, |m| format!(" --unit {}", unit_of(m)));
@@ -76,6 +85,7 @@ fn surface(asked: &Asked, name: &str) -> Result<Shaped, Error> {
     }
     let axes = Axes::Ned.vectors(lies.orientation.unwrap_or_default());
     let mut body = Shaped::of_surface(name, mesh.mapped(|v| axes.map(|axis| dot(axis, v))));
+    body.notes = notes;
     let [length_m, area_m2] = asked.reference;
     body.reference.length_m = length_m.unwrap_or(body.reference.length_m);
     body.reference.area_m2 = area_m2.unwrap_or(body.reference.area_m2);

@@ -1,5 +1,6 @@
 //! `froude cfd collect`: the forces that count, as a table of observations; and how far cases that should agree do.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use froude_cfd::again::Again;
@@ -9,12 +10,17 @@ use froude_cfd::mirror::{OneSided, is_symmetric, take_means};
 use froude_cfd::numerical::Numerical;
 use froude_cfd::outcome::Status;
 use froude_cfd::store::Store;
+use froude_records::RecordError;
 use froude_records::cfd::CfdSpec;
+use froude_records::csv_table::csv_bytes;
+use froude_records::manifest::take_own_place;
 use froude_records::number::{percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
-use froude_records::table::{Column, ColumnData, Table, links_of_configuration, prepare_table};
+use froude_records::read;
+use froude_records::table::{Column, ColumnData, Table, links_of_configuration};
 use froude_records::text::counted;
 use froude_records::units::{Dimension, Unit, parse_unit};
+use froude_records::write::Prepared;
 use serde_json::{Value, json};
 
 use super::{Asked, numerical};
@@ -26,6 +32,8 @@ pub(super) const LOADS: [&str; 6] = ["f_x", "f_y", "f_z", "m_x", "m_y", "m_z"];
 const OF_HALF: [usize; 3] = [0, 1, 5];
 /// Name of the table.
 const TABLE: &str = "observations.csv";
+/// Of a table that is compared with the new one.
+const LARGEST_TABLE: u64 = 64 << 20;
 /// Part of ½ρU²A beyond which a flow that leans to one side is worth a sentence.
 const SEEN: f64 = 0.01;
 
@@ -62,11 +70,15 @@ struct Pair {
 /// As the campaign is read; no case has a result that counts; the table cannot be written.
 pub fn collect(campaign: &Path, source: Option<&str>) -> Result<Collected, Error> {
     let asked = Asked::read(campaign, source)?;
-    of_folder(&asked.folder, &asked.spec)
+    of_folder(&asked.folder, &asked.spec, || Ok(()))
 }
 
-/// The same of a folder of cases, which are computed as `spec` says.
-pub(super) fn of_folder(folder: &Path, spec: &CfdSpec) -> Result<Collected, Error> {
+/// The same of a folder of cases, which are computed as `spec` says. `may_write` is asked where the table is not there yet.
+pub(super) fn of_folder(
+    folder: &Path,
+    spec: &CfdSpec,
+    may_write: impl FnOnce() -> Result<(), RecordError>,
+) -> Result<Collected, Error> {
     let found = results(&Store::open(folder)?);
     let numerical = Numerical::of(&found.rows, spec);
     let (mut rows, pairs) = paired(found.rows);
@@ -82,7 +94,11 @@ pub(super) fn of_folder(folder: &Path, spec: &CfdSpec) -> Result<Collected, Erro
     let one_sided = if is_symmetric(spec) { take_means(&mut rows) } else { Vec::new() };
     let path = folder.join(TABLE);
     let table = table(&rows, &numerical, &path);
-    prepare_table(&table, &path)?.take_place()?;
+    let bytes = csv_bytes(&table)?;
+    if read::if_there(&path, LARGEST_TABLE, "a table")?.as_deref() != Some(&bytes[..]) {
+        may_write()?;
+        take_own_place(Prepared::new(&path, |out| out.write_all(&bytes))?)?;
+    }
     Ok(Collected { path, table, rows, without: found.without, pairs, one_sided, numerical })
 }
 

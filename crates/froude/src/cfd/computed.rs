@@ -13,6 +13,7 @@ use froude_identify::uncertainty::SharedError;
 use froude_identify::validation::{STD_ITERATIVE, STD_NUMERICAL};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
+use froude_records::output::inside;
 use froude_records::table::Table;
 use froude_records::text::counted;
 
@@ -50,7 +51,8 @@ impl Method for Computed {
         let of_cases = |other: &&Source| other.cfd.is_some() && other.input == source.input;
         let spec =
             source.cfd.clone().or_else(|| campaign.sources.iter().find(of_cases)?.cfd.clone()).unwrap_or_default();
-        let collected = of_folder(source.input.path(), &spec)
+        let may_write = || inside(&campaign.path, source.input.path(), &source.place, "cases", "froude identify");
+        let collected = of_folder(source.input.path(), &spec, may_write)
             .map_err(|e| MethodError::input(source.input.path(), e.to_string()))?;
         // Cases of one configuration err alike.
         let group = source.group.clone().or_else(|| Some("configuration".to_owned()));

@@ -13,6 +13,8 @@ use froude_cfd::openfoam::OpenFoam;
 use froude_cfd::poly_mesh::PolyMesh;
 use froude_cfd::quality::Quality;
 use froude_cfd::snappy::Made;
+use froude_cfd::surface::{bounds_m, shadow_m2};
+use froude_hydro::similarity::blockage;
 use froude_mesh::sections::SectionBody;
 use froude_records::cfd::Mesher;
 
@@ -46,8 +48,12 @@ pub(super) struct Ready {
 /// A body with the meshes of its cases, of all angles or of one.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Group {
-    /// The body.
-    pub body: Shaped,
+    /// What was left out or changed in reading the body, a sentence each.
+    pub notes: Vec<String>,
+    /// Height of the body, z, m.
+    pub height_m: f64,
+    /// Part of a tank's section that the body blocks \[-\].
+    pub blockage: Option<f64>,
     /// The same as the run matrix takes it.
     pub meshed: Meshed,
     /// Its own mesh first.
@@ -86,8 +92,15 @@ fn of_angle(asked: &Asked, body: &Shaped, angle_rad: Option<f64>, cancel: &Atomi
             e => CfdInput { path: asked.body.clone(), problem: format!("no mesh of {name}: {e}") }.into(),
         }
     };
+    // The surface itself is not kept: a plan may have hundreds of bodies.
+    let [low, high] = bounds_m(&body.surface);
     let group = |meshes: Vec<Ready>| Group {
-        body: body.clone(),
+        notes: body.notes.clone(),
+        height_m: high[2] - low[2],
+        blockage: asked.spec.tank.zip(angle_rad).map(|(tank, angle)| {
+            let (sin, cos) = angle.sin_cos();
+            blockage(shadow_m2(&body.surface, [cos, -sin, 0.0]), tank.width_m * tank.depth_m)
+        }),
         meshed: Meshed {
             configuration: body.configuration.clone(),
             mesh: meshes.first().map(|own| own.mesh.clone()).unwrap_or_default(),

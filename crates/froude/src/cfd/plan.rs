@@ -1,7 +1,7 @@
 //! `froude cfd plan`: meshes are made, cases are written, and priced before anything runs.
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use froude_cfd::again::Again;
 use froude_cfd::case::{Case, LAMINAR_REYNOLDS, Reference, Water};
@@ -10,8 +10,7 @@ use froude_cfd::cost::Cost;
 use froude_cfd::matrix::{Meshed, cases};
 use froude_cfd::snappy::Made;
 use froude_cfd::store::{State, Store};
-use froude_cfd::surface::shadow_m2;
-use froude_hydro::similarity::{blockage, friction_ittc57, friction_laminar};
+use froude_hydro::similarity::{friction_ittc57, friction_laminar};
 use froude_panel::refine::duration;
 use froude_records::number::{count, percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
@@ -88,9 +87,13 @@ pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &d
     let asked = Asked::read(campaign, source)?;
     let mut meshed: Vec<Group> = Vec::new();
     let named = asked.source.plan.iter().flat_map(|block| &block.configurations);
-    for body in bodies::bodies(&asked, named)? {
+    bodies::each(&asked, named, &mut |body| {
+        if cancel.load(Ordering::SeqCst) {
+            return Err(Error::Stopped);
+        }
         meshed.extend(of_body(&asked, &body, cancel, tell)?);
-    }
+        Ok(())
+    })?;
     let bodies: Vec<Meshed> = meshed.iter().map(|group| group.meshed.clone()).collect();
     let refused = |problem| CfdInput { path: campaign.to_owned(), problem };
     let cases = cases(&asked.source, &asked.spec, asked.water, &bodies).map_err(refused)?;
@@ -129,10 +132,7 @@ pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &d
             skewness: ready.max_skewness,
             cubes: ready.cubes.clone(),
             y_plus: y_plus(asked.water, reference.length_m, speed_m_s, ready.first_layer_m),
-            blockage: asked.spec.tank.zip(*angle_rad).map(|(tank, angle)| {
-                let (sin, cos) = angle.sin_cos();
-                blockage(shadow_m2(&group.body.surface, [cos, -sin, 0.0]), tank.width_m * tank.depth_m)
-            }),
+            blockage: group.blockage,
             cases: own.len(),
             open: open().count(),
             cpu_s: open().map(|c| cost.expected_s(c)).sum(),
@@ -164,6 +164,9 @@ const COVERED: f64 = 0.9;
 
 fn said(asked: &Asked, meshed: &[Group], cases: &[Case], change: &Change) -> Vec<String> {
     let mut out = Vec::new();
+    for group in meshed {
+        out.extend(group.notes.iter().map(|note| format!("{}: {note}", group.meshed.configuration)));
+    }
     for (group, ready) in meshed.iter().flat_map(|group| group.meshes.iter().map(move |ready| (group, ready))) {
         let name = &group.meshed.configuration;
         if let Some(place) = &ready.instead {

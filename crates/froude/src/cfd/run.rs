@@ -84,7 +84,7 @@ pub fn run_case(folder: &Path, ranks: usize, cancel: &AtomicBool) -> Result<Stri
     Ok(match work(&store, &id, &FoamSolver { openfoam: programs, ranks }, PATIENCE, cancel, &|_, _| (), &|_| ())? {
         Worked::Accepted(done) => format!("{}: {}", done.outcome.status.word(), done.outcome.reason),
         Worked::Already(done) => format!("has a result already ({})", done.outcome.status.word()),
-        Worked::Cancelled => "stopped as asked, and has no result".to_owned(),
+        Worked::Cancelled => return Err(Error::Stopped),
     })
 }
 

@@ -13,11 +13,13 @@ use froude_cfd::openfoam::OpenFoam;
 use froude_cfd::orphans;
 use froude_cfd::oscillation::{Period, Swing, swing as compute};
 use froude_cfd::solve::{How, Progress};
-use froude_cfd::surface::bounds_m;
+use froude_cfd::store::check_links;
 use froude_records::campaign::{Input, Source, SourceKind, read_campaign};
 use froude_records::hash::sha256_of_bytes;
 use froude_records::number::significant;
+use froude_records::output::inside;
 use froude_records::page::{DocumentSection, TextTable};
+use froude_records::read;
 use froude_records::text::counted;
 use froude_records::write::write_atomically;
 use froude_tank::oscillation::computed;
@@ -31,6 +33,8 @@ use crate::Error;
 
 /// Steps of time in a period.
 const STEPS: usize = 200;
+/// Marks the folder of a run's flow as one that a swing computes.
+const MARK: &str = "froude-swing";
 /// What the sidecar of a computed run says before the hash of its inputs.
 const STAMP: &str = "Computed by froude cfd swing from the inputs ";
 
@@ -101,7 +105,10 @@ pub fn swing(
     let source = chosen(&read.sources, name).map_err(|problem| CfdInput { path: campaign.to_owned(), problem })?;
     let (setup, planned) = computed::asked(&read, source).map_err(Error::Method)?;
     let runs = source.input.path();
+    inside(campaign, runs, &source.place, "runs", "froude cfd swing")?;
     let folder = runs.with_file_name(format!("{}-cfd", runs.file_name().unwrap_or_default().to_string_lossy()));
+    inside(campaign, &folder, &source.place, "runs", "froude cfd swing")?;
+    check_links(&folder)?;
     let asked = Asked::of(&read, source, folder)?;
     let programs = OpenFoam::find()?;
     for path in [&asked.folder, runs] {
@@ -148,7 +155,8 @@ fn check_logs(runs: &Path, all: &[Job]) -> Result<(), Error> {
         let job = all.iter().find(|job| path.file_stem().is_some_and(|stem| *stem == *job.planned.id));
         let is_sidecar = path.extension().is_some_and(|end| end == "toml");
         let has_stamp = |job: &Job| {
-            std::fs::read_to_string(&path).is_ok_and(|text| text.starts_with(&format!("# {}\n", job.stamp)))
+            read::text(&path, read::OWN_BYTES, "a sidecar")
+                .is_ok_and(|text| text.starts_with(&format!("# {}\n", job.stamp)))
         };
         if job.is_none_or(|job| is_sidecar && !has_stamp(job)) {
             let problem = "is not of a run that this plan computes from these inputs, and froude identify would fit it with the others; take the run's log and sidecar away, or name another folder in `runs`";
@@ -189,9 +197,13 @@ fn prepared(
     now: &(dyn Fn(&str) + Sync),
 ) -> Result<Vec<Job>, Error> {
     let mut meshed = Vec::new();
-    for body in bodies::bodies(asked, setup.bodies.iter().map(|body| &body.name))? {
+    bodies::each(asked, setup.bodies.iter().map(|body| &body.name), &mut |body| {
+        if cancel.load(Ordering::SeqCst) {
+            return Err(Error::Stopped);
+        }
         meshed.extend(of_body(asked, &body, cancel, now)?);
-    }
+        Ok(())
+    })?;
     let job = |planned: Planned| {
         let name = &setup.bodies[planned.body].name;
         let body = meshed.iter().find(|group| group.meshed.configuration == *name)?;
@@ -220,9 +232,8 @@ fn prepared(
         // The log has the angle, which the swing knows only times the radius.
         let inputs = format!("{} {swing:?} {rig:?} {}", case.hash(), planned.swing.amplitude_rad);
         let stamp = format!("{STAMP}{}", sha256_of_bytes(inputs.as_bytes()));
-        let [low, high] = bounds_m(&body.body.surface);
         let mesh = asked.folder.join(MESHES).join(&case.mesh);
-        Some(Job { planned, mesh, case, swing, height_m: high[2] - low[2], stamp })
+        Some(Job { planned, mesh, case, swing, height_m: body.height_m, stamp })
     };
     Ok(planned.into_iter().filter_map(job).collect())
 }
@@ -278,10 +289,16 @@ fn one(
     let own = folder.join(&job.planned.id);
     orphans::end(&own);
     let failed = |source| Error::Output { path: own.clone(), source };
-    if own.exists() {
+    // What was begun carries a mark; anything else of this name is somebody's.
+    let mark = own.join(MARK);
+    if mark.exists() {
         std::fs::remove_dir_all(&own).map_err(failed)?;
+    } else if std::fs::read_dir(&own).is_ok_and(|mut entries| entries.next().is_some()) {
+        let problem = "was not written by froude cfd swing and would be emptied; move it away".to_owned();
+        return Err(CfdInput { path: own, problem }.into());
     }
     std::fs::create_dir_all(&own).map_err(failed)?;
+    write_atomically(&mark, job.stamp.as_bytes())?;
     let swung = match compute(&job.case, &job.swing, &job.mesh, &own, how) {
         Ok(swung) => swung,
         Err(error) if error.is_cancelled() => return Ok(None),

@@ -15,6 +15,7 @@ use froude_swim::drag::LinkDrag;
 use froude_swim::robot::Robot;
 use serde_json::{Value, json};
 
+use super::space::RIGHTS_ITSELF_M;
 use super::told::NEUTRAL;
 use crate::Error;
 
@@ -221,7 +222,15 @@ impl Look {
     }
 
     fn sentences(&self) -> Vec<String> {
-        let mut out = Vec::new();
+        let mut out = self.file.remarks.clone();
+        if let (true, Some(trim)) = (self.file.spatial.is_3d, self.trim())
+            && trim.below_m <= RIGHTS_ITSELF_M
+        {
+            out.push(format!(
+                "no stable equilibrium: the centre of mass lies {} the centre of buoyancy, and nothing rights the robot; raise center_of_buoyancy or lower center_of_mass",
+                if trim.below_m < -RIGHTS_ITSELF_M { "above" } else { "at the height of" }
+            ));
+        }
         let water = self.file.density_kg_m3;
         match self.robot.heavy_kg {
             None => {

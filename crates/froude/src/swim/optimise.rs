@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use froude_records::manifest::{may_replace, take_own_place};
 use froude_records::number::{count, p_value};
 use froude_records::page::{DocumentSection, TextTable};
-use froude_records::parquet_table::write_parquet;
+use froude_records::table::prepare_table;
 use froude_records::text::counted;
 use froude_swim::draws::Beyond;
 use froude_swim::front::{Objective, Search};
@@ -58,6 +59,8 @@ pub fn optimise(job: &SweepJob, of: [Objective; 2], tell: &(dyn Fn(usize, usize)
         tell(done.fetch_add(1, Ordering::Relaxed) + 1, all.load(Ordering::Relaxed));
         row
     };
+    let written = job.out.join("front.parquet");
+    may_replace(&written)?;
     let swim = |gaits: &[Gait]| -> Result<Vec<Row>, Error> {
         all.fetch_add(gaits.len(), Ordering::Relaxed);
         Ok(gaits.par_iter().map(|gait| row((0, gait))).collect())
@@ -79,10 +82,9 @@ pub fn optimise(job: &SweepJob, of: [Objective; 2], tell: &(dyn Fn(usize, usize)
     } else {
         Vec::new()
     };
-    let written = job.out.join("front.parquet");
     if !front.is_empty() {
         std::fs::create_dir_all(&job.out).map_err(|source| Error::Output { path: job.out.clone(), source })?;
-        write_parquet(&table(&front, &written), &written)?;
+        take_own_place(prepare_table(&table(&front, &written), &written)?)?;
     }
     let drawn = job.draws.map(|drawing| (drawing, ready.beyond));
     Ok(Found { name: ready.name, of, front, shown, beats, drawn, swum: search.rows(), written })

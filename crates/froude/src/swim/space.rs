@@ -22,12 +22,12 @@ use froude_swim::trajectory::Cut;
 use serde_json::{Value, json};
 
 use super::moves::{self, Moves, Wave};
-use super::told::{self, NEUTRAL};
+use super::told;
 use super::{Job, MOMENTS, Pitching, SwimInput};
 use crate::{Error, results};
 
 /// A body rights itself when its buoyancy lies above its mass by this much, m.
-const RIGHTS_ITSELF_M: f64 = 1e-5;
+pub(super) const RIGHTS_ITSELF_M: f64 = 1e-5;
 /// A trim is none below this, m.
 const TRIMMED_M: f64 = 1e-4;
 /// Multipliers within this of one are one.
@@ -60,6 +60,7 @@ pub struct SpatialWritten {
 }
 
 pub(super) fn swim(file: &RobotFile, job: &Job, pitching: &Pitching) -> Result<SpatialSwum, Error> {
+    super::spares_inputs(file, job)?;
     let robot = SpatialRobot::of(file)?;
     let joints = robot.chain.joints.len();
     let wrong = |path: &Path, problem: &str| SwimInput { path: path.to_owned(), problem: problem.to_owned() };
@@ -241,9 +242,17 @@ impl SpatialSwum {
         }
     }
 
-    fn sentences(&self) -> Vec<String> {
+    /// What is to be read before the figures: a motion that the swimmer leaves, a body that does not stay upright.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
         self.stability(&mut out);
+        out
+    }
+
+    fn sentences(&self) -> Vec<String> {
+        let mut out = self.warnings();
+        self.trim(&mut out);
         self.water(&mut out);
         self.drag(&mut out);
         out
@@ -259,18 +268,28 @@ impl SpatialSwum {
             ));
         }
         let righting_mm = 1e3 * self.robot.righting_m;
-        if self.robot.righting_m > RIGHTS_ITSELF_M {
-            out.push(format!("rights itself: its mass lies {} mm below its buoyancy", significant(righting_mm, 3)));
-        } else if self.robot.righting_m < -RIGHTS_ITSELF_M {
+        if self.robot.righting_m < -RIGHTS_ITSELF_M {
             let is_turned = 0.5 * (p.roll[0] + p.roll[1]).abs() > FRAC_PI_2;
             let so = if is_turned {
                 "it has turned over, and swims bottom up"
             } else {
                 "it swims as it lies, and wants to turn over"
             };
-            out.push(format!("top-heavy: its mass lies {} mm above its buoyancy; {so}", significant(-righting_mm, 3)));
-        } else {
-            out.push("nothing rights it: its mass lies at the height of its buoyancy, and roll and pitch stay as they are; raise center_of_buoyancy or lower center_of_mass where the robot is weighted".to_owned());
+            out.push(format!(
+                "unstable equilibrium, top-heavy: the centre of mass lies {} mm above the centre of buoyancy; {so}",
+                significant(-righting_mm, 3)
+            ));
+        } else if self.robot.righting_m <= RIGHTS_ITSELF_M {
+            out.push("no stable equilibrium, nothing rights it: the centre of mass lies at the height of the centre of buoyancy, and any disturbance of roll and pitch stays; raise center_of_buoyancy or lower center_of_mass where the robot is weighted".to_owned());
+        }
+    }
+
+    fn trim(&self, out: &mut Vec<String>) {
+        if self.robot.righting_m > RIGHTS_ITSELF_M {
+            out.push(format!(
+                "rights itself: its mass lies {} mm below its buoyancy",
+                significant(1e3 * self.robot.righting_m, 3)
+            ));
         }
         if self.robot.trim_m.abs() > TRIMMED_M {
             let way = if self.robot.trim_m > 0.0 { "ahead of" } else { "behind" };
@@ -283,9 +302,17 @@ impl SpatialSwum {
 
     fn water(&self, out: &mut Vec<String>) {
         let p = &self.swim.periodic;
-        if let Some(heavy) = self.robot.plane.heavy_kg
-            && heavy.abs() > NEUTRAL * self.robot.plane.mass_kg
-        {
+        let heavy = self.robot.heavy_kg;
+        if heavy == 0.0 {
+            let stated = self.robot.plane.heavy_kg.unwrap_or(0.0);
+            // The sum of the modules is rounded.
+            if stated.abs() > 1e-12 * self.robot.plane.mass_kg {
+                out.push(format!(
+                    "neutral within the digits given: mass and displaced water differ by {} kg, and weight and buoyancy are taken as equal",
+                    significant(stated.abs(), 2)
+                ));
+            }
+        } else {
             let (way, goes) = if heavy > 0.0 { ("heavier", "sinks") } else { ("lighter", "rises") };
             out.push(format!(
                 "not neutral: the robot is {} kg {way} than the water that its modules displace ({} of its mass), and {goes} at {} m/s on its way",

@@ -9,14 +9,15 @@ mod page;
 mod parts;
 pub(super) mod told;
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use froude_records::parquet_table::write_parquet;
+use froude_records::manifest::{may_replace, take_own_place};
 use froude_records::robot::{AddedFile, RobotFile, is_urdf, sidecar_of_urdf};
-use froude_records::table::{Column, ColumnData, Table};
+use froude_records::table::{Column, ColumnData, Table, prepare_table};
 use froude_records::units::{Dimension, Unit, parse_unit};
-use froude_records::write::write_atomically;
+use froude_records::write::Prepared;
 use froude_swim::blueprint::Blueprint;
 use froude_swim::draws::Beyond;
 use froude_swim::gait::Gait;
@@ -112,6 +113,16 @@ pub enum SweepError {
         /// Most of them.
         most: usize,
     },
+    /// A part of a sweep in the place of another.
+    #[error("{}: it holds part {other:06}, not part {part:06}: it was renamed or copied; delete it, and it is made again", .path.display())]
+    Elsewhere {
+        /// The file.
+        path: PathBuf,
+        /// Whose place it is.
+        part: usize,
+        /// Which it is.
+        other: usize,
+    },
     /// Another process makes the same.
     #[error("{}: another process is at this sweep; wait for it, or name another folder with --out", .folder.display())]
     Busy {
@@ -133,13 +144,17 @@ pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Swe
     let each = ready.robots.len();
     let rows = ready.gaits * each;
     std::fs::create_dir_all(&job.out).map_err(|source| Error::Output { path: job.out.clone(), source })?;
+    let [written, report, result] = ["sweep.parquet", "report.html", "result.json"].map(|name| job.out.join(name));
+    for path in [&written, &report, &result] {
+        may_replace(path)?;
+    }
     let asked = format!("{:?} {:?} {:?}", ready.grid, job.step_s, job.draws);
     let parts = Parts::begin(&job.out, &parts::key(&ready.depends_on, &asked)?, rows)?;
     let done = AtomicUsize::new(0);
     let resumed = AtomicUsize::new(0);
     let count = |n: usize| tell(done.fetch_add(n, Ordering::Relaxed) + n, rows);
     let of_part = |part: usize| -> Result<Vec<Row>, Error> {
-        if let Some(found) = parts.read(part) {
+        if let Some(found) = parts.read(part)? {
             resumed.fetch_add(found.len(), Ordering::Relaxed);
             count(found.len());
             return Ok(found);
@@ -155,15 +170,14 @@ pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Swe
     };
     let all: Vec<Vec<Row>> = (0..parts.count()).into_par_iter().map(of_part).collect::<Result<_, _>>()?;
     let all = all.concat();
-    let written = job.out.join("sweep.parquet");
-    write_parquet(&table(&all, &written), &written)?;
+    take_own_place(prepare_table(&table(&all, &written), &written)?)?;
     let others = parts.finish();
     let drawn = job.draws.map(|drawing| (drawing, ready.beyond));
-    let report = job.out.join("report.html");
     let swept =
         Swept { name: ready.name, rows: all, each, drawn, resumed: resumed.into_inner(), written, report, others };
-    write_atomically(&swept.report, swept.page()?.as_bytes())?;
-    write_atomically(&job.out.join("result.json"), format!("{:#}\n", swept.as_json()).as_bytes())?;
+    let page = swept.page()?;
+    take_own_place(Prepared::new(&swept.report, |file| file.write_all(page.as_bytes()))?)?;
+    take_own_place(Prepared::new(&result, |file| writeln!(file, "{:#}", swept.as_json()))?)?;
     Ok(swept)
 }
 

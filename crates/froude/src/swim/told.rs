@@ -168,8 +168,9 @@ impl Swum {
         }
     }
 
-    fn sentences(&self) -> Vec<String> {
-        let f = Figures::of(&self.came);
+    /// What is to be read before the figures: a motion that the swimmer leaves.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
         if let Came::Gait(s) = &self.came
             && s.periodic.multipliers[0] > 1.0
@@ -179,9 +180,16 @@ impl Swum {
                 significant(s.periodic.multipliers[0], 3)
             ));
         }
+        out
+    }
+
+    fn sentences(&self) -> Vec<String> {
+        let f = Figures::of(&self.came);
+        let mut out = self.warnings();
         Self::drag(&f, &mut out);
         self.joints(&f, &mut out);
         self.body(&mut out);
+        out.extend(self.remarks.iter().cloned());
         out
     }
 

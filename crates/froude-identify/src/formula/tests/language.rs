@@ -119,9 +119,14 @@ fn half_powers_are_followed_and_whole_ones_recorded() {
 fn a_column_named_like_an_alias_and_a_constant_come_first() {
     let own = |name: &str| (name == "r").then_some(ONE);
     assert_eq!(Formula::parse("f_x", "c*r", &own, NEWTON, &[]).unwrap().channels, ["r"]);
-    // A caller that resolves aliases itself gets column names all the same.
+    // A column called like an alias is that column, also where the table has the other one.
     let both = |name: &str| matches!(name, "v" | "v_y").then_some(SPEED);
-    assert_eq!(Formula::parse("f_x", "c*v + d*v_y", &both, NEWTON, &[]).unwrap().channels, ["v_y"]);
+    assert_eq!(Formula::parse("f_x", "c*v + d*v_y", &both, NEWTON, &[]).unwrap().channels, ["v", "v_y"]);
+    for letter in ["u", "v", "w", "p", "q", "r", "X", "Y", "Z", "K", "M", "N"] {
+        let own = |name: &str| (name == letter || name.len() == 3).then_some(SPEED);
+        let f = Formula::parse("f_x", &format!("c*{letter}"), &own, NEWTON, &[]).unwrap();
+        assert_eq!(f.channels, [letter]);
+    }
     let f = Formula::parse("f_x", "c*v", &both, NEWTON, &[("v".to_owned(), 3.0, ONE)]).unwrap();
     assert!(f.offset && f.channels.is_empty());
     assert_eq!(f.coefficients[0].1, NEWTON);

@@ -1,12 +1,14 @@
 //! Parts of a sweep on the disk: what is done stays done when the process is killed.
 //!
-//! A part is its rows as 64-bit numbers with the code of their status, and their SHA-256. One that is cut off or damaged is none, and is made again.
+//! A part is its rows as 64-bit numbers with the code of their status, and the SHA-256 of the sweep's key, the part's number and the rows. One that
+//! is cut off or damaged is made again. One whose sum is that of another place (somebody renamed it) is rejected by its name.
 
 use std::fs::{File, TryLockError};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_records::hash::{sha256_of_bytes, sha256_of_file, short_key};
+use froude_records::read::if_there;
 use froude_records::write::write_atomically;
 use froude_swim::sweep::{COLUMNS, Row, Status};
 
@@ -19,6 +21,8 @@ const PARTS: usize = 64;
 const MOST_ROWS: usize = 1024;
 /// Bytes of a row.
 const ROW: usize = 8 * COLUMNS.len() + 1;
+/// Bytes of a sum, hexadecimal.
+const SUM: usize = 64;
 /// Before the key.
 const PREFIX: &str = ".sweep-";
 
@@ -35,6 +39,7 @@ pub(super) fn key(files: &[PathBuf], asked: &str) -> Result<String, Error> {
 #[derive(Debug)]
 pub(super) struct Parts {
     folder: PathBuf,
+    key: String,
     rows: usize,
     each: usize,
     others: Vec<PathBuf>,
@@ -64,7 +69,7 @@ impl Parts {
         let entries = std::fs::read_dir(out).map_err(failed(out))?;
         let mut others: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(is_other).collect();
         others.sort();
-        Ok(Self { folder, rows, each: (rows / PARTS).clamp(1, MOST_ROWS), others, _lock: lock })
+        Ok(Self { folder, key: key.to_owned(), rows, each: (rows / PARTS).clamp(1, MOST_ROWS), others, _lock: lock })
     }
 
     pub(super) fn count(&self) -> usize {
@@ -80,23 +85,38 @@ impl Parts {
         self.folder.join(format!("{part:06}"))
     }
 
-    /// The rows of a part that is done.
-    pub(super) fn read(&self, part: usize) -> Option<Vec<Row>> {
-        let bytes = std::fs::read(self.path(part)).ok()?;
-        let (content, sum) = bytes.split_at_checked(ROW * self.rows(part).len())?;
-        if sum != sha256_of_bytes(content).as_bytes() {
-            return None;
+    /// What a part's sum is of: its place among the parts of this sweep, and its rows.
+    fn sum(&self, part: usize, content: &[u8]) -> String {
+        sha256_of_bytes(&[format!("{} {part} ", self.key).as_bytes(), content].concat())
+    }
+
+    /// The rows of a part that is done; `None` where it is not there, or damaged.
+    ///
+    /// # Errors
+    ///
+    /// [`SweepError::Elsewhere`]: it is whole, and another part.
+    pub(super) fn read(&self, part: usize) -> Result<Option<Vec<Row>>, Error> {
+        let path = self.path(part);
+        let most = (ROW * self.each + SUM) as u64;
+        let Ok(Some(bytes)) = if_there(&path, most, "a part of a sweep") else { return Ok(None) };
+        let Some((content, sum)) = bytes.len().checked_sub(SUM).map(|at| bytes.split_at(at)) else { return Ok(None) };
+        let is_its = |part: usize| sum == self.sum(part, content).as_bytes();
+        if content.len() == ROW * self.rows(part).len() && is_its(part) {
+            return Ok(content.chunks_exact(ROW).map(row).collect());
         }
-        content.chunks_exact(ROW).map(row).collect()
+        match (0..self.count()).find(|other| is_its(*other)) {
+            Some(other) => Err(SweepError::Elsewhere { path, part, other }.into()),
+            None => Ok(None),
+        }
     }
 
     pub(super) fn write(&self, part: usize, rows: &[Row]) -> Result<(), Error> {
-        let mut bytes = Vec::with_capacity(ROW * rows.len() + 64);
+        let mut bytes = Vec::with_capacity(ROW * rows.len() + SUM);
         for row in rows {
             bytes.extend(row.numbers.iter().flat_map(|x| x.to_le_bytes()));
             bytes.push(row.status as u8);
         }
-        let sum = sha256_of_bytes(&bytes);
+        let sum = self.sum(part, &bytes);
         bytes.extend(sum.as_bytes());
         Ok(write_atomically(&self.path(part), &bytes)?)
     }
@@ -131,15 +151,19 @@ mod tests {
             .map(|status| Row { numbers: std::array::from_fn(|j| 1.0 / (j as f64 + 3.0)), status })
             .to_vec();
         parts.write(3, &made).unwrap();
-        assert_eq!(parts.read(3).unwrap(), made);
-        assert_eq!(parts.read(4), None);
+        assert_eq!(parts.read(3).unwrap(), Some(made.clone()));
+        assert_eq!(parts.read(4).unwrap(), None);
         let whole = std::fs::read(parts.path(3)).unwrap();
         std::fs::write(parts.path(3), &whole[..whole.len() - 1]).unwrap();
-        assert_eq!(parts.read(3), None);
+        assert_eq!(parts.read(3).unwrap(), None);
         let mut changed = whole.clone();
         changed[5] ^= 1;
         std::fs::write(parts.path(3), &changed).unwrap();
-        assert_eq!(parts.read(3), None);
+        assert_eq!(parts.read(3).unwrap(), None);
+        // In the place of another it is rejected by name; the part that belongs there is made again once it is gone.
+        std::fs::write(parts.path(5), &whole).unwrap();
+        let said = parts.read(5).unwrap_err().to_string();
+        assert!(said.contains("000005: it holds part 000003, not part 000005"), "{said}");
         let busy = Parts::begin(out.path(), "0123", 130).unwrap_err().to_string();
         assert!(busy.contains("another process"), "{busy}");
         let other = Parts::begin(out.path(), "4567", 1).unwrap();
