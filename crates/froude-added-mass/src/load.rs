@@ -152,6 +152,7 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
         if rest > 0 {
             wrong.push(format!("  and {rest} more"));
         }
+        wrong.extend(notes.iter().map(|note| format!("  as it was read: {note}")));
         if is_open {
             wrong.push(
                 "  where it looks closed and is not, corners lie within edges of neighbours (T-junctions): let the CAD program mesh it again"

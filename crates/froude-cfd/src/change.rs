@@ -83,7 +83,7 @@ pub fn plan(root: &Path, cases: &[Case]) -> Result<(Store, Change), StoreError> 
 /// How names begin that a case's folder holds beside its file.
 const OF_A_CASE: [&str; 5] = ["lock-", "attempt-", "retired-", "result.json", ".froude-unfinished-"];
 
-/// Refuses a folder that holds what no plan wrote: another `campaign.json`, and folders among the cases that are none.
+/// Rejects a folder with a `campaign.json`, or with folders among its cases, that no plan wrote.
 fn only_own(root: &Path) -> Result<(), StoreError> {
     if root.join(CAMPAIGN_FILE).symlink_metadata().is_ok() {
         Store::open(root)?;

@@ -1093,17 +1093,21 @@ fn corners_at_one_place_are_one_vertex_in_every_format() {
     for (name, content) in files {
         std::fs::write(at.join(name), content).unwrap();
         let text = lines(at, &[&[name], &options[..]].concat());
-        assert!(text.contains(" merged (closer than 0.000006 m), first at "), "{name}: {text}");
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains(" merged (closer than 0.000006"), "{name}: {text}");
         let a = matrix(&record(at, &[&[name], &options[..]].concat()), 0);
         for i in 0..6 {
             let part = a[i][i] / exact[i][i];
-            assert!((part - 1.0).abs() < SHAKEN, "{name}, A{0}{0}: {1} of {2}", i + 1, a[i][i], exact[i][i]);
+            let allowed = if name == "egg.stl" { DIVIDED } else { SHAKEN };
+            assert!((part - 1.0).abs() < allowed, "{name}, A{0}{0}: {1} of {2}", i + 1, a[i][i], exact[i][i]);
         }
     }
 }
 
-/// Quadrilaterals that 1e-8 m warp are divided into triangles only above a millionth of their radius; an STL has triangles, and converges from another side.
-const SHAKEN: f64 = 0.01;
+/// 1e-8 m on semi-axes of 1 m and more change an inertia, which goes with the fifth power of a length, by 5e-8 at most; twice that.
+const SHAKEN: f64 = 1e-7;
+/// An STL divides every quadrilateral into two triangles, and the meshes of the others have the quadrilaterals.
+const DIVIDED: f64 = 1e-3;
 
 /// Numbers that count from 1, counted from 0.
 fn zero_based(numbers: &str) -> String {

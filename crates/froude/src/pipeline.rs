@@ -237,7 +237,7 @@ impl Gathered {
         if method::is_of_a_servo(source, purpose)? {
             if let Some(path) = same_file {
                 let text = format!(
-                    "{} has the SHA-256 of {}, which was fitted: this is no validation, its errors are smaller than on new data",
+                    "{} has the SHA-256 of {}, which was fitted, so this does not validate the law: errors are smaller than on new data",
                     source.input.path().display(),
                     path.display()
                 );

@@ -427,7 +427,7 @@ impl Prediction {
 
 fn no_validation(why: &str) -> String {
     format!(
-        "rows that it was fitted to ({why}), which is no validation: its errors and χ² are smaller there than on new rows"
+        "rows that it was fitted to ({why}), so this does not validate it: errors and χ² are smaller there than on new rows"
     )
 }
 

@@ -27,15 +27,15 @@ pub(super) fn gives_no_load(estimate: &Estimate) -> Option<String> {
         Err(why) => return Some(format!("its law cannot be evaluated at a stated speed and angle ({why})")),
     };
     if !law.responses.iter().any(|r| LOADS.contains(&r.as_str())) {
-        return Some(format!("its law gives {}, which is no load", law.responses.join(", ")));
+        return Some(format!("its law gives {}, which is not a force or moment", law.responses.join(", ")));
     }
     let lacking: Vec<&str> = law.channels().into_iter().filter(|c| data.values(c).is_none()).collect();
     if !lacking.is_empty() {
-        return Some(format!("its law reads {}, which speed and angle do not state", lacking.join(", ")));
+        return Some(format!("its law needs {}, which does not follow from speed and angle", lacking.join(", ")));
     }
     let has_value = |name: &str| estimate.coefficients.get(name).is_some_and(|c| c.value.is_some());
     let unknown: Vec<&str> = law.coefficients.iter().map(|c| c.name.as_str()).filter(|name| !has_value(name)).collect();
-    (!unknown.is_empty()).then(|| format!("its record has no value of {}", unknown.join(", ")))
+    (!unknown.is_empty()).then(|| format!("its record gives no value for {}", unknown.join(", ")))
 }
 
 /// Forces by the recommended estimates over the common range of speed and angle.
@@ -181,8 +181,14 @@ fn loads(predictions: &[Prediction<'_>], points: &Points) -> Vec<LoadComparison>
             for j in 1..forces.len() {
                 let (first, second) = (predictions[0].label, predictions[j].label);
                 let missing = [0, j].into_iter().find(|k| forces[*k].value.is_none());
+                let apart = || other_point(named[0].estimate, named[j].estimate);
                 let (e_n, note) = noted(match missing {
                     Some(k) => Err(format!("{} gives no {component}", predictions[k].label)),
+                    None if component.starts_with("m_")
+                        && let Some(why) = apart() =>
+                    {
+                        Err(why)
+                    }
                     None => e_n([&sides[0], &sides[j]], &commons[j], [first, second], is_same_data[j]),
                 });
                 out.push(LoadComparison {
@@ -200,6 +206,16 @@ fn loads(predictions: &[Prediction<'_>], points: &Points) -> Vec<LoadComparison>
         }
     }
     out
+}
+
+/// Why moments of two estimates are not compared: they are about different points, and a force at an arm lies between them.
+fn other_point(first: &Estimate, second: &Estimate) -> Option<String> {
+    let [a, b] = [first, second].map(|e| e.point.words.as_str());
+    (a != b).then(|| {
+        let point =
+            |words: &str| if words.is_empty() { "a point that is not stated".to_owned() } else { words.to_owned() };
+        format!("moments about different points: {} and {}", point(a), point(b))
+    })
 }
 
 fn operating_points(speed: &Range, angle: &Range, links: &[f64], density: f64) -> Dataset {
