@@ -200,7 +200,9 @@ fn a_long_facet_that_meets_a_crease_or_a_tip_is_straight_along() {
         assert!((of_mass / (density * expanded) - 1.0).abs() < 1e-9);
         let [[value, u], [of_smooth, u_of_smooth], [of_flat, u_of_flat]] =
             [&either, &smooth, &flat].map(|record| coefficient(record, "A22"));
-        assert!((value / sway_kg - 1.0).abs() < 0.01, "{name}: {value} for {sway_kg}");
+        // Within the tolerance that was asked for, and within the interval.
+        let away = (value - sway_kg).abs();
+        assert!(away < 0.02 * sway_kg && away < u, "{name}: {value} ± {u} for {sway_kg}");
         assert!(value == of_smooth && u_of_smooth < u, "{name}: {u_of_smooth} {u}");
         // At most the difference of the two bodies and the panels; it contains the polyhedron.
         let of_volume = value * expanded / volume;
@@ -225,7 +227,7 @@ fn a_box_has_no_facets_to_round() {
     assert_eq!(matrix(&either, 0), matrix(&flat, 0));
     let told = froude(folder.path(), &["box.obj", "--smooth", "--polyhedron"]);
     assert_eq!(told.status.code(), Some(2));
-    assert_eq!(said(&told), "error: --smooth and --polyhedron contradict each other: give one of them");
+    assert_eq!(said(&told), "froude: --smooth and --polyhedron contradict each other: give one of them");
 }
 
 /// Two spheres of 320 facets, ten radii apart: what one feels of the other is 3 (a/d)⁶.
@@ -938,7 +940,7 @@ fn one_mesh_has_no_uncertainty_and_none_is_made_up() {
     for sentence in [
         "One mesh only: there is no numerical uncertainty; three meshes give one.",
         "There is no finer one: the next mesh has 256 panels, and 64 are allowed (--most-panels).",
-        "is not known, and not in the uncertainty: panels or memory do not allow a second mesh",
+        "is unknown and not included in the uncertainty: panels or memory do not allow a second mesh",
     ] {
         assert!(text.contains(sentence), "{sentence}: {text}");
     }
