@@ -92,7 +92,10 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
                     }
                     correct(&mut cases, &found);
                 }
-                Ok(None) => notes.push(facets::IS_SHARP.to_owned()),
+                Ok(None) => match facets::is_sharp(job.is_smooth) {
+                    Ok(note) => notes.push(note.to_owned()),
+                    Err(finding) => findings.push(finding),
+                },
                 Err(why) => findings.push(facets::not_rounded(why)),
             }
         }

@@ -10,6 +10,7 @@
 //!
 //! Source: our derivation; coverage by count (`validate facets`). Range: see [`froude_mesh::refine::rounded`] for the edges that are rounded.
 
+use froude_mesh::crossing::crossings;
 use froude_mesh::measure::Measure;
 use froude_mesh::refine::{rounded, without_warp};
 use froude_mesh::{Mesh, Vec3};
@@ -50,6 +51,8 @@ pub struct Facets {
     pub volume_uncertainty_m3: f64,
     /// Mean correction, as part of displaced water and added mass.
     pub mean: f64,
+    /// Part of the correction that is uncertain.
+    pub part: f64,
 }
 
 /// The facets of the body in one surrounding; `None` where all edges are edges of the body, otherwise why the correction is not known.
@@ -85,8 +88,9 @@ pub(super) fn of_mesh(
     let squares: f64 = (0..6).map(|i| (correction[i][i] / size[i]).powi(2)).sum();
     let mean = (squares / 6.0).sqrt();
     let volume_m3 = LEFT * (of_rounded_m3 - case.refined.volume_m3);
-    let volume_uncertainty_m3 = counted(is_smooth) * volume_m3.abs();
-    let mut out = Facets { correction, uncertainty: [[0.0; 6]; 6], volume_m3, volume_uncertainty_m3, mean };
+    let part = counted(is_smooth);
+    let volume_uncertainty_m3 = part * volume_m3.abs();
+    let mut out = Facets { correction, uncertainty: [[0.0; 6]; 6], volume_m3, volume_uncertainty_m3, mean, part };
     out.uncertainty = out.uncertainty_of(&case.refined);
     Ok((mean > NONE).then_some(out))
 }
@@ -108,7 +112,7 @@ fn solved(problem: &Problem, wanted: &Wanted) -> Result<Solution, &'static str> 
     }
     let solution = froude_panel::solve(problem);
     if solution.report.residual > LOOSE || solution.matrix.iter().flatten().any(|a| !a.is_finite()) {
-        return Err("the rounded mesh could not be solved on");
+        return Err("the rounded mesh could not be solved");
     }
     Ok(solution)
 }
@@ -132,11 +136,10 @@ fn sizes(refined: &Refined, frame: &Frame) -> [f64; 6] {
 impl Facets {
     /// Of the polyhedron's matrix with the uncertainty of its panels.
     fn uncertainty_of(&self, refined: &Refined) -> Matrix {
-        let part = self.volume_uncertainty_m3 / self.volume_m3.abs().max(f64::MIN_POSITIVE);
         let volume = self.volume_uncertainty_m3 / (refined.volume_m3 + self.volume_m3);
         core::array::from_fn(|i| {
             core::array::from_fn(|j| {
-                uncertain([refined.value[i][j], self.correction[i][j]], volume, part, refined.uncertainty[i][j])
+                uncertain([refined.value[i][j], self.correction[i][j]], volume, self.part, refined.uncertainty[i][j])
             })
         })
     }
@@ -178,8 +181,12 @@ pub(super) fn correct_parts(
     is_smooth: bool,
 ) -> Result<Option<f64>, &'static str> {
     let flat = refined.once_divided.as_ref().ok_or(NO_SECOND)?;
-    let (problem, round_m3) = of_mesh(&without_warp(&rounded(mesh, CREASE_RAD), WARP));
+    let smooth = without_warp(&rounded(mesh, CREASE_RAD), WARP);
+    let (problem, round_m3) = of_mesh(&smooth);
     let (_, flat_m3) = of_mesh(mesh);
+    if !crossings(&smooth).is_empty() {
+        return Err("rounded, the parts would cross");
+    }
     let round = solved(&problem, wanted)?.matrix;
     let changed: Vec<f64> = flat_m3.iter().zip(round_m3).map(|(flat, round)| LEFT * (round - flat) / flat).collect();
     let part = counted(is_smooth);
@@ -217,7 +224,7 @@ pub(super) fn finding(mean: f64) -> Finding {
 /// The facets could not be rounded.
 pub(super) fn not_rounded(why: &str) -> Finding {
     let text = format!(
-        "the matrix is that of the polyhedron; the difference of a smooth body with its corners is unknown and not included in the uncertainty: {why}"
+        "the matrix is that of the polyhedron; the faceting error is unknown and not included in the uncertainty: {why}"
     );
     Finding::new(Severity::Warning, "facets-not-rounded", text)
 }
@@ -225,7 +232,19 @@ pub(super) fn not_rounded(why: &str) -> Finding {
 /// Notes where no correction is made, and where one is that was asked for.
 pub(super) const IS_POLYHEDRON: &str = "The facets were taken as the body itself.";
 pub(super) const IS_SMOOTH: &str = "The facets were taken as those of a smooth body.";
-pub(super) const IS_SHARP: &str = "No edge of the mesh is one of a curved surface: the facets are the body itself.";
+pub(super) const IS_SHARP: &str =
+    "No edge was taken for one of a curve of three turns or more, each of 52° at most: the facets are the body itself.";
+
+/// Nothing could be rounded: a note, or a warning where the body was stated to be smooth.
+pub(super) fn is_sharp(is_smooth: bool) -> Result<&'static str, Finding> {
+    if is_smooth {
+        Err(not_rounded(
+            "--smooth was given, and no edge belongs to a curve of three turns or more, each of 52° at most; export the body in finer facets",
+        ))
+    } else {
+        Ok(IS_SHARP)
+    }
+}
 
 /// What the facets change, entry by entry.
 pub(super) fn table(case: &Case, density_kg_m3: f64) -> Option<TextTable> {

@@ -127,12 +127,17 @@ fn covariance(refined: &Refined, facets: Option<&Facets>, rho: f64) -> Option<Ty
     })
 }
 
-/// The error of the facets, of each entry by itself: nothing tells what they have in common.
+/// The error of the facets. Whether the body is smooth is one unknown, which moves all entries together by their corrections; what an entry has beyond
+/// that is its own.
 fn of_facets(facets: &Facets, rho: f64) -> (String, SharedError) {
-    let components = entries().count();
+    let components = 1 + entries().count();
     let along = |row: usize, (i, j): (usize, usize)| {
-        let size = rho * facets.uncertainty[i][j] / COVERAGE;
-        (0..components).map(|k| if k == row { size } else { 0.0 }).collect()
+        let [common, size] =
+            [facets.part * facets.correction[i][j], facets.uncertainty[i][j]].map(|expanded| rho * expanded / COVERAGE);
+        let own = (size * size - common * common).max(0.0).sqrt();
+        let mut out = vec![0.0; components];
+        (out[0], out[1 + row]) = (common, own);
+        out
     };
     let error = SharedError {
         name: "facets of the mesh: smooth body or polyhedron".to_owned(),

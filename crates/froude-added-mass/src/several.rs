@@ -100,7 +100,10 @@ pub fn several(
             match facets::correct_parts(&mut refined, &given.mesh, &of_mesh, wanted, job.is_smooth) {
                 Ok(Some(_)) if job.is_smooth => notes.push(facets::IS_SMOOTH.to_owned()),
                 Ok(Some(mean)) => findings.push(facets::finding(mean)),
-                Ok(None) => notes.push(facets::IS_SHARP.to_owned()),
+                Ok(None) => match facets::is_sharp(job.is_smooth) {
+                    Ok(note) => notes.push(note.to_owned()),
+                    Err(finding) => findings.push(finding),
+                },
                 Err(why) => findings.push(facets::not_rounded(why)),
             }
         }

@@ -103,8 +103,8 @@ const SAME_TURN: f64 = 4.0;
 const SAME_LENGTH: f64 = 3.0;
 /// Least cosine of the angle within the surface between an edge and the one that continues it: 45°.
 const AHEAD: f64 = core::f64::consts::FRAC_1_SQRT_2;
-/// Largest bulge as part of the short side of the panels beside it: half of what a semicircle over that side has.
-const OF_SHORT_SIDE: f64 = 0.25;
+/// Largest bulge as part of the shortest of a chord and its neighbours on the curve: half of what a semicircle over it has.
+const OF_CHORD: f64 = 0.25;
 
 /// An edge of the mesh as a chord of the smooth surface.
 struct Chord {
@@ -114,8 +114,6 @@ struct Chord {
     groups: Option<[u32; 2]>,
     /// Angle between its panels, rad.
     turn_rad: f64,
-    /// Largest bulge, m.
-    most_m: f64,
     /// The other edges of its two triangles, where it is the longest of both: a diagonal if they lie in one plane.
     around: Option<[(u32, u32); 4]>,
 }
@@ -142,7 +140,7 @@ impl Joint {
 struct Chords<'a> {
     mesh: &'a Mesh,
     crease_rad: f64,
-    chords: Vec<Chord>,
+    edges: Vec<Chord>,
     /// Chords in smooth regions at a group of corners, and its unit normal.
     smooth: IndexMap<u32, (Vec<(usize, usize)>, Vec3)>,
     /// Chords on creases at a vertex.
@@ -184,12 +182,12 @@ impl<'a> Chords<'a> {
                 }
             }
         }
-        let mut out = Self { mesh, crease_rad, chords: Vec::new(), smooth: IndexMap::new(), creases: IndexMap::new() };
+        let mut out = Self { mesh, crease_rad, edges: Vec::new(), smooth: IndexMap::new(), creases: IndexMap::new() };
         for edge in by_edge(&sides) {
             let (from, to) = edge[0].edge;
             let turn_rad = turn(edge);
             let is_smooth = turn_rad <= crease_rad;
-            let number = out.chords.len();
+            let number = out.edges.len();
             let own = [from, to].map(|vertex| groups.of(corner(&edge[0], vertex)));
             for (end, (vertex, group)) in [from, to].into_iter().zip(own).enumerate() {
                 if is_smooth {
@@ -200,12 +198,10 @@ impl<'a> Chords<'a> {
                     out.creases.entry(vertex).or_default().push((number, end));
                 }
             }
-            let short = |side: &Side| short_side_m(mesh, mesh.panels[side.panel as usize]);
-            out.chords.push(Chord {
+            out.edges.push(Chord {
                 ends: [from, to],
                 groups: is_smooth.then_some(own),
                 turn_rad,
-                most_m: OF_SHORT_SIDE * edge.iter().map(short).fold(f64::INFINITY, f64::min),
                 around: around(mesh, edge),
             });
         }
@@ -219,13 +215,13 @@ impl<'a> Chords<'a> {
 
     /// Out of a vertex along a chord that ends there.
     fn outwards(&self, (chord, end): (usize, usize)) -> Vec3 {
-        let v = self.vector(&self.chords[chord]);
+        let v = self.vector(&self.edges[chord]);
         scale(v, if end == 0 { 1.0 } else { -1.0 } / norm(v))
     }
 
     /// The joint at an end of a chord; `None` at a crease, where the surface does not continue smoothly.
     fn joint(&self, (number, end): (usize, usize)) -> Option<Joint> {
-        let chord = &self.chords[number];
+        let chord = &self.edges[number];
         let own = self.outwards((number, end));
         let (next, bend) = if let Some(groups) = chord.groups {
             let (others, normal) = self.smooth.get(&groups[end])?;
@@ -247,7 +243,7 @@ impl<'a> Chords<'a> {
             let turn = angle(scale(own, -1.0), ahead);
             (next, if turn > 0.0 { scale(back, -turn / norm(back)) } else { [0.0; 3] })
         };
-        let length_m = norm(self.vector(&self.chords[next.0]));
+        let length_m = norm(self.vector(&self.edges[next.0]));
         // Between panels that meet at no crease an edge turns by more than they do: 63° on an icosahedron of 42°.
         let most_rad = if chord.groups.is_some() { core::f64::consts::FRAC_PI_2 } else { self.crease_rad };
         (norm(bend) <= most_rad).then_some(Joint { next, length_m, bend })
@@ -267,7 +263,7 @@ impl<'a> Chords<'a> {
 
     /// The ends of a chord where a curve continues, three joints at least of which the chord is a part.
     fn curved(&self, number: usize) -> [bool; 2] {
-        let length_m = norm(self.vector(&self.chords[number]));
+        let length_m = norm(self.vector(&self.edges[number]));
         let is_short = |a: f64, b: f64| a <= SAME_LENGTH * b;
         // The neighbour there is curved as well: it has a like joint at its other end, and is not long beside its own neighbours.
         let goes_on = |[first, second]: [&Option<Joint>; 2], length_m: f64| {
@@ -296,19 +292,21 @@ impl<'a> Chords<'a> {
     /// From the middle of each chord to that of its arc.
     fn bulges(&self) -> IndexMap<(u32, u32), Vec3> {
         let arc = |number: usize| {
-            let chord = &self.chords[number];
+            let chord = &self.edges[number];
             let ends = self.curved(number);
             let sum = (0..2).filter(|end| ends[*end]).fold([0.0; 3], |sum, end| add(sum, self.bulge(number, end)));
             let count = ends.iter().filter(|end| **end).count();
             let mean = scale(sum, 1.0 / count.max(1) as f64);
+            let next_m = (0..2).filter(|end| ends[*end]).filter_map(|end| Some(self.joint((number, end))?.length_m));
+            let most_m = OF_CHORD * next_m.fold(norm(self.vector(chord)), f64::min);
             let size = norm(mean);
-            if size > chord.most_m { scale(mean, chord.most_m / size) } else { mean }
+            if size > most_m { scale(mean, most_m / size) } else { mean }
         };
         let key = |chord: &Chord| (chord.ends[0], chord.ends[1]);
         let mut out: IndexMap<(u32, u32), Vec3> =
-            self.chords.iter().enumerate().map(|(k, c)| (key(c), arc(k))).collect();
+            self.edges.iter().enumerate().map(|(k, c)| (key(c), arc(k))).collect();
         // The diagonal of a flat quadrilateral lies on the Coons patch over its four sides.
-        for chord in &self.chords {
+        for chord in &self.edges {
             let Some(around) = chord.around.filter(|_| chord.turn_rad < STRAIGHT_RAD) else { continue };
             let sum = around.iter().fold([0.0; 3], |sum, side| add(sum, out.get(side).copied().unwrap_or_default()));
             out.insert(key(chord), scale(sum, 0.5));
@@ -318,7 +316,7 @@ impl<'a> Chords<'a> {
 
     /// Sagitta of the arc that leaves an end of a chord in the direction of the surface: a chord c that its end meets at α has (c/2) tan(α/2).
     fn bulge(&self, number: usize, end: usize) -> Vec3 {
-        let chord = &self.chords[number];
+        let chord = &self.edges[number];
         let length_m = norm(self.vector(chord));
         let own = self.outwards((number, end));
         let tangent = if let Some(groups) = chord.groups {
@@ -339,15 +337,6 @@ impl<'a> Chords<'a> {
 /// Angle between two directions, rad.
 fn angle(a: Vec3, b: Vec3) -> f64 {
     norm(cross(a, b)).atan2(dot(a, b))
-}
-
-/// Width of a panel across its longest side, m.
-fn short_side_m(mesh: &Mesh, panel: Panel) -> f64 {
-    let corners: Vec<Vec3> = mesh.corners(panel).collect();
-    let n = corners.len();
-    let longest = (0..n).map(|i| norm(sub(corners[(i + 1) % n], corners[i]))).fold(0.0, f64::max);
-    let of_area = if n == 3 { 2.0 } else { 1.0 };
-    of_area * Facet::of(mesh, panel).area / longest
 }
 
 /// The other edges of two triangles that share their longest.

@@ -53,11 +53,14 @@ fn of_chords(around: u32) -> f64 {
 fn cones_and_cylinders_gain_what_chords_around_explain() {
     for around in [8, 12, 16, 24] {
         for is_quads in [false, true] {
+            let close: Vec<[f64; 2]> = (0..=80).rev().map(|k| [0.05 * f64::from(k), 1.0]).collect();
             for (name, stations) in [
                 ("cone", vec![[2.0, 0.0], [0.0, 1.0], [0.0, 0.0]]),
                 ("cone of rows", vec![[2.0, 0.0], [1.5, 0.25], [1.0, 0.5], [0.0, 1.0], [0.0, 0.0]]),
                 ("cylinder", vec![[4.0, 0.0], [4.0, 1.0], [0.0, 1.0], [0.0, 0.0]]),
                 ("cone-cylinder", vec![[6.0, 0.0], [4.0, 1.0], [0.0, 1.0], [0.0, 0.0]]),
+                // Rows closer together than the bulge is high: each direction is judged by itself.
+                ("close rows", [vec![[4.0, 0.0]], close, vec![[0.0, 0.0]]].concat()),
                 ("blunt cone", vec![[4.5, 0.0], [4.0, 1.0], [0.0, 1.0], [0.0, 0.0]]),
                 ("cone-cylinder-cone", vec![[6.0, 0.0], [4.0, 1.0], [0.0, 1.0], [-4.0, 0.0]]),
             ] {

@@ -221,7 +221,7 @@ fn ellipsoid(number: u64, largest: usize) -> Result<Body, String> {
     let added = ellipsoid_added_mass(axes).map_err(|e| e.to_string())?;
     let exact = core::array::from_fn(|i| if i < 6 { added[i] } else { volume });
     let of = |e: String| format!("ellipsoid {number}: {e}");
-    let apart = if number % APART == 0 { with_another(&mesh, &exact).map_err(of)? } else { Vec::new() };
+    let apart = if (number / 4).is_multiple_of(APART) { with_another(&mesh, &exact).map_err(of)? } else { Vec::new() };
     let smooth = alone(&mesh, &exact, true).map_err(of)?;
     Ok(Body { kind: KINDS.len(), alone: alone(&mesh, &exact, false).map_err(of)?, apart, smooth })
 }
@@ -234,7 +234,7 @@ fn other(number: u64) -> Result<Body, String> {
     let mesh = mesh.mapped(|v| core::array::from_fn(|k| v[k] - centre[k]));
     let exact = reference(&intended, centre);
     let of = |e: String| format!("{} {number}: {e}", KINDS[kind]);
-    let apart = if number / 6 % APART == 0 { with_another(&mesh, &exact).map_err(of)? } else { Vec::new() };
+    let apart = if (number / 6).is_multiple_of(APART) { with_another(&mesh, &exact).map_err(of)? } else { Vec::new() };
     Ok(Body { kind, alone: alone(&mesh, &exact, false).map_err(of)?, apart, smooth: Vec::new() })
 }
 
@@ -250,7 +250,7 @@ fn covered(bodies: &[&Vec<Entry>]) -> [f64; 2] {
 /// So many tessellations of ellipsoids, and as many of other bodies.
 pub fn facets(claims: &mut Claims, full: bool) -> Result<(), Box<dyn Error>> {
     let (count, largest) = if full { (200, 24) } else { (12, 12) };
-    let bodies = ((if std::env::var_os("DBG_OTHERS").is_some() { count } else { 0 })..2 * count)
+    let bodies = (0..2 * count)
         .into_par_iter()
         .map(|k| if k < count { ellipsoid(k, largest) } else { other(k - count) })
         .collect::<Result<Vec<_>, String>>()?;
@@ -278,14 +278,7 @@ pub fn facets(claims: &mut Claims, full: bool) -> Result<(), Box<dyn Error>> {
             },
         );
     };
-    for (number, b) in bodies.iter().enumerate() {
-        for (what, of) in [("alone", &b.alone), ("apart", &b.apart)] {
-            for (i, e) in of.iter().enumerate().filter(|(_, e)| !e.holds()) {
-                eprintln!("DBG {what} {number} kind {} entry {i}: value {:.5} exact {:.5} U {:.5} ratio {:.2}", b.kind, e.value, e.exact, e.expanded, (e.value - e.exact).abs() / e.expanded);
-            }
-        }
-    }
-    let (ellipsoids, others) = bodies.split_at(if std::env::var_os("DBG_OTHERS").is_some() { 0 } else { count as usize });
+    let (ellipsoids, others) = bodies.split_at(count as usize);
     let what = format!("{count} tessellations of ellipsoids, 8 to {largest} segments around or 128 to 512 triangles");
     add(&what, ellipsoids.iter().map(|b| &b.alone).collect(), true);
     add("those of ellipsoids with --apart", ellipsoids.iter().map(|b| &b.apart).collect(), true);

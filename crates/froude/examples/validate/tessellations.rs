@@ -154,11 +154,11 @@ impl Growing {
     fn cell(&mut self, corners: [[f64; 3]; 4], is_quad: bool) {
         let corners = corners.map(|at| self.vertex(at));
         let mut distinct: Vec<u32> = Vec::new();
-        corners.iter().for_each(|c| {
-            if !distinct.contains(c) {
-                distinct.push(*c)
+        for c in corners {
+            if !distinct.contains(&c) {
+                distinct.push(c);
             }
-        });
+        }
         match distinct[..] {
             [a, b, c, d] if is_quad => self.mesh.panels.push(Panel::quad(a, b, c, d)),
             [a, b, c, d] => self.mesh.panels.extend([Panel::triangle(a, b, c), Panel::triangle(a, c, d)]),
