@@ -5,7 +5,6 @@ use froude_mesh::{Mesh, Vec3};
 use froude_panel::family::Family;
 use froude_panel::problem::Frame;
 use froude_panel::refine::{Forecast, Refined, Wanted, plan, refine};
-use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::page::TextTable;
 
@@ -19,6 +18,7 @@ use super::surroundings::surroundings;
 use super::{cross_checks, limits, spectral};
 use crate::error::AddedMassError;
 use crate::outcome::{BodyOutcome, Case, not_within};
+use crate::uncertain::with_uncertainty;
 use crate::water::Water;
 
 /// What each mesh would take, with nothing computed.
@@ -80,22 +80,23 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
     }
     if let Family::Mesh(mesh) = &loaded.family {
         if job.is_polyhedron {
-            notes.push("The facets were taken as the body itself.".to_owned());
+            notes.push(facets::IS_POLYHEDRON.to_owned());
         } else {
             progress("the same with facets rounded");
-            match facets::of_mesh(mesh, &cases[0], &job.wanted, &frame) {
+            match facets::of_mesh(mesh, &cases[0], &job.wanted, &frame, job.is_smooth) {
                 Ok(Some(found)) => {
-                    findings.push(facets::finding(&found));
-                    correct(&mut cases, &found, &frame);
+                    if job.is_smooth {
+                        notes.push(facets::IS_SMOOTH.to_owned());
+                    } else {
+                        findings.push(facets::finding(found.mean));
+                    }
+                    correct(&mut cases, &found);
                 }
-                Ok(None) => notes
-                    .push("All edges of the mesh are edges of the body: its facets are the body itself.".to_owned()),
-                Err(why) => {
-                    let text = format!(
-                        "the matrix is that of the polyhedron; what a smooth body with its corners has more is not known, and not in the uncertainty: {why}"
-                    );
-                    findings.push(Finding::new(Severity::Warning, "facets-not-rounded", text));
-                }
+                Ok(None) => match facets::is_sharp(job.is_smooth) {
+                    Ok(note) => notes.push(note.to_owned()),
+                    Err(finding) => findings.push(finding),
+                },
+                Err(why) => findings.push(facets::not_rounded(why)),
             }
         }
     }
@@ -165,6 +166,10 @@ pub(crate) fn hydrostatics(
     frame: &Frame,
 ) -> TextTable {
     let finest = refined.steps.last().map(|s| s.measure);
+    let known = |value: f64, digits: usize, scale: f64| match facets {
+        Some(facets) => with_uncertainty(value, scale * facets.volume_uncertainty_m3),
+        None => number::plain(value, digits),
+    };
     let of = match facets {
         Some(facets) => {
             let of_facets = number::plain(refined.volume_m3 - facets.volume_m3, 6);
@@ -174,8 +179,8 @@ pub(crate) fn hydrostatics(
         None => "exact for the given dimensions".to_owned(),
     };
     let mut rows = vec![
-        vec!["volume".to_owned(), format!("{} m³, {of}", number::plain(refined.volume_m3, 6))],
-        vec!["displaced mass".to_owned(), format!("{} kg", number::plain(density_kg_m3 * refined.volume_m3, 6))],
+        vec!["volume".to_owned(), format!("{} m³, {of}", known(refined.volume_m3, 6, 1.0))],
+        vec!["displaced mass".to_owned(), format!("{} kg", known(density_kg_m3 * refined.volume_m3, 6, density_kg_m3))],
     ];
     if let Some(m) = finest {
         let list = |v: Vec3, digits| v.map(|x| number::plain(if x.abs() < 1e-12 { 0.0 } else { x }, digits)).join(", ");

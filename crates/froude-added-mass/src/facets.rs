@@ -1,20 +1,22 @@
-//! The facets of a mesh: what a smooth body with the same corners has more than the polyhedron, and how well that is known.
+//! The facets of a mesh: the difference between the smooth body with the same corners and the polyhedron, and its uncertainty.
 //!
 //! Subdivision converges to the polyhedron. With A_r on the rounded mesh and A_f on the flat one, each divided once, the smooth body has C = 4/3 (A_r − A_f) more, since
-//! one rounding takes three quarters of a second-order distance away. The matrix is corrected by C, and what is left of it has the expanded uncertainty
+//! one rounding takes three quarters of a second-order distance away. The value is that of the smooth body, and its expanded uncertainty is
 //!
-//! U_ij = 0.7 m √((S_i + A_ii)(S_j + A_jj)), m² = mean of (C_ii/(S_i + A_ii))²
+//! U_ij = max(|C_ij|, |A_ij| |ΔV|/V) + U_ij of the panels
 //!
-//! with S the mass of the displaced water and its inertia about the point, over ρ: a surge that hardly changes errs by a part of what the others change by. What the errors of entries have in common is not known: the record takes them as independent.
+//! with ΔV the same difference of the volumes: the interval contains the smooth body and the polyhedron, because a mesh alone does not tell which of them is meant. Where the
+//! body is said to be smooth, the first term counts by [`OF_SMOOTH`].
 //!
-//! Source: our derivation; 0.7 by count over 64 tessellations, judged on 200 others (`validate facets`). Range: facets that turn by less than 52° from one to the next.
+//! Source: our derivation; coverage by count (`validate facets`). Range: see [`froude_mesh::refine::rounded`] for the edges that are rounded.
 
+use froude_mesh::crossing::crossings;
 use froude_mesh::measure::Measure;
 use froude_mesh::refine::{rounded, without_warp};
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::mirror::{Kind, Mirror};
-use froude_panel::problem::{Frame, Problem};
-use froude_panel::refine::{Refined, Wanted, forecast, memory_bytes};
+use froude_panel::problem::{Frame, Problem, Solution};
+use froude_panel::refine::{Refined, RefinedParts, Wanted, forecast, memory_bytes};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::page::TextTable;
@@ -26,12 +28,12 @@ use crate::outcome::Case;
 
 /// Angle between facets from which an edge is an edge of the body, rad: seven segments to a circle still count as round.
 const CREASE_RAD: f64 = 52.0 * core::f64::consts::PI / 180.0;
-/// Expanded uncertainty of a correction, as part of the mean one.
-const UNCERTAIN: f64 = 0.7;
+/// Expanded uncertainty of a correction of a body that is said to be smooth, as part of the correction.
+const OF_SMOOTH: f64 = 0.7;
 /// A correction below this part is rounding: the edges of the mesh are edges of the body.
 const NONE: f64 = 1e-9;
 
-/// Residual above which a solution is none.
+/// Solutions with a larger residual are rejected.
 const LOOSE: f64 = 1e-6;
 
 type Matrix = [[f64; 6]; 6];
@@ -41,12 +43,16 @@ type Matrix = [[f64; 6]; 6];
 pub struct Facets {
     /// Smooth body minus polyhedron: it is in the value of the case.
     pub correction: Matrix,
-    /// Its expanded uncertainty: it is in that of the case.
+    /// Expanded uncertainty of the facets; with that of the panels, in squares, it gives that of the case.
     pub uncertainty: Matrix,
-    /// The same difference of the volumes, m³: it is in that of the case.
+    /// Smooth body minus polyhedron, volume, m³: it is in that of the case.
     pub volume_m3: f64,
-    /// The mean correction m, as part of displaced water and added mass.
+    /// Expanded uncertainty of the volume of the case, m³.
+    pub volume_uncertainty_m3: f64,
+    /// Mean correction, as part of displaced water and added mass.
     pub mean: f64,
+    /// Part of the correction that is uncertain.
+    pub part: f64,
 }
 
 /// The facets of the body in one surrounding; `None` where all edges are edges of the body, otherwise why the correction is not known.
@@ -55,9 +61,10 @@ pub(super) fn of_mesh(
     case: &Case,
     wanted: &Wanted,
     frame: &Frame,
+    is_smooth: bool,
 ) -> Result<Option<Facets>, &'static str> {
     // The mesh divided once is the second of the family.
-    let flat = case.refined.steps.get(1).ok_or("panels or memory do not allow a second mesh")?.added_mass.matrix;
+    let flat = case.refined.steps.get(1).ok_or(NO_SECOND)?.added_mass.matrix;
     let round = without_warp(&rounded(mesh, CREASE_RAD), WARP);
     let mirrors: &[Mirror] = &case.refined.finest.mirrors;
     let is_through = |m: &Mirror| {
@@ -68,33 +75,53 @@ pub(super) fn of_mesh(
         return Err("rounded, the body would pierce the water's surface");
     }
     let of_rounded_m3 = Measure::of(&round).volume_m3;
-    let problem = Problem::rigid(&round, mirrors);
-    if problem.facets.len() > wanted.most_panels || forecast(&problem).memory_bytes > memory_bytes(wanted) {
-        return Err("panels or memory do not allow the rounded mesh");
-    }
-    let solution = froude_panel::solve(&problem);
-    let round = solution.added_mass(0).seen_from(frame).matrix;
-    if solution.report.residual > LOOSE || round.iter().flatten().any(|a| !a.is_finite()) {
-        return Err("the rounded mesh could not be solved on");
-    }
+    let round = solved(&Problem::rigid(&round, mirrors), wanted)?.added_mass(0).seen_from(frame).matrix;
     let value = &case.refined.value;
     let correction: Matrix = core::array::from_fn(|i| {
         core::array::from_fn(|j| {
-            let apart = 4.0 / 3.0 * (round[i][j] - flat[i][j]);
-            // Less than nothing is not left of an entry.
+            let apart = LEFT * (round[i][j] - flat[i][j]);
+            // The added mass itself does not become negative.
             if i == j { apart.max(-value[i][i]) } else { apart }
         })
     });
     let size = sizes(&case.refined, frame);
     let squares: f64 = (0..6).map(|i| (correction[i][i] / size[i]).powi(2)).sum();
     let mean = (squares / 6.0).sqrt();
-    let uncertainty = uncertain(mean, size);
-    let volume_m3 = 4.0 / 3.0 * (of_rounded_m3 - case.refined.volume_m3);
-    Ok((mean > NONE).then_some(Facets { correction, uncertainty, volume_m3, mean }))
+    let volume_m3 = LEFT * (of_rounded_m3 - case.refined.volume_m3);
+    let part = counted(is_smooth);
+    let volume_uncertainty_m3 = part * volume_m3.abs();
+    let mut out = Facets { correction, uncertainty: [[0.0; 6]; 6], volume_m3, volume_uncertainty_m3, mean, part };
+    out.uncertainty = out.uncertainty_of(&case.refined);
+    Ok((mean > NONE).then_some(out))
 }
 
-fn uncertain(mean: f64, size: [f64; 6]) -> Matrix {
-    core::array::from_fn(|i| core::array::from_fn(|j| UNCERTAIN * mean * (size[i] * size[j]).max(0.0).sqrt()))
+/// Why there is no correction where the body was solved on one mesh only.
+const NO_SECOND: &str = "panels or memory do not allow a second mesh";
+/// Whole difference over that of one rounding, which leaves a quarter.
+const LEFT: f64 = 4.0 / 3.0;
+
+/// Part of the correction that is uncertain.
+const fn counted(is_smooth: bool) -> f64 {
+    if is_smooth { OF_SMOOTH } else { 1.0 }
+}
+
+/// The rounded mesh solved on, where that is allowed.
+fn solved(problem: &Problem, wanted: &Wanted) -> Result<Solution, &'static str> {
+    if problem.facets.len() > wanted.most_panels || forecast(problem).memory_bytes > memory_bytes(wanted) {
+        return Err("panels or memory do not allow the rounded mesh");
+    }
+    let solution = froude_panel::solve(problem);
+    if solution.report.residual > LOOSE || solution.matrix.iter().flatten().any(|a| !a.is_finite()) {
+        return Err("the rounded mesh could not be solved");
+    }
+    Ok(solution)
+}
+
+/// Expanded uncertainty of the facets of an entry, of which `panels` is that of the panels: their sum in squares is the sum itself, since the
+/// polyhedron is the end of an interval and not a draw. `volume` is the uncertainty of the volume, `part` that of the correction.
+fn uncertain([value, correction]: [f64; 2], volume: f64, part: f64, panels: f64) -> f64 {
+    let facets = (part * correction.abs()).max(volume * (value + correction).abs());
+    if panels.is_finite() { (facets * (facets + 2.0 * panels)).sqrt() } else { facets }
 }
 
 /// Displaced water and added mass of each motion, over ρ.
@@ -107,25 +134,32 @@ fn sizes(refined: &Refined, frame: &Frame) -> [f64; 6] {
 }
 
 impl Facets {
+    /// Of the polyhedron's matrix with the uncertainty of its panels.
+    fn uncertainty_of(&self, refined: &Refined) -> Matrix {
+        let volume = self.volume_uncertainty_m3 / (refined.volume_m3 + self.volume_m3);
+        core::array::from_fn(|i| {
+            core::array::from_fn(|j| {
+                uncertain([refined.value[i][j], self.correction[i][j]], volume, self.part, refined.uncertainty[i][j])
+            })
+        })
+    }
+
     /// The same in another surrounding, where the body has more or less added mass.
-    fn beside(&self, here: &Refined, there: &Refined, frame: &Frame) -> Self {
+    fn beside(&self, here: &Refined, there: &Refined) -> Self {
         let root = |i: usize| (there.value[i][i] / here.value[i][i]).max(0.0).sqrt();
         let part = |i: usize| if here.value[i][i] > 0.0 { root(i) } else { 1.0 };
-        let scaled = |of: &Matrix| core::array::from_fn(|i| core::array::from_fn(|j| of[i][j] * part(i) * part(j)));
-        Self {
-            correction: scaled(&self.correction),
-            uncertainty: uncertain(self.mean, sizes(there, frame)),
-            mean: self.mean,
-            volume_m3: self.volume_m3,
-        }
+        let correction = core::array::from_fn(|i| core::array::from_fn(|j| self.correction[i][j] * part(i) * part(j)));
+        let mut out = Self { correction, ..self.clone() };
+        out.uncertainty = out.uncertainty_of(there);
+        out
     }
 }
 
 /// Corrects all surroundings by the facets of the first.
-pub(super) fn correct(cases: &mut [Case], facets: &Facets, frame: &Frame) {
+pub(super) fn correct(cases: &mut [Case], facets: &Facets) {
     let Some(first) = cases.first().map(|case| case.refined.clone()) else { return };
     for case in cases {
-        let own = facets.beside(&first, &case.refined, frame);
+        let own = facets.beside(&first, &case.refined);
         for i in 0..6 {
             for j in 0..6 {
                 case.refined.value[i][j] += own.correction[i][j];
@@ -137,13 +171,79 @@ pub(super) fn correct(cases: &mut [Case], facets: &Facets, frame: &Frame) {
     }
 }
 
-/// What was taken for granted: a body with facets of its own looks alike.
-pub(super) fn finding(facets: &Facets) -> Finding {
+/// Corrects the matrix of several parts by their facets as that of one body; the mean correction of displaced water and added mass, `None`
+/// where all edges are edges of the bodies.
+pub(super) fn correct_parts(
+    refined: &mut RefinedParts,
+    mesh: &Mesh,
+    of_mesh: &dyn Fn(&Mesh) -> (Problem, Vec<f64>),
+    wanted: &Wanted,
+    is_smooth: bool,
+) -> Result<Option<f64>, &'static str> {
+    let flat = refined.once_divided.as_ref().ok_or(NO_SECOND)?;
+    let smooth = without_warp(&rounded(mesh, CREASE_RAD), WARP);
+    let (problem, round_m3) = of_mesh(&smooth);
+    let (_, flat_m3) = of_mesh(mesh);
+    if !crossings(&smooth).is_empty() {
+        return Err("rounded, the parts would cross");
+    }
+    let round = solved(&problem, wanted)?.matrix;
+    let changed: Vec<f64> = flat_m3.iter().zip(round_m3).map(|(flat, round)| LEFT * (round - flat) / flat).collect();
+    let part = counted(is_smooth);
+    let mut squares = 0.0;
+    for i in 0..flat.len() {
+        for j in 0..flat.len() {
+            let symmetric = |of: &[Vec<f64>]| 0.5 * (of[i][j] + of[j][i]);
+            let value = refined.value[i][j];
+            let apart = LEFT * (symmetric(&round) - symmetric(flat));
+            let correction = if i == j { apart.max(-value) } else { apart };
+            let volume = |k: usize| part * changed[k / 6].abs() / (1.0 + changed[k / 6]);
+            let panels = refined.uncertainty[i][j];
+            refined.value[i][j] += correction;
+            refined.uncertainty[i][j] =
+                panels.hypot(uncertain([value, correction], volume(i).max(volume(j)), part, panels));
+            if i == j && i % 6 < 3 {
+                squares += (correction / (value + flat_m3[i / 6])).powi(2);
+            }
+        }
+    }
+    let mean = (squares / (0.5 * flat.len() as f64)).sqrt();
+    Ok((mean > NONE).then_some(mean))
+}
+
+/// The mesh does not decide which body is meant.
+pub(super) fn finding(mean: f64) -> Finding {
     let text = format!(
-        "the facets were taken for those of a smooth body, which changes displaced water and added mass by {} in the mean; if the facets are the body itself, ask for --polyhedron",
-        number::percent(facets.mean)
+        "the mesh may be a smooth body or the polyhedron itself, which differ by {} in displaced water and added mass (root mean square): the values are those of the smooth body and the intervals \
+         contain both; to decide, write --smooth (smooth body, narrower intervals) or --polyhedron",
+        number::percent(mean)
     );
     Finding::new(Severity::Note, "facets-rounded", text)
+}
+
+/// The facets could not be rounded.
+pub(super) fn not_rounded(why: &str) -> Finding {
+    let text = format!(
+        "the matrix is that of the polyhedron; the faceting error is unknown and not included in the uncertainty: {why}"
+    );
+    Finding::new(Severity::Warning, "facets-not-rounded", text)
+}
+
+/// Notes where no correction is made, and where one is that was asked for.
+pub(super) const IS_POLYHEDRON: &str = "The facets were taken as the body itself.";
+pub(super) const IS_SMOOTH: &str = "The facets were taken as those of a smooth body.";
+pub(super) const IS_SHARP: &str =
+    "No edge was taken for one of a curve of three turns or more, each of 52° at most: the facets are the body itself.";
+
+/// Nothing could be rounded: a note, or a warning where the body was stated to be smooth.
+pub(super) fn is_sharp(is_smooth: bool) -> Result<&'static str, Finding> {
+    if is_smooth {
+        Err(not_rounded(
+            "--smooth was given, and no edge belongs to a curve of three turns or more, each of 52° at most; export the body in finer facets",
+        ))
+    } else {
+        Ok(IS_SHARP)
+    }
 }
 
 /// What the facets change, entry by entry.
@@ -154,6 +254,7 @@ pub(super) fn table(case: &Case, density_kg_m3: f64) -> Option<TextTable> {
         let [apart, of_facets] = [facets.correction[i][i], facets.uncertainty[i][i]];
         let polyhedron = value - apart;
         let of_panels = (of_all * of_all - of_facets * of_facets).max(0.0).sqrt();
+        let of_facets = of_all - of_panels;
         vec![
             diagonal_name(i),
             number::plain(density_kg_m3 * polyhedron, 6),
@@ -164,8 +265,8 @@ pub(super) fn table(case: &Case, density_kg_m3: f64) -> Option<TextTable> {
     });
     Some(TextTable {
         caption: format!(
-            "The matrix is that of the smooth body whose corners the mesh has: the polyhedron's, with the difference of the two on it. Edges of more than {:.0}° count as edges of the body. If the facets are the body, ask \
-             for --polyhedron.",
+            "The matrix is that of the smooth body with the corners of the mesh: polyhedron plus difference. Edges of more than {:.0}°, and those that belong to no curve of three turns or more, count as edges of \
+             the body. The two uncertainties add up. --smooth and --polyhedron state which body is meant.",
             CREASE_RAD.to_degrees()
         ),
         head: [

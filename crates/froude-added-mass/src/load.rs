@@ -84,8 +84,8 @@ pub(super) fn of_a_mesh_only(job: &Asked) -> Result<(), AddedMassError> {
         "--unit is for a mesh; a body file has a unit at each length"
     } else if job.orientation.is_some() {
         "--forward and --up are for a mesh; a body file has x forward along the body and z up"
-    } else if job.is_polyhedron {
-        "--polyhedron is for a mesh; a body file has no facets"
+    } else if job.is_polyhedron || job.is_smooth {
+        "--polyhedron and --smooth are for a mesh; a body file has no facets"
     } else {
         return Ok(());
     };

@@ -34,8 +34,10 @@ pub struct Asked {
     pub surface_m: Option<f64>,
     /// Length, breadth and depth of water of a tank with the origin in the middle of its plan, m.
     pub tank_m: Option<[f64; 3]>,
-    /// Whether the facets of a mesh are the body itself, and not those of a smooth one.
+    /// Whether the facets of a mesh are the body itself.
     pub is_polyhedron: bool,
+    /// Whether they are those of a smooth body; where neither is said, the intervals contain both.
+    pub is_smooth: bool,
     /// What moves apart; `None` for one rigid body.
     pub apart: Option<Apart>,
     /// Tolerance and limits.
@@ -59,6 +61,7 @@ impl Asked {
             surface_m: None,
             tank_m: None,
             is_polyhedron: false,
+            is_smooth: false,
             apart: None,
             wanted: Wanted::default(),
             export: Vec::new(),
@@ -92,6 +95,7 @@ impl Asked {
                     "chain" => out.apart = out.apart.or(Some(Apart::Links { joint_angle_rad: 0.0 })),
                     "apart" => out.apart = out.apart.or(Some(Apart::Parts)),
                     "polyhedron" => out.is_polyhedron = true,
+                    "smooth" => out.is_smooth = true,
                     "export" => out.export = exports(text)?,
                     other => return Err(format!("there is no option {other:?}")),
                 }
@@ -116,16 +120,27 @@ impl Asked {
              of the mesh, such as --surface \"0.5 m\""
         } else if self.links.len() > 1 {
             // What has no meaning for several numbers of links is refused, not passed over.
-            const OF_ONE: [&str; 10] =
-                ["at", "unit", "forward", "up", "surface", "export", "chain", "joint_angle", "apart", "polyhedron"];
+            const OF_ONE: [&str; 11] = [
+                "at",
+                "unit",
+                "forward",
+                "up",
+                "surface",
+                "export",
+                "chain",
+                "joint_angle",
+                "apart",
+                "polyhedron",
+                "smooth",
+            ];
             return match OF_ONE.into_iter().find(|name| given.iter().any(|option| option.name == *name)) {
                 Some(name) => Err(AddedMassError::OfOne { option: name.replace('_', "-") }),
                 None => Ok(()),
             };
         } else if self.apart.is_some() && self.surface_m.is_some() {
             "--surface goes with one rigid body, not with --chain or --apart"
-        } else if self.apart.is_some() && self.is_polyhedron {
-            "--polyhedron goes with one rigid body; with --chain or --apart the facets are always taken as they are"
+        } else if self.is_smooth && self.is_polyhedron {
+            "--smooth and --polyhedron contradict each other: give one of them"
         } else if self.apart.is_some() && self.at.is_some() {
             "--at goes with one rigid body; with --chain or --apart every part is about its own point"
         } else {

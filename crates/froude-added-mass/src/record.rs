@@ -4,8 +4,8 @@ use std::path::Path;
 
 use froude_panel::refine::Refined;
 use froude_records::estimate::{
-    Coefficient, Diagnostics, ErrorKind, Estimate, EstimateFile, Frame, Interval, Law, Measured, MethodUsed, OWN,
-    ReferencePoint, SharedError, Signs, Status, TypeA,
+    Coefficient, Derived, Diagnostics, ErrorKind, Estimate, EstimateFile, Frame, Interval, Law, Measured, MethodUsed,
+    OWN, ReferencePoint, SharedError, Signs, Status, TypeA,
 };
 use froude_records::json::read_estimates;
 use indexmap::IndexMap;
@@ -127,15 +127,20 @@ fn covariance(refined: &Refined, facets: Option<&Facets>, rho: f64) -> Option<Ty
     })
 }
 
-/// The error of the facets, of each entry by itself: nothing tells what they have in common.
+/// The error of the facets. Whether the body is smooth is one unknown, which moves all entries together by their corrections; what an entry has beyond
+/// that is its own.
 fn of_facets(facets: &Facets, rho: f64) -> (String, SharedError) {
-    let components = entries().count();
+    let components = 1 + entries().count();
     let along = |row: usize, (i, j): (usize, usize)| {
-        let size = rho * facets.uncertainty[i][j] / COVERAGE;
-        (0..components).map(|k| if k == row { size } else { 0.0 }).collect()
+        let [common, size] =
+            [facets.part * facets.correction[i][j], facets.uncertainty[i][j]].map(|expanded| rho * expanded / COVERAGE);
+        let own = (size * size - common * common).max(0.0).sqrt();
+        let mut out = vec![0.0; components];
+        (out[0], out[1 + row]) = (common, own);
+        out
     };
     let error = SharedError {
-        name: "facets of the mesh: what is left of a correction to the smooth body".to_owned(),
+        name: "facets of the mesh: smooth body or polyhedron".to_owned(),
         quantity: "facets".to_owned(),
         kind: ErrorKind::B,
         covariance: (0..components).map(|a| (0..components).map(|b| f64::from(u8::from(a == b))).collect()).collect(),
@@ -144,6 +149,24 @@ fn of_facets(facets: &Facets, rho: f64) -> (String, SharedError) {
         sensitivity: entries().enumerate().map(|(row, entry)| along(row, entry)).collect(),
     };
     (format!("{OWN}facets"), error)
+}
+
+/// Volume and mass of the displaced water with the uncertainty of the facets; without facets the volume is exact.
+fn displacement(volume_m3: f64, facets: &Facets, rho: f64) -> IndexMap<String, Derived> {
+    let derived = |formula: &str, scale: f64, unit: &str| {
+        let (value, expanded) = (scale * volume_m3, scale * facets.volume_uncertainty_m3);
+        Derived {
+            formula: formula.to_owned(),
+            value: Some(value),
+            unit: unit.to_owned(),
+            standard_uncertainty: Some(expanded / COVERAGE),
+            interval_95: Some([value - expanded, value + expanded]),
+        }
+    };
+    IndexMap::from([
+        ("volume".to_owned(), derived("volume", 1.0, "m^3")),
+        ("displaced_mass".to_owned(), derived("density*volume", rho, "kg")),
+    ])
 }
 
 /// The estimate of model `added_mass_6x6`: entries A11 to A66 on and above the diagonal; the matrix is symmetric.
@@ -172,6 +195,11 @@ pub fn estimate(refined: &Refined, facets: Option<&Facets>, about: &About) -> Es
         );
     }
     let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
+    let refers_to = IndexMap::from([
+        ("density".to_owned(), measured(rho, "kg/m^3")),
+        ("volume".to_owned(), measured(refined.volume_m3, "m^3")),
+        ("length".to_owned(), measured(about.length_m, "m")),
+    ]);
     let steps = refined.steps.iter().map(|s| s.panels.to_string()).collect::<Vec<_>>().join(", ");
     let covariance = covariance(refined, facets, rho);
     let errors = facets.filter(|_| covariance.is_some()).map(|facets| of_facets(facets, rho));
@@ -180,11 +208,7 @@ pub fn estimate(refined: &Refined, facets: Option<&Facets>, about: &About) -> Es
         source: about.source.clone(),
         kind: "potential".to_owned(),
         law: Law { name: "added_mass_6x6".to_owned(), version: 1, ..Law::default() },
-        refers_to: IndexMap::from([
-            ("density".to_owned(), measured(rho, "kg/m^3")),
-            ("volume".to_owned(), measured(refined.volume_m3, "m^3")),
-            ("length".to_owned(), measured(about.length_m, "m")),
-        ]),
+        refers_to,
         frame: Frame { words: about.frame.clone(), ..Frame::default() },
         point: ReferencePoint { words: about.reference_point.clone(), stated: true },
         signs: signs(),
@@ -203,6 +227,7 @@ pub fn estimate(refined: &Refined, facets: Option<&Facets>, about: &About) -> Es
             ),
         },
         coefficients,
+        derived: facets.map(|facets| displacement(refined.volume_m3, facets, rho)).unwrap_or_default(),
         type_a: covariance,
         errors: errors.into_iter().collect(),
         diagnostics: Diagnostics {

@@ -28,6 +28,7 @@ use froude_records::text::counted;
 use indexmap::IndexMap;
 
 use super::exports::{export, of_parts_for_program, words_of_parts};
+use super::facets;
 use super::frame::{Axes, sentence};
 use super::load::{is_body_file, load, of_a_mesh_only};
 use super::options::Asked;
@@ -86,12 +87,29 @@ pub fn several(
     };
     let density_kg_m3 = water.density_kg_m3(job, loaded.density_kg_m3)?;
     let wanted = &job.wanted;
-    let refined = refine_parts(loaded.levels.as_ref(), loaded.size, wanted, progress)?;
-    let RefinedParts { value, uncertainty, panels, worst, stopped, finest } = refined;
+    let mut refined = refine_parts(loaded.levels.as_ref(), loaded.size, wanted, progress)?;
     let mut findings = loaded.findings;
-    findings.extend(stopped.map(|why| not_within(worst, wanted.tolerance, &why)));
-    let mut tables = vec![diagonal_table(&loaded.parts, &value, &uncertainty, density_kg_m3)];
+    findings.extend(refined.stopped.as_ref().map(|why| not_within(refined.worst, wanted.tolerance, why)));
     let mut notes = loaded.notes;
+    if let Some(given) = &loaded.given {
+        if job.is_polyhedron {
+            notes.push(facets::IS_POLYHEDRON.to_owned());
+        } else {
+            progress("the same with facets rounded");
+            let of_mesh = |mesh: &Mesh| given.on(mesh);
+            match facets::correct_parts(&mut refined, &given.mesh, &of_mesh, wanted, job.is_smooth) {
+                Ok(Some(_)) if job.is_smooth => notes.push(facets::IS_SMOOTH.to_owned()),
+                Ok(Some(mean)) => findings.push(facets::finding(mean)),
+                Ok(None) => match facets::is_sharp(job.is_smooth) {
+                    Ok(note) => notes.push(note.to_owned()),
+                    Err(finding) => findings.push(finding),
+                },
+                Err(why) => findings.push(facets::not_rounded(why)),
+            }
+        }
+    }
+    let RefinedParts { value, uncertainty, panels, finest, .. } = refined;
+    let mut tables = vec![diagonal_table(&loaded.parts, &value, &uncertainty, density_kg_m3)];
     notes.extend(words_of_parts(job, matches!(apart, Apart::Links { .. })));
     tables.extend(coupling_table(&loaded.parts, &value, density_kg_m3));
     let together = whole(
@@ -143,6 +161,8 @@ struct Several {
     density_kg_m3: Option<f64>,
     parts: Vec<String>,
     levels: Box<dyn Levels>,
+    /// The mesh, where it was given as one.
+    given: Option<Subdivided>,
     /// Of one part.
     size: Size,
     notes: Vec<String>,
@@ -208,9 +228,18 @@ impl Levels for Bent {
 }
 
 /// The parts of a mesh, each panel divided into four as often as one likes.
+#[derive(Clone)]
 struct Subdivided {
     mesh: Mesh,
     frames: Vec<Frame>,
+}
+
+impl Subdivided {
+    /// Of a mesh with the same parts, and the volume of each, m³.
+    fn on(&self, mesh: &Mesh) -> (Problem, Vec<f64>) {
+        let volumes = parts(mesh).iter().map(|part| part.volume_m3).collect();
+        (Problem::of_parts(mesh, &tags(mesh), &self.frames, &[]), volumes)
+    }
 }
 
 impl Levels for Subdivided {
@@ -224,8 +253,7 @@ impl Levels for Subdivided {
 
     fn problem(&self, number: usize) -> Result<(f64, Problem), RefineError> {
         let finer = (0..number).fold(self.mesh.clone(), |mesh, _| subdivided(&mesh));
-        let problem = Problem::of_parts(&finer, &tags(&finer), &self.frames, &[]);
-        Ok((0.5_f64.powi(number as i32), problem))
+        Ok((0.5_f64.powi(number as i32), self.on(&finer).0))
     }
 
     fn is_foreign(&self) -> bool {
@@ -282,7 +310,16 @@ fn chain(name: &str, robot: Robot, links: usize, angle: f64, job: &Asked) -> Res
     let name = format!("{name}, H{links}LT, link by link");
     let volume_m3 = robot.link.volume_m3();
     let size = Size { volume_m3, length_m: robot.pitch_m() };
-    Ok(Several { size, name, density_kg_m3: None, parts, levels: Box::new(bent), notes, findings: Vec::new() })
+    Ok(Several {
+        size,
+        name,
+        density_kg_m3: None,
+        parts,
+        levels: Box::new(bent),
+        given: None,
+        notes,
+        findings: Vec::new(),
+    })
 }
 
 fn parts_of(job: &Asked) -> Result<Several, AddedMassError> {
@@ -307,12 +344,14 @@ fn parts_of(job: &Asked) -> Result<Several, AddedMassError> {
     findings.extend(too_close(&Problem::of_parts(&mesh, &tags, &frames, &[])));
     let largest = found.iter().map(|p| p.volume_m3.abs()).fold(0.0, f64::max);
     let size = Size { volume_m3: largest, length_m: largest.cbrt() };
+    let given = Subdivided { mesh, frames };
     Ok(Several {
         size,
         name: loaded.name,
         density_kg_m3: None,
         parts: names,
-        levels: Box::new(Subdivided { mesh, frames }),
+        levels: Box::new(given.clone()),
+        given: Some(given),
         notes,
         findings,
     })

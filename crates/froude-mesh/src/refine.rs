@@ -19,7 +19,7 @@ use indexmap::IndexMap;
 
 use crate::mesh::{Mesh, Panel};
 use crate::panel::{Facet, halves};
-use crate::topology::{Groups, by_edge, sides};
+use crate::topology::{Groups, Side, by_edge, sides};
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
 
 /// Each panel divided into four of its shape, at the middles of its edges, which neighbours share.
@@ -52,25 +52,8 @@ pub fn without_warp(mesh: &Mesh, limit: f64) -> Mesh {
 /// so that the volume's error falls to a quarter; that of a closed body of flat sides does not change at all.
 #[must_use]
 pub fn rounded(mesh: &Mesh, crease_rad: f64) -> Mesh {
-    let tangents = Tangents::of(mesh, crease_rad);
-    divided(mesh, |edge, [p, q]| {
-        let chord = sub(q, p);
-        let length = norm(chord);
-        let [at_p, at_q] = tangents.of_edge(edge, scale(chord, 1.0 / length));
-        arc_middle(p, q, at_p, at_q)
-    })
-}
-
-/// Middle of the arc that leaves p and reaches q in two directions; straight where they turn back.
-///
-/// The mean of the two arcs that one direction each would give: a chord c whose end turns by α has the sagitta (c/2) tan(α/2).
-fn arc_middle(p: Vec3, q: Vec3, at_p: Vec3, at_q: Vec3) -> Vec3 {
-    let chord = sub(q, p);
-    let length = norm(chord);
-    let cosine = 0.5 * (dot(at_p, chord) + dot(at_q, chord)) / length;
-    let middle = scale(add(p, q), 0.5);
-    // Also where an edge has no length, and its directions are not numbers.
-    if cosine > 0.0 { add(middle, scale(sub(at_p, at_q), 0.25 * length / (1.0 + cosine))) } else { middle }
+    let bulges = Chords::of(mesh, crease_rad).bulges();
+    divided(mesh, |edge, [p, q]| add(scale(add(p, q), 0.5), bulges.get(&edge).copied().unwrap_or_default()))
 }
 
 /// Every panel into four, with a rule for the middle of an edge given by its vertices (the smaller number first) and their points.
@@ -112,41 +95,79 @@ const fn triangle([a, b, c]: [u32; 3]) -> Panel {
     Panel::triangle(a, b, c)
 }
 
-/// Directions of the surface at the ends of edges.
-struct Tangents {
-    /// Of a smooth edge: unit normals at its ends.
-    normals: IndexMap<(u32, u32), [Vec3; 2]>,
-    /// Of a vertex between two edges of a crease: the direction of the circle through the three vertices.
-    creases: IndexMap<u32, Vec3>,
+/// Turn of an edge or of a joint that counts as none, rad.
+const STRAIGHT_RAD: f64 = 1e-3;
+/// Largest ratio of the turns at neighbouring joints of one curve: an arc that continues straight turns by half as much at its end.
+const SAME_TURN: f64 = 4.0;
+/// Largest ratio of a curved chord to its neighbour: of arcs with the same curvature, one of three times the length has nine times the sagitta.
+const SAME_LENGTH: f64 = 3.0;
+/// Least cosine of the angle within the surface between an edge and the one that continues it: 45°.
+const AHEAD: f64 = core::f64::consts::FRAC_1_SQRT_2;
+/// Largest bulge as part of the shortest of a chord and its neighbours on the curve: half of what a semicircle over it has.
+const OF_CHORD: f64 = 0.25;
+
+/// An edge of the mesh as a chord of the smooth surface.
+struct Chord {
+    /// Its vertices, the smaller number first.
+    ends: [u32; 2],
+    /// Group of the corners at each end; `None` on a crease.
+    groups: Option<[u32; 2]>,
+    /// Angle between its panels, rad.
+    turn_rad: f64,
+    /// The other edges of its two triangles, where it is the longest of both: a diagonal if they lie in one plane.
+    around: Option<[(u32, u32); 4]>,
 }
 
-impl Tangents {
-    fn of(mesh: &Mesh, crease_rad: f64) -> Self {
-        let normals: Vec<Vec3> = mesh.panels.iter().map(|p| Facet::of(mesh, *p).normal).collect();
+/// Where two chords of a curve meet.
+#[derive(Clone, Copy)]
+struct Joint {
+    /// The chord that continues, and its end that lies there.
+    next: (usize, usize),
+    /// Its length, m.
+    length_m: f64,
+    /// Towards the outside of the bend; its length is the angle, rad.
+    bend: Vec3,
+}
+
+impl Joint {
+    /// Whether it may belong to the same curve as a neighbour.
+    fn is_like(&self, other: &Self) -> bool {
+        let [a, b] = [norm(self.bend), norm(other.bend)];
+        a.min(b) > STRAIGHT_RAD && a.max(b) <= SAME_TURN * a.min(b) && dot(self.bend, other.bend) > 0.0
+    }
+}
+
+struct Chords<'a> {
+    mesh: &'a Mesh,
+    crease_rad: f64,
+    edges: Vec<Chord>,
+    /// Chords in smooth regions at a group of corners, and its unit normal.
+    smooth: IndexMap<u32, (Vec<(usize, usize)>, Vec3)>,
+    /// Chords on creases at a vertex.
+    creases: IndexMap<u32, Vec<(usize, usize)>>,
+}
+
+impl<'a> Chords<'a> {
+    fn of(mesh: &'a Mesh, crease_rad: f64) -> Self {
+        let facets: Vec<Facet> = mesh.panels.iter().map(|p| Facet::of(mesh, *p)).collect();
         let sides = sides(mesh);
-        let is_smooth = |edge: &[crate::topology::Side]| {
-            let [a, b] = edge else { return false };
-            let (m, n) = (normals[a.panel as usize], normals[b.panel as usize]);
-            a.is_forward != b.is_forward && norm(cross(m, n)).atan2(dot(m, n)) <= crease_rad
+        let turn = |edge: &[Side]| {
+            let [a, b] = edge else { return f64::INFINITY };
+            let [m, n] = [a, b].map(|side| facets[side.panel as usize].normal);
+            if a.is_forward == b.is_forward { f64::INFINITY } else { angle(m, n) }
         };
         // Corners of panels at one vertex, together as far as smooth edges reach; number of a corner: 4 × panel + place.
-        let corner = |side: &crate::topology::Side, vertex: u32| {
+        let corner = |side: &Side, vertex: u32| {
             let corners = mesh.panels[side.panel as usize].corners();
             let begin = usize::from(side.corner);
             let place = if corners[begin] == vertex { begin } else { (begin + 1) % corners.len() };
             4 * side.panel + place as u32
         };
         let mut groups = Groups::new(4 * mesh.panels.len());
-        let mut beside: IndexMap<u32, Vec<u32>> = IndexMap::new();
-        for edge in by_edge(&sides) {
+        for edge in by_edge(&sides).filter(|edge| turn(edge) <= crease_rad) {
             let (from, to) = edge[0].edge;
-            if is_smooth(edge) {
-                groups.join(corner(&edge[0], from), corner(&edge[1], from));
-                groups.join(corner(&edge[0], to), corner(&edge[1], to));
-            } else {
-                beside.entry(from).or_default().push(to);
-                beside.entry(to).or_default().push(from);
-            }
+            groups.join(corner(&edge[0], from), corner(&edge[1], from));
+            groups.join(corner(&edge[0], to), corner(&edge[1], to));
         }
         let mut sums = vec![[0.0; 3]; 4 * mesh.panels.len()];
         for (number, panel) in (0..).zip(&mesh.panels) {
@@ -161,41 +182,180 @@ impl Tangents {
                 }
             }
         }
-        let mut smooth = IndexMap::new();
-        for edge in by_edge(&sides).filter(|edge| is_smooth(edge)) {
+        let mut out = Self { mesh, crease_rad, edges: Vec::new(), smooth: IndexMap::new(), creases: IndexMap::new() };
+        for edge in by_edge(&sides) {
             let (from, to) = edge[0].edge;
-            let normal = |groups: &mut Groups, vertex| {
-                let sum = sums[groups.of(corner(&edge[0], vertex)) as usize];
-                scale(sum, 1.0 / norm(sum))
-            };
-            smooth.insert((from, to), [normal(&mut groups, from), normal(&mut groups, to)]);
-        }
-        let point = |v: u32| mesh.vertices[v as usize];
-        let crease = |(vertex, ends): (u32, Vec<u32>)| {
-            let [before, after] = ends[..] else { return None };
-            let (one, two) = (sub(point(vertex), point(before)), sub(point(after), point(vertex)));
-            let is_bend = norm(cross(one, two)).atan2(dot(one, two)) <= crease_rad;
-            let sum = add(scale(one, 1.0 / dot(one, one)), scale(two, 1.0 / dot(two, two)));
-            is_bend.then(|| (vertex, scale(sum, 1.0 / norm(sum))))
-        };
-        Self { normals: smooth, creases: beside.into_iter().filter_map(crease).collect() }
-    }
-
-    /// Directions at the ends of an edge, given that of its chord.
-    fn of_edge(&self, edge: (u32, u32), along: Vec3) -> [Vec3; 2] {
-        if let Some(normals) = self.normals.get(&edge) {
-            return normals.map(|n| {
-                let tangent = sub(along, scale(n, dot(along, n)));
-                let length = norm(tangent);
-                if length > 0.0 { scale(tangent, 1.0 / length) } else { along }
+            let turn_rad = turn(edge);
+            let is_smooth = turn_rad <= crease_rad;
+            let number = out.edges.len();
+            let own = [from, to].map(|vertex| groups.of(corner(&edge[0], vertex)));
+            for (end, (vertex, group)) in [from, to].into_iter().zip(own).enumerate() {
+                if is_smooth {
+                    let sum = sums[group as usize];
+                    let entry = out.smooth.entry(group).or_insert_with(|| (Vec::new(), scale(sum, 1.0 / norm(sum))));
+                    entry.0.push((number, end));
+                } else {
+                    out.creases.entry(vertex).or_default().push((number, end));
+                }
+            }
+            out.edges.push(Chord {
+                ends: [from, to],
+                groups: is_smooth.then_some(own),
+                turn_rad,
+                around: around(mesh, edge),
             });
         }
-        [edge.0, edge.1].map(|vertex| match self.creases.get(&vertex) {
-            Some(tangent) if dot(*tangent, along) < 0.0 => scale(*tangent, -1.0),
-            Some(tangent) => *tangent,
-            None => along,
-        })
+        out
     }
+
+    fn vector(&self, chord: &Chord) -> Vec3 {
+        let [p, q] = chord.ends.map(|v| self.mesh.vertices[v as usize]);
+        sub(q, p)
+    }
+
+    /// Out of a vertex along a chord that ends there.
+    fn outwards(&self, (chord, end): (usize, usize)) -> Vec3 {
+        let v = self.vector(&self.edges[chord]);
+        scale(v, if end == 0 { 1.0 } else { -1.0 } / norm(v))
+    }
+
+    /// The joint at an end of a chord; `None` at a crease, where the surface does not continue smoothly.
+    fn joint(&self, (number, end): (usize, usize)) -> Option<Joint> {
+        let chord = &self.edges[number];
+        let own = self.outwards((number, end));
+        let (next, bend) = if let Some(groups) = chord.groups {
+            let (others, normal) = self.smooth.get(&groups[end])?;
+            let flat = |v: Vec3| sub(v, scale(*normal, dot(v, *normal)));
+            let ahead = |other: &&(usize, usize)| {
+                let (a, b) = (flat(own), flat(self.outwards(**other)));
+                -dot(a, b) / (norm(a) * norm(b))
+            };
+            let next = others.iter().filter(|other| other.0 != number && ahead(other) > AHEAD);
+            let next = *next.max_by(|a, b| ahead(a).total_cmp(&ahead(b)))?;
+            let dip = |v: Vec3| -dot(v, *normal).clamp(-1.0, 1.0).asin();
+            (next, scale(*normal, dip(own) + dip(self.outwards(next))))
+        } else {
+            let two = self.creases.get(&chord.ends[end])?;
+            let [one, other] = two[..] else { return None };
+            let next = if one.0 == number { other } else { one };
+            let ahead = self.outwards(next);
+            let back = add(own, ahead);
+            let turn = angle(scale(own, -1.0), ahead);
+            (next, if turn > 0.0 { scale(back, -turn / norm(back)) } else { [0.0; 3] })
+        };
+        let length_m = norm(self.vector(&self.edges[next.0]));
+        // Between panels that meet at no crease an edge turns by more than they do: 63° on an icosahedron of 42°.
+        let most_rad = if chord.groups.is_some() { core::f64::consts::FRAC_PI_2 } else { self.crease_rad };
+        (norm(bend) <= most_rad).then_some(Joint { next, length_m, bend })
+    }
+
+    /// Joints one after the other beyond an end.
+    fn beyond(&self, at: (usize, usize)) -> [Option<Joint>; 3] {
+        let mut out = [None; 3];
+        let mut end = at;
+        for slot in &mut out {
+            *slot = self.joint(end);
+            let Some(joint) = slot else { break };
+            end = (joint.next.0, 1 - joint.next.1);
+        }
+        out
+    }
+
+    /// The ends of a chord where a curve continues, three joints at least of which the chord is a part.
+    fn curved(&self, number: usize) -> [bool; 2] {
+        let length_m = norm(self.vector(&self.edges[number]));
+        let is_short = |a: f64, b: f64| a <= SAME_LENGTH * b;
+        // The neighbour there is curved as well: it has a like joint at its other end, and is not long beside its own neighbours.
+        let goes_on = |[first, second]: [&Option<Joint>; 2], length_m: f64| {
+            let (Some(a), Some(b)) = (first, second) else { return false };
+            a.is_like(b) && is_short(a.length_m, length_m) && is_short(a.length_m, b.length_m)
+        };
+        let [one, two] = [0, 1].map(|end| self.beyond((number, end)));
+        let alone = |j: &[Option<Joint>; 3]| {
+            let Some(a) = &j[0] else { return false };
+            is_short(length_m, a.length_m) && goes_on([&j[0], &j[1]], length_m) && goes_on([&j[1], &j[2]], a.length_m)
+        };
+        match (&one[0], &two[0]) {
+            (Some(a), Some(b)) => {
+                let is_curve = a.is_like(b)
+                    && is_short(length_m, a.length_m)
+                    && is_short(length_m, b.length_m)
+                    && (goes_on([&one[0], &one[1]], length_m) || goes_on([&two[0], &two[1]], length_m));
+                [is_curve; 2]
+            }
+            (Some(_), None) => [alone(&one), false],
+            (None, Some(_)) => [false, alone(&two)],
+            (None, None) => [false; 2],
+        }
+    }
+
+    /// From the middle of each chord to that of its arc.
+    fn bulges(&self) -> IndexMap<(u32, u32), Vec3> {
+        let arc = |number: usize| {
+            let chord = &self.edges[number];
+            let ends = self.curved(number);
+            let sum = (0..2).filter(|end| ends[*end]).fold([0.0; 3], |sum, end| add(sum, self.bulge(number, end)));
+            let count = ends.iter().filter(|end| **end).count();
+            let mean = scale(sum, 1.0 / count.max(1) as f64);
+            let next_m = (0..2).filter(|end| ends[*end]).filter_map(|end| Some(self.joint((number, end))?.length_m));
+            let most_m = OF_CHORD * next_m.fold(norm(self.vector(chord)), f64::min);
+            let size = norm(mean);
+            if size > most_m { scale(mean, most_m / size) } else { mean }
+        };
+        let key = |chord: &Chord| (chord.ends[0], chord.ends[1]);
+        let mut out: IndexMap<(u32, u32), Vec3> =
+            self.edges.iter().enumerate().map(|(k, c)| (key(c), arc(k))).collect();
+        // The diagonal of a flat quadrilateral lies on the Coons patch over its four sides.
+        for chord in &self.edges {
+            let Some(around) = chord.around.filter(|_| chord.turn_rad < STRAIGHT_RAD) else { continue };
+            let sum = around.iter().fold([0.0; 3], |sum, side| add(sum, out.get(side).copied().unwrap_or_default()));
+            out.insert(key(chord), scale(sum, 0.5));
+        }
+        out
+    }
+
+    /// Sagitta of the arc that leaves an end of a chord in the direction of the surface: a chord c that its end meets at α has (c/2) tan(α/2).
+    fn bulge(&self, number: usize, end: usize) -> Vec3 {
+        let chord = &self.edges[number];
+        let length_m = norm(self.vector(chord));
+        let own = self.outwards((number, end));
+        let tangent = if let Some(groups) = chord.groups {
+            let normal = self.smooth.get(&groups[end]).map_or([0.0; 3], |(_, normal)| *normal);
+            sub(own, scale(normal, dot(own, normal)))
+        } else {
+            // Of the circle through three vertices.
+            let Some(joint) = self.joint((number, end)) else { return [0.0; 3] };
+            sub(scale(own, 1.0 / length_m), scale(self.outwards(joint.next), 1.0 / joint.length_m))
+        };
+        let tangent = scale(tangent, 1.0 / norm(tangent));
+        let cosine = dot(tangent, own);
+        // Also where an edge has no length, and its directions are not numbers.
+        if cosine > 0.0 { scale(sub(tangent, scale(own, cosine)), 0.5 * length_m / (1.0 + cosine)) } else { [0.0; 3] }
+    }
+}
+
+/// Angle between two directions, rad.
+fn angle(a: Vec3, b: Vec3) -> f64 {
+    norm(cross(a, b)).atan2(dot(a, b))
+}
+
+/// The other edges of two triangles that share their longest.
+fn around(mesh: &Mesh, edge: &[Side]) -> Option<[(u32, u32); 4]> {
+    let [a, b] = edge else { return None };
+    let mut out = [(0, 0); 4];
+    for (k, side) in [a, b].into_iter().enumerate() {
+        let [p, q, r] = *mesh.panels[side.panel as usize].corners() else { return None };
+        let begin = usize::from(side.corner);
+        let [from, to, tip] = [0, 1, 2].map(|i| [p, q, r][(begin + i) % 3]);
+        let point = |v: u32| mesh.vertices[v as usize];
+        let length = |v: u32, w: u32| norm(sub(point(v), point(w)));
+        if length(from, to) < length(to, tip).max(length(tip, from)) {
+            return None;
+        }
+        out[2 * k] = (to.min(tip), to.max(tip));
+        out[2 * k + 1] = (from.min(tip), from.max(tip));
+    }
+    Some(out)
 }
 
 #[cfg(test)]

@@ -317,6 +317,8 @@ pub struct RefinedParts {
     pub stopped: Option<Stop>,
     /// The solution on the finest mesh.
     pub finest: Solution,
+    /// Matrix on the second mesh.
+    pub once_divided: Option<Vec<Vec<f64>>>,
 }
 
 /// Refines several parts as [`refine`] does one body; `size` is that of one part.
@@ -357,6 +359,7 @@ pub fn refine_parts(
         worst,
         stopped: stopped.filter(|_| !is_within),
         finest,
+        once_divided: solutions.get(1).map(|s| s.matrix.clone()),
     })
 }
 

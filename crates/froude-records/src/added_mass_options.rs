@@ -37,7 +37,7 @@ const fn switch(name: &'static str, help: &'static str) -> AddedMassOption {
 const DIRECTIONS: &[&str] = &["x", "-x", "y", "-y", "z", "-z"];
 
 /// All of them.
-pub const ADDED_MASS_OPTIONS: [AddedMassOption; 16] = [
+pub const ADDED_MASS_OPTIONS: [AddedMassOption; 17] = [
     option("links", "K|A..B|K,K", "Links of a robot: 3, or 1..9 for a table with a least-squares fit, or 1,3,6"),
     option("density", "QUANTITY", "Density of the water, with its unit [default: the body file's]"),
     words(
@@ -79,8 +79,9 @@ pub const ADDED_MASS_OPTIONS: [AddedMassOption; 16] = [
     switch("apart", "Treat the disconnected parts of a mesh as separate bodies"),
     switch(
         "polyhedron",
-        "Take the facets of a mesh as the body itself [default: as those of a smooth body with its corners]",
+        "The facets of a mesh are the body itself [default: the value of the smooth body, with an interval that contains both]",
     ),
+    switch("smooth", "The facets of a mesh are those of a smooth body: narrower intervals"),
     option("export", "FORMAT,…", "Files to write beside the record: wamit, capytaine, csv"),
 ];
 

@@ -109,6 +109,12 @@ pub(super) fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
     ))
 }
 
+/// Half of the interval of a measure of the body: the volume of a mesh has one.
+fn half_width(of: &Named<'_>, key: &str) -> f64 {
+    let interval = of.estimate.derived.get(key).and_then(|derived| derived.interval_95);
+    interval.map_or(0.0, |[low, high]| 0.5 * (high - low))
+}
+
 /// Geometry or density that differ between estimates of one model: coefficients then mean different things.
 pub(super) fn differing_constants(all: &[Named<'_>]) -> Vec<Finding> {
     let mut out: Vec<Finding> = Vec::new();
@@ -120,7 +126,7 @@ pub(super) fn differing_constants(all: &[Named<'_>]) -> Vec<Finding> {
             out.extend(density_differs(a.estimate, b.estimate));
             for (key, x) in a.estimate.refers_to.iter().filter(|(key, _)| *key != "density") {
                 if let Some(y) = b.estimate.refers_to.get(key)
-                    && (x.value - y.value).abs() > 1e-9 * x.value.abs()
+                    && (x.value - y.value).abs() > 1e-9 * x.value.abs() + half_width(a, key) + half_width(b, key)
                 {
                     out.push(Finding::new(
                         Severity::Warning,

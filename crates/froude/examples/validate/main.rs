@@ -49,6 +49,7 @@ mod sweeps;
 mod swim;
 mod swim_coverage;
 mod swim_sources;
+mod tessellations;
 mod two_mass_rig;
 mod weights;
 

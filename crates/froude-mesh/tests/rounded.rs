@@ -1,0 +1,101 @@
+//! Rounding adds what chords explain and nothing more: bodies of revolution with long facets, creases and tips; flat bodies.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::f64::consts::PI;
+
+use froude_mesh::measure::Measure;
+use froude_mesh::refine::{rounded, subdivided};
+use froude_mesh::{Mesh, Panel};
+
+/// The crease of added masses: 52°.
+const CREASE_RAD: f64 = 52.0 * PI / 180.0;
+
+/// About x from stations (x, r), the bow first, on the axis at both ends.
+fn revolved(stations: &[[f64; 2]], around: u32, is_quads: bool) -> Mesh {
+    let rings = &stations[1..stations.len() - 1];
+    let mut vertices = vec![[stations[0][0], 0.0, 0.0]];
+    for [x, r] in rings {
+        let angle = |k: u32| 2.0 * PI * f64::from(k) / f64::from(around);
+        vertices.extend((0..around).map(|k| [*x, r * angle(k).cos(), r * angle(k).sin()]));
+    }
+    vertices.push([stations[stations.len() - 1][0], 0.0, 0.0]);
+    let last = vertices.len() as u32 - 1;
+    let at = |ring: usize, k: u32| 1 + ring as u32 * around + k % around;
+    let mut panels = Vec::new();
+    for k in 0..around {
+        panels.push(Panel::triangle(0, at(0, k), at(0, k + 1)));
+        panels.push(Panel::triangle(last, at(rings.len() - 1, k + 1), at(rings.len() - 1, k)));
+        for ring in 1..rings.len() {
+            let [a, b, c, d] = [at(ring - 1, k), at(ring, k), at(ring, k + 1), at(ring - 1, k + 1)];
+            if is_quads {
+                panels.push(Panel::quad(a, b, c, d));
+            } else {
+                panels.extend([Panel::triangle(a, b, c), Panel::triangle(a, c, d)]);
+            }
+        }
+    }
+    Mesh { vertices, panels }
+}
+
+/// Volume of the smooth body over that of the polyhedron, less one.
+fn gain(mesh: &Mesh) -> f64 {
+    let flat = Measure::of(mesh).volume_m3;
+    4.0 / 3.0 * (Measure::of(&rounded(mesh, CREASE_RAD)).volume_m3 / flat - 1.0)
+}
+
+/// What an inscribed polygon lacks of its circle, over what it has.
+fn of_chords(around: u32) -> f64 {
+    let turn = 2.0 * PI / f64::from(around);
+    turn / turn.sin() - 1.0
+}
+
+#[test]
+fn cones_and_cylinders_gain_what_chords_around_explain() {
+    for around in [8, 12, 16, 24] {
+        for is_quads in [false, true] {
+            let close: Vec<[f64; 2]> = (0..=80).rev().map(|k| [0.05 * f64::from(k), 1.0]).collect();
+            for (name, stations) in [
+                ("cone", vec![[2.0, 0.0], [0.0, 1.0], [0.0, 0.0]]),
+                ("cone of rows", vec![[2.0, 0.0], [1.5, 0.25], [1.0, 0.5], [0.0, 1.0], [0.0, 0.0]]),
+                ("cylinder", vec![[4.0, 0.0], [4.0, 1.0], [0.0, 1.0], [0.0, 0.0]]),
+                ("cone-cylinder", vec![[6.0, 0.0], [4.0, 1.0], [0.0, 1.0], [0.0, 0.0]]),
+                // Rows closer together than the bulge is high: each direction is judged by itself.
+                ("close rows", [vec![[4.0, 0.0]], close, vec![[0.0, 0.0]]].concat()),
+                ("blunt cone", vec![[4.5, 0.0], [4.0, 1.0], [0.0, 1.0], [0.0, 0.0]]),
+                ("cone-cylinder-cone", vec![[6.0, 0.0], [4.0, 1.0], [0.0, 1.0], [-4.0, 0.0]]),
+            ] {
+                let gain = gain(&revolved(&stations, around, is_quads));
+                let expected = of_chords(around);
+                // Never more; of a row of triangles that end at the tip three quarters, since their bulge is linear and not quadratic.
+                assert!(gain < 1.02 * expected && gain > 0.7 * expected, "{name} {around}: {gain} {expected}");
+                if name == "cylinder" {
+                    assert!((gain / expected - 1.0).abs() < 0.02 + 0.2 * expected, "{around}: {gain} {expected}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_torpedo_with_one_row_of_cylinder_facets_is_not_inflated() {
+    let mut stations: Vec<[f64; 2]> = (0..=4).map(|k| PI / 8.0 * f64::from(k)).map(|a| [a.cos(), a.sin()]).collect();
+    stations.extend([[-11.0, 1.0], [-15.0, 0.0]]);
+    let exact = PI * (2.0 / 3.0 + 11.0 + 4.0 / 3.0);
+    for around in [12, 16, 24] {
+        for is_quads in [false, true] {
+            let torpedo = revolved(&stations, around, is_quads);
+            let smooth = Measure::of(&torpedo).volume_m3 * (1.0 + gain(&torpedo));
+            assert!((smooth / exact - 1.0).abs() < 0.005, "{around}: {smooth} {exact}");
+        }
+    }
+}
+
+#[test]
+fn flat_bodies_gain_nothing() {
+    let prism = |sides| revolved(&[[4.0, 0.0], [4.0, 1.0], [2.0, 1.0], [0.0, 1.0], [0.0, 0.0]], sides, false);
+    for sides in 3..7 {
+        assert!(gain(&prism(sides)).abs() < 1e-12, "{sides}");
+        // Divided in its own planes, a prism of more sides shows that they are flat.
+        assert!(gain(&prism(sides + 5)) > 0.01 && gain(&subdivided(&prism(sides + 5))).abs() < 1e-12, "{sides}");
+    }
+}
