@@ -15,7 +15,7 @@ use crate::surface::{bounds_m, reference};
 
 /// Radius of a domain over the body's length, and over its width, where the campaign does not say: the larger.
 const RADIUS: [f64; 2] = [3.0, 25.0];
-/// Height of the last layer over the edge of the cubes \[-\]: all layers together are then some 0.8 of a cube thick at a growth of 1.3. Thicker stacks (0.5, twice a cube) leave fewer faces with all layers.
+/// Height of the last layer over the edge of the cubes \[-\]: all layers together are then some 0.65 of a cube thick at a growth of 1.3. Thicker stacks (0.5, twice a cube) leave fewer faces with all layers.
 const LAST_LAYER: f64 = 0.15;
 /// Far cubes from the middle of a box to its sides, at least; across a tank.
 const FAR_CUBES: [f64; 2] = [4.0, 3.0];

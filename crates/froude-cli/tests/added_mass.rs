@@ -225,6 +225,10 @@ fn a_box_has_no_facets_to_round() {
     };
     let (either, flat) = (of(&[]), of(&["--polyhedron"]));
     assert_eq!(matrix(&either, 0), matrix(&flat, 0));
+    // Whoever states that it is smooth hears that nothing was rounded.
+    let smooth = of(&["--smooth"]);
+    assert_eq!(matrix(&smooth, 0), matrix(&flat, 0));
+    assert!(smooth["findings"].to_string().contains("--smooth was given, and no edge belongs to a curve"), "{smooth}");
     let told = froude(folder.path(), &["box.obj", "--smooth", "--polyhedron"]);
     assert_eq!(told.status.code(), Some(2));
     assert_eq!(said(&told), "froude: --smooth and --polyhedron contradict each other: give one of them");

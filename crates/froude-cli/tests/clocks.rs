@@ -98,6 +98,44 @@ fn a_declared_delay_moves_the_delay_that_is_found() {
     }
 }
 
+/// A rig that is parked at an angle before the declared test, a sensor that is stamped late, times of a calendar: none of it makes a run clipped, and the numbers stay.
+#[test]
+fn a_parked_rig_before_the_test_is_at_no_sensors_end() {
+    let folder = simulated("mamba-oscillation", &[]);
+    let runs = folder.path().join("runs");
+    let before = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
+    for path in files(&runs, "csv") {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let (head, rows) = text.split_once('\n').unwrap();
+        let parked = (0..3_000).map(|i| format!("{:.6},0.785398,0.000000\n", CALENDAR_S + 0.01 * f64::from(i)));
+        let moved = rows.lines().map(|row| {
+            let (time, rest) = row.split_once(',').unwrap();
+            format!("{:.6},{rest}\n", time.parse::<f64>().unwrap() + CALENDAR_S + 30.0)
+        });
+        std::fs::write(&path, format!("{head}\n{}", parked.chain(moved).collect::<String>())).unwrap();
+        let sidecar = path.with_extension("toml");
+        let text = std::fs::read_to_string(&sidecar).unwrap();
+        let line = text.lines().find(|line| line.contains("name = \"angle\"")).unwrap();
+        let late = line.replacen("clock = \"log\"", "clock = \"log\", delay = \"10 ms\"", 1);
+        let last = rows.lines().last().unwrap().split_once(',').unwrap().0.parse::<f64>().unwrap() + 30.0;
+        let test = format!(
+            "\n[[segments]]\nname = \"test\"\nfrom = \"{} s\"\nto = \"{} s\"\nby = \"A. Tester\"\n",
+            CALENDAR_S + 30.0,
+            CALENDAR_S + last
+        );
+        std::fs::write(&sidecar, text.replace(line, &late) + &test).unwrap();
+    }
+    let after = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
+    let c_a = |record: &Value| {
+        let all = record["estimates"].as_array().unwrap();
+        let f4 = all.iter().find(|e| e["recommended"] == true).unwrap();
+        ["value", "standard_uncertainty"].map(|key| f4["coefficients"]["C_A"][key].as_f64().unwrap())
+    };
+    let ([a, u], [b, _]) = (c_a(&before), c_a(&after));
+    // The delay's prior is that of a force which is late by 10 ms less.
+    assert!((a - b).abs() < u, "{a} ± {u}, {b}");
+}
+
 /// f1 without a declared delay does not converge on these runs: f4 is reported all the same, and the word says which was left out.
 #[test]
 fn a_law_that_does_not_converge_costs_itself_alone() {

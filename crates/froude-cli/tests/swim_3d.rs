@@ -275,5 +275,5 @@ fn an_unstable_gait_settles_into_the_circle_of_the_plane() {
     assert!(remarks.contains("unstable: the swimmer settles into a circle of 3.79 m radius"), "{remarks}");
     // Where nothing rights it, no other motion is looked for, and that is said.
     let never = swum(&[record, PITCH, LOW, EXACT])["remarks"].to_string();
-    assert!(never.contains("no other that repeats each period was reached"), "{never}");
+    assert!(never.contains("no other was looked for, because nothing rights the robot"), "{never}");
 }

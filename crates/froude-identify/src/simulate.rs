@@ -166,7 +166,8 @@ pub fn observations(campaign: &Campaign, source: &Source, stream: u64) -> Result
         if sensor.correlation_s.is_some() {
             return Err(IdentifyError::Campaign {
                 place: sensor.place.as_ref().map_or_else(|| "[[simulate.sensor]]".to_owned(), ToString::to_string),
-                what: "correlation applies to noise over time, and the rows of a table have no times: leave it out".to_owned(),
+                what: "correlation applies to noise over time, and the rows of a table have no times: leave it out"
+                    .to_owned(),
             });
         }
         let Some(channel) = data.channels.get_mut(quantity) else {

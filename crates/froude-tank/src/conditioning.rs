@@ -3,13 +3,13 @@
 //! | step        | module      | what                                                                                                   |
 //! |-------------|-------------|--------------------------------------------------------------------------------------------------------|
 //! | `read`      | –           | columns by unit and sign (done by the importer)                                                        |
+//! | `times`     | [`times`]   | times of a calendar are counted from the first sample of the log                                        |
 //! | `clock`, `delay`, `filter` | [`align`] | stamps of another clock, and late ones, as times of the log                               |
 //! | `clipped`   | [`clipped`] | readings at the end of the range, or flat at an extreme, are marked                                    |
 //! | `resampled` | [`align`]   | channels whose stamps moved, by a cubic spline at the rows of the log; rows without data are cut        |
 //! | `cell`      | [`loads`]   | bridges of a load cell as loads, by its matrix                                                         |
 //! | `frame`     | [`loads`]   | loads along the sensor's axes as loads along the body's, about its reference point                     |
 //! | `segment`, `mark` | [`stretches`] | the declared test, and what is not to be used                                                  |
-//! | `times`     | [`times`]   | times of a calendar are counted from the first sample                                                   |
 //!
 //! Every step stands in [`ImportedRun::done`]; what a reader should know of it is a finding.
 //!
@@ -42,6 +42,7 @@ pub fn condition(run: &mut ImportedRun, method: &str) -> Result<(), MethodError>
         Some(Step::new("read", name, words).with("factor", told.factor, "1").with("sign", told.sign, "1"))
     });
     run.done = read.collect();
+    times::from_the_first_sample(run);
     run.findings.extend(stretches::astray(&run.log, &run.declared.marks));
     resolution::check(run);
     let stamps = align::stamps(run, method);
@@ -49,7 +50,5 @@ pub fn condition(run: &mut ImportedRun, method: &str) -> Result<(), MethodError>
     align::resample(run, &stamps)?;
     loads::of_cell(run)?;
     loads::in_body(run)?;
-    stretches::cut(run, method)?;
-    times::from_the_first_sample(run);
-    Ok(())
+    stretches::cut(run, method)
 }

@@ -47,7 +47,10 @@ pub(crate) fn seed_and_sensors<'a>(
                 continue;
             }
             let names: Vec<&str> = senses.iter().flat_map(|sense| sense.names.iter().copied()).collect();
-            return refuse(format!("quantity = {quantity:?} is not simulated by this twin: it has {}", names.join(", ")));
+            return refuse(format!(
+                "quantity = {quantity:?} is not simulated by this twin: it has {}",
+                names.join(", ")
+            ));
         };
         let keys = [
             ("drift", sensor.drift.is_some()),

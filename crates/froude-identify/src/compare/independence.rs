@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use froude_records::estimate::{DataFile, Estimate, EstimateFile};
+use froude_records::estimate::{DataFile, Estimate, EstimateFile, Status};
 use froude_records::finding::{Finding, Severity};
 
 use crate::compare::named::Named;
@@ -43,7 +43,7 @@ pub fn observations<'a>(file: &'a EstimateFile, estimate: &'a Estimate) -> Vec<&
 pub(super) struct Origin<'a> {
     /// Fingerprints of its tables or runs.
     tables: BTreeSet<&'a str>,
-    /// Those behind the numbers that it took from other records.
+    /// Those behind its priors.
     inherited: BTreeSet<&'a str>,
     /// Whether these are its own, and not those of all estimates of its record.
     is_exact: bool,
@@ -55,7 +55,10 @@ pub(super) struct Origin<'a> {
 pub(super) fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
     let of = |n: &Named<'a>| {
         let own = fingerprints(n.estimate, n.record.data_of(n.estimate));
-        let inherited = n.record.data.values().filter(|data| data.role.as_deref() == Some(INHERITED));
+        // What is behind a known coefficient or a tare is an error with a key of its own.
+        let has_prior = n.estimate.coefficients.values().any(|c| c.status == Status::Prior);
+        let is_inherited = |data: &&DataFile| has_prior && data.role.as_deref() == Some(INHERITED);
+        let inherited = n.record.data.values().filter(is_inherited);
         let inherited = inherited.map(|data| data.sha256.as_str()).collect();
         let is_exact = !own.is_empty();
         let first = n.record.estimates.first().map(|e| &e.source);
@@ -114,7 +117,7 @@ pub(super) fn same_data([a, b]: [&Named<'_>; 2], [first, second]: [&Origin<'_>; 
         return true;
     }
     if first.is_exact && second.is_exact {
-        // A prior that was fitted to the other's rows, too. What both took from a third record is an error with a key of its own.
+        // A prior that was fitted to the other's rows, too.
         let is_taken = |own: &Origin<'_>, other: &Origin<'_>| !own.tables.is_disjoint(&other.inherited);
         return !first.tables.is_disjoint(&second.tables) || is_taken(first, second) || is_taken(second, first);
     }

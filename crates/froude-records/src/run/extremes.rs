@@ -71,6 +71,15 @@ impl Extremes {
         }
     }
 
+    /// The same with another origin of time.
+    pub fn shift(&mut self, by_s: f64) {
+        self.first_s += by_s;
+        self.last_s += by_s;
+        for stay in self.longest.iter_mut().chain([&mut self.now]).flatten() {
+            stay.from_s += by_s;
+        }
+    }
+
     /// A stay at the smallest or largest value that is longer than a smooth motion of that period and the channel's resolution would stay there.
     ///
     /// About its peak a sine of amplitude A stays within one step q for (1/π)√(2q/A) of its period.

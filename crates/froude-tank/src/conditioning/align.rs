@@ -11,7 +11,7 @@ use froude_identify::method::MethodError;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::{percent, plain, significant};
 use froude_records::run::clocks::is_own;
-use froude_records::run::marks::Mark;
+use froude_records::run::marks::{Mark, SegmentKind};
 use froude_records::run::sensor::Filter;
 use froude_records::run::step::Step;
 use froude_records::run::{EXCITED_RESPONSE, Extremes, FORCED_OSCILLATION, FREE_DECAY, ImportedRun, LOG, ROTATION};
@@ -175,6 +175,8 @@ pub fn resample(run: &mut ImportedRun, stamps: &Stamps) -> Result<(), MethodErro
             ),
         ));
     }
+    let test = run.declared.segments.iter().find(|segment| segment.kind == SegmentKind::Test);
+    let used_s = test.map_or([from_s, to_s], |test| [from_s.max(test.from_s), to_s.min(test.to_s)]);
     let mut done = Vec::new();
     for (name, stamps) in stamps {
         let Some(channel) = run.log.channels.get_mut(name) else { continue };
@@ -182,7 +184,10 @@ pub fn resample(run: &mut ImportedRun, stamps: &Stamps) -> Result<(), MethodErro
             MethodError::input(&run.log.path, format!("{name} cannot be read at the rows of the log: {why}"))
         };
         let spline = Spline::through(stamps, &channel.values).map_err(|e| refuse(e.to_string()))?;
-        run.recorded.entry(name.clone()).or_insert_with(|| Extremes::of(time_s, &channel.values));
+        // Of the part that is used alone: a rig that is parked before the test is at no sensor's end.
+        let used = stamps.partition_point(|t| *t < used_s[0])..stamps.partition_point(|t| *t <= used_s[1]);
+        let extremes = || Extremes::of(&stamps[used.clone()], &channel.values[used.clone()]);
+        run.recorded.entry(name.clone()).or_insert_with(extremes);
         // What is outside is cut below; its value does not matter.
         let values: Vec<f64> =
             time_s.iter().zip(&channel.values).map(|(t, old)| spline.at(*t).unwrap_or(*old)).collect();

@@ -58,6 +58,18 @@ pub enum DecayError {
         must: &'static str,
     },
 
+    /// Free from a time that the log does not reach.
+    #[error(
+        "run {run:?}: free_from = {free_from_s} s, and the log ends at {last_s} s: it counts in the log's times, those of a calendar from the first sample"
+    )]
+    FreeAfterEnd {
+        /// Name of the run.
+        run: String,
+        /// What is declared, s.
+        free_from_s: f64,
+        /// Its last sample, s.
+        last_s: f64,
+    },
     /// No motion above the noise of the sensor.
     #[error(
         "run {run:?}: the motion reaches {range:.3e} where the noise of a sample is {noise:.3e}; release from further out"

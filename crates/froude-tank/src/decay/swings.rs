@@ -45,6 +45,11 @@ impl Swings {
         let id = || run.id.to_owned();
         let window = setup.window;
         let first = window.free_from_s.map_or(0, |t| run.time_s.partition_point(|s| *s < t));
+        if let (Some(free_from_s), Some(last_s)) =
+            (window.free_from_s, run.time_s.last().filter(|_| first == run.time_s.len()))
+        {
+            return Err(DecayError::FreeAfterEnd { run: id(), free_from_s, last_s: *last_s });
+        }
         let (time_s, q) = (&run.time_s[first..], &run.position[first..]);
         let noise = window.noise.unwrap_or_else(|| local::noise_of(q));
         let mut rest = midrange(&q[q.len() / 2..]);

@@ -47,10 +47,15 @@ impl Repeating<'_> {
         format!("a small deviation grows by a factor of {} from period to period", significant(by, 3))
     }
 
-    /// Of an unstable motion that the figures are of.
-    pub fn stays(&self) -> String {
+    /// Of an unstable motion that the figures are of; `was_followed` says whether another was looked for.
+    pub fn stays(&self, was_followed: bool) -> String {
+        let other = if was_followed {
+            "no other that repeats each period was reached"
+        } else {
+            "no other was looked for, because nothing rights the robot"
+        };
         format!(
-            "unstable: {}, and the swimmer leaves this motion; no other that repeats each period was reached, and all figures are of the unstable motion",
+            "unstable: {}, and the swimmer leaves this motion; {other}, and all figures are those of the unstable motion",
             self.grows()
         )
     }
@@ -59,7 +64,9 @@ impl Repeating<'_> {
     pub fn leaves(&self, settled: &Self, period_s: f64) -> String {
         let into = if settled.turn.abs() > CIRCLES {
             let radius_m = settled.speed_m_s * period_s / (2.0 * (0.5 * settled.turn).sin().abs());
-            format!("a circle of {} m radius or its mirror image", significant(radius_m, 3))
+            // Only a motion without a turn of its own may leave to either side.
+            let either = if self.turn.abs() <= CIRCLES { " or its mirror image" } else { "" };
+            format!("a circle of {} m radius{either}", significant(radius_m, 3))
         } else {
             "another motion".to_owned()
         };

@@ -264,7 +264,9 @@ impl SpatialSwum {
         let p = &self.swim.periodic;
         match &self.swim.unstable {
             Some(unstable) => out.push(Repeating::from(&**unstable).leaves(&p.into(), self.period_s)),
-            None if p.multipliers[0] > 1.0 + ONE => out.push(Repeating::from(p).stays()),
+            None if p.multipliers[0] > 1.0 + ONE => {
+                out.push(Repeating::from(p).stays(self.robot.righting_m.abs() > RIGHTS_ITSELF_M));
+            }
             None => {}
         }
         let righting_mm = 1e3 * self.robot.righting_m;

@@ -178,7 +178,7 @@ impl Swum {
         let settled = Repeating::from(&s.periodic);
         match &s.unstable {
             Some(unstable) => out.push(Repeating::from(&**unstable).leaves(&settled, self.period_s)),
-            None if s.periodic.multipliers[0] > 1.0 => out.push(settled.stays()),
+            None if s.periodic.multipliers[0] > 1.0 => out.push(settled.stays(true)),
             None => {}
         }
         out
