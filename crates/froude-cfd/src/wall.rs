@@ -15,6 +15,7 @@
 use std::path::Path;
 
 use froude_records::RecordError;
+use froude_records::read;
 use froude_records::write::write_atomically;
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,8 @@ use crate::outcome::{Loads, Outcome, Status};
 
 /// Name of the file in a mesh's folder.
 const FILE: &str = "quality.json";
+/// Its size, at most, bytes.
+const LARGEST: u64 = 1 << 16;
 /// Least part of the wall's area that must have layers \[-\].
 pub const MIN_COVERAGE: f64 = 0.5;
 /// y+ up to which the viscous sublayer is resolved.
@@ -62,7 +65,7 @@ impl MeshQuality {
     /// Reads what was written into a mesh's folder; `None` where nothing was.
     #[must_use]
     pub fn read(mesh: &Path) -> Option<Self> {
-        serde_json::from_str(&std::fs::read_to_string(mesh.join(FILE)).ok()?).ok()
+        serde_json::from_str(&read::text(&mesh.join(FILE), LARGEST, "the quality of a mesh").ok()?).ok()
     }
 
     /// Writes it into a mesh's folder.

