@@ -54,7 +54,7 @@ impl Shaped {
 
     /// The cubes about it that a campaign asks for; `angle_rad` is that of the velocity, which a tank lies along.
     ///
-    /// Where the campaign names an O-grid, cells on the surface have half the edge of its cells, and layers grow by 1.3 from its first one, or a thicker one, until [`LAST_LAYER`].
+    /// Where the campaign names an O-grid, cells on the surface have half the edge of its cells, and layers grow by 1.3 from its first one, or a thicker one, until `LAST_LAYER` of the edge.
     #[must_use]
     pub fn cubes(&self, spec: &CfdSpec, angle_rad: f64) -> Snappy {
         let cubes = match spec.mesher {
