@@ -249,7 +249,7 @@ fn covered(bodies: &[&Vec<Entry>]) -> [f64; 2] {
 
 /// So many tessellations of ellipsoids, and as many of other bodies.
 pub fn facets(claims: &mut Claims, full: bool) -> Result<(), Box<dyn Error>> {
-    let (count, largest) = if full { (200, 24) } else { (12, 12) };
+    let (count, largest) = if full { (200, 24) } else { (6, 12) };
     let bodies = (0..2 * count)
         .into_par_iter()
         .map(|k| if k < count { ellipsoid(k, largest) } else { other(k - count) })
