@@ -229,7 +229,7 @@ pub(super) fn not_rounded(why: &str) -> Finding {
     Finding::new(Severity::Warning, "facets-not-rounded", text)
 }
 
-/// Notes where no correction is made, and where one is that was asked for.
+/// Notes that state which body the facets were taken as.
 pub(super) const IS_POLYHEDRON: &str = "The facets were taken as the body itself.";
 pub(super) const IS_SMOOTH: &str = "The facets were taken as those of a smooth body.";
 pub(super) const IS_SHARP: &str =

@@ -2,10 +2,10 @@
 //!
 //! | found | consequence |
 //! | --- | --- |
-//! | layers on less than half of the wall's area | rejected: the friction is that of cubes |
+//! | layers on less than half of the wall's area | rejected: the friction is not resolved |
 //! | mean y+ above 300 with a model of turbulence | rejected: the first cell lies beyond the law of the wall |
 //! | mean y+ above 5 in laminar flow | rejected: the first cell does not resolve the gradient at the wall |
-//! | layers on a part of the area | 95 % half-width: the other part of the load |
+//! | layers on a part of the area | 95 % half-width: the load times the part of the area without layers |
 //! | mean y+ from 5 to 300 with a model of turbulence | 95 % half-width: 11 % of the load |
 //!
 //! A load is taken as |pressure| + |friction| here, so that one that changes its sign with the angle keeps an uncertainty.

@@ -200,7 +200,7 @@ fn a_long_facet_that_meets_a_crease_or_a_tip_is_straight_along() {
         assert!((of_mass / (density * expanded) - 1.0).abs() < 1e-9);
         let [[value, u], [of_smooth, u_of_smooth], [of_flat, u_of_flat]] =
             [&either, &smooth, &flat].map(|record| coefficient(record, "A22"));
-        // Within the tolerance that was asked for, and within the interval.
+        // The tolerance is 2 %.
         let away = (value - sway_kg).abs();
         assert!(away < 0.02 * sway_kg && away < u, "{name}: {value} ± {u} for {sway_kg}");
         assert!(value == of_smooth && u_of_smooth < u, "{name}: {u_of_smooth} {u}");
@@ -229,9 +229,9 @@ fn a_box_has_no_facets_to_round() {
     let smooth = of(&["--smooth"]);
     assert_eq!(matrix(&smooth, 0), matrix(&flat, 0));
     assert!(smooth["findings"].to_string().contains("--smooth was given, and no edge belongs to a curve"), "{smooth}");
-    let told = froude(folder.path(), &["box.obj", "--smooth", "--polyhedron"]);
-    assert_eq!(told.status.code(), Some(2));
-    assert_eq!(said(&told), "froude: --smooth and --polyhedron contradict each other: give one of them");
+    let output = froude(folder.path(), &["box.obj", "--smooth", "--polyhedron"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(said(&output), "froude: --smooth and --polyhedron contradict each other: give one of them");
 }
 
 /// Two spheres of 320 facets, ten radii apart: what one feels of the other is 3 (a/d)⁶.

@@ -293,8 +293,8 @@ fn an_unstable_gait_is_reported_as_the_motion_it_settles_into() {
     };
     let amplitude = ["--amplitude", "20 deg"];
     let out = at("long");
-    let told = run(&[&amplitude[..], &["--periods", "600", "--out", text(&out), "--json"]].concat());
-    let found: Value = serde_json::from_str(&told).unwrap();
+    let answer = run(&[&amplitude[..], &["--periods", "600", "--out", text(&out), "--json"]].concat());
+    let found: Value = serde_json::from_str(&answer).unwrap();
     let left = &found["unstable_motion"];
     for (key, expected) in [("speed_m_s", 0.1007), ("power_net_w", 3.042e-3)] {
         assert!((number(left, key) / expected - 1.0).abs() < 1e-3, "{left}");
@@ -313,10 +313,10 @@ fn an_unstable_gait_is_reported_as_the_motion_it_settles_into() {
     let power = power[power.len() - 100..].iter().sum::<f64>() / 100.0 / number(&found, "power_net_w");
     assert!((power - 1.0).abs() < 1e-6, "{power} {found}");
     // The word comes first, and the unstable figures stand beside the others.
-    let told = run(&amplitude);
-    assert!(told.contains("settles into a circle of 3.68 m radius or its mirror image"), "{told}");
-    assert!(told.find("unstable: ").unwrap() < told.find("net power").unwrap(), "{told}");
-    assert!(told.contains("speed of the unstable motion"), "{told}");
+    let answer = run(&amplitude);
+    assert!(answer.contains("settles into a circle of 3.68 m radius or its mirror image"), "{answer}");
+    assert!(answer.find("unstable: ").unwrap() < answer.find("net power").unwrap(), "{answer}");
+    assert!(answer.contains("speed of the unstable motion"), "{answer}");
     // A sweep has both, and ranks gaits by the motion that they settle into.
     let out = at("sweep");
     let swept = run(&["--sweep", "amplitude=20..20.1 deg:2", "--out", text(&out)]);
