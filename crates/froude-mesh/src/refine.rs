@@ -101,9 +101,14 @@ const STRAIGHT_RAD: f64 = 1e-3;
 const SAME_TURN: f64 = 4.0;
 /// Largest ratio of a curved chord to its neighbour: of arcs with the same curvature, one of three times the length has nine times the sagitta.
 const SAME_LENGTH: f64 = 3.0;
+/// Largest ratio of the curvatures, turn over mean length, at joints of one circle: below 2, since the joint of a chord of three times the length
+/// has half of the curvature where it turns by as much.
+const SAME_CURVATURE: f64 = 1.5;
+/// Least cosine of the angle between parallel chords, and between their bends: 25°.
+const PARALLEL: f64 = 0.9;
 /// Least cosine of the angle within the surface between an edge and the one that continues it: 45°.
 const AHEAD: f64 = core::f64::consts::FRAC_1_SQRT_2;
-/// Largest bulge as part of the shortest of a chord and its neighbours on the curve: half of what a semicircle over it has.
+/// Largest bulge as part of the shortest of a chord and those neighbours on the curve that are not short beside it: half of what a semicircle over it has.
 const OF_CHORD: f64 = 0.25;
 
 /// An edge of the mesh as a chord of the smooth surface.
@@ -123,7 +128,8 @@ struct Chord {
 struct Joint {
     /// The chord that continues, and its end that lies there.
     next: (usize, usize),
-    /// Its length, m.
+    /// Lengths of the chord before and of the one that continues, m.
+    own_m: f64,
     length_m: f64,
     /// Towards the outside of the bend; its length is the angle, rad.
     bend: Vec3,
@@ -133,7 +139,64 @@ impl Joint {
     /// Whether it may belong to the same curve as a neighbour.
     fn is_like(&self, other: &Self) -> bool {
         let [a, b] = [norm(self.bend), norm(other.bend)];
-        a.min(b) > STRAIGHT_RAD && a.max(b) <= SAME_TURN * a.min(b) && dot(self.bend, other.bend) > 0.0
+        a.min(b) > STRAIGHT_RAD
+            && (a.max(b) <= SAME_TURN * a.min(b) || self.has_curvature_of(other))
+            && dot(self.bend, other.bend) > 0.0
+    }
+
+    fn has_curvature_of(&self, other: &Self) -> bool {
+        let [a, b] = [self, other].map(|joint| 2.0 * norm(joint.bend) / (joint.own_m + joint.length_m));
+        a.max(b) <= SAME_CURVATURE * a.min(b)
+    }
+
+    /// Whether it bends as one of the next row does.
+    fn is_parallel(&self, other: &Self) -> bool {
+        let [a, b] = [norm(self.bend), norm(other.bend)];
+        a.min(b) > STRAIGHT_RAD && self.has_curvature_of(other) && dot(self.bend, other.bend) > PARALLEL * a * b
+    }
+}
+
+/// Whether a chord is short enough beside a neighbour on the curve.
+fn is_short(length_m: f64, next_m: f64) -> bool {
+    length_m <= SAME_LENGTH * next_m
+}
+
+/// Three chords of a curve each way from one, as far as it reaches: joint i lies between chords i and i + 1. The first and the last place are empty.
+struct Run {
+    lengths_m: [Option<f64>; 9],
+    joints: [Option<Joint>; 8],
+}
+
+/// Place of the chord in question.
+const OWN: usize = 4;
+
+impl Run {
+    /// The ends of the chord where the curve continues, three joints at least of which the chord is a part.
+    fn curved(&self) -> [bool; 2] {
+        let is_like = |chord: usize| {
+            let ends = [self.joints[chord - 1], self.joints[chord]];
+            matches!(ends, [Some(a), Some(b)] if a.is_like(&b)) && self.fits(chord)
+        };
+        let alone = |first: usize, second: usize| self.fits(OWN) && is_like(first) && is_like(second);
+        match [self.joints[OWN - 1], self.joints[OWN]] {
+            [Some(_), Some(_)] => [is_like(OWN) && (is_like(OWN - 1) || is_like(OWN + 1)); 2],
+            [Some(_), None] => [alone(OWN - 1, OWN - 2), false],
+            [None, Some(_)] => [false, alone(OWN + 1, OWN + 2)],
+            [None, None] => [false; 2],
+        }
+    }
+
+    /// Whether a chord is no facet beside the chords of a fillet: not long beside its neighbours, or of the curvature that two short ones have.
+    fn fits(&self, chord: usize) -> bool {
+        let beside = |next: usize, beyond: usize, joints: [usize; 2]| {
+            let (Some(length_m), Some(next_m)) = (self.lengths_m[chord], self.lengths_m[next]) else { return true };
+            let goes_on = || match (self.lengths_m[beyond], joints.map(|k| self.joints[k])) {
+                (Some(beyond_m), [Some(a), Some(b)]) => is_short(beyond_m, next_m) && a.has_curvature_of(&b),
+                _ => false,
+            };
+            is_short(length_m, next_m) || goes_on()
+        };
+        beside(chord - 1, chord - 2, [chord - 1, chord - 2]) && beside(chord + 1, chord + 2, [chord, chord + 1])
     }
 }
 
@@ -143,8 +206,10 @@ struct Chords<'a> {
     edges: Vec<Chord>,
     /// Chords in smooth regions at a group of corners, and its unit normal.
     smooth: IndexMap<u32, (Vec<(usize, usize)>, Vec3)>,
-    /// Chords on creases at a vertex.
-    creases: IndexMap<u32, Vec<(usize, usize)>>,
+    /// Chords that end at a vertex.
+    vertices: Vec<Vec<(usize, usize)>>,
+    /// At both ends of each chord.
+    joints: Vec<[Option<Joint>; 2]>,
 }
 
 impl<'a> Chords<'a> {
@@ -182,7 +247,9 @@ impl<'a> Chords<'a> {
                 }
             }
         }
-        let mut out = Self { mesh, crease_rad, edges: Vec::new(), smooth: IndexMap::new(), creases: IndexMap::new() };
+        let vertices = vec![Vec::new(); mesh.vertices.len()];
+        let mut out =
+            Self { mesh, crease_rad, edges: Vec::new(), smooth: IndexMap::new(), vertices, joints: Vec::new() };
         for edge in by_edge(&sides) {
             let (from, to) = edge[0].edge;
             let turn_rad = turn(edge);
@@ -190,12 +257,11 @@ impl<'a> Chords<'a> {
             let number = out.edges.len();
             let own = [from, to].map(|vertex| groups.of(corner(&edge[0], vertex)));
             for (end, (vertex, group)) in [from, to].into_iter().zip(own).enumerate() {
+                out.vertices[vertex as usize].push((number, end));
                 if is_smooth {
                     let sum = sums[group as usize];
                     let entry = out.smooth.entry(group).or_insert_with(|| (Vec::new(), scale(sum, 1.0 / norm(sum))));
                     entry.0.push((number, end));
-                } else {
-                    out.creases.entry(vertex).or_default().push((number, end));
                 }
             }
             out.edges.push(Chord {
@@ -205,6 +271,7 @@ impl<'a> Chords<'a> {
                 around: around(mesh, edge),
             });
         }
+        out.joints = (0..out.edges.len()).map(|number| [0, 1].map(|end| out.joint_of((number, end)))).collect();
         out
     }
 
@@ -220,7 +287,7 @@ impl<'a> Chords<'a> {
     }
 
     /// The joint at an end of a chord; `None` at a crease, where the surface does not continue smoothly.
-    fn joint(&self, (number, end): (usize, usize)) -> Option<Joint> {
+    fn joint_of(&self, (number, end): (usize, usize)) -> Option<Joint> {
         let chord = &self.edges[number];
         let own = self.outwards((number, end));
         let (next, bend) = if let Some(groups) = chord.groups {
@@ -235,8 +302,8 @@ impl<'a> Chords<'a> {
             let dip = |v: Vec3| -dot(v, *normal).clamp(-1.0, 1.0).asin();
             (next, scale(*normal, dip(own) + dip(self.outwards(next))))
         } else {
-            let two = self.creases.get(&chord.ends[end])?;
-            let [one, other] = two[..] else { return None };
+            let creases = self.at_vertex(chord.ends[end]).filter(|at| self.edges[at.0].groups.is_none());
+            let [one, other] = creases.copied().collect::<Vec<_>>()[..] else { return None };
             let next = if one.0 == number { other } else { one };
             let ahead = self.outwards(next);
             let back = add(own, ahead);
@@ -246,59 +313,78 @@ impl<'a> Chords<'a> {
         let length_m = norm(self.vector(&self.edges[next.0]));
         // Between panels that meet at no crease an edge turns by more than they do: 63° on an icosahedron of 42°.
         let most_rad = if chord.groups.is_some() { core::f64::consts::FRAC_PI_2 } else { self.crease_rad };
-        (norm(bend) <= most_rad).then_some(Joint { next, length_m, bend })
+        let own_m = norm(self.vector(chord));
+        (norm(bend) <= most_rad).then_some(Joint { next, own_m, length_m, bend })
     }
 
-    /// Joints one after the other beyond an end.
-    fn beyond(&self, at: (usize, usize)) -> [Option<Joint>; 3] {
-        let mut out = [None; 3];
-        let mut end = at;
-        for slot in &mut out {
-            *slot = self.joint(end);
-            let Some(joint) = slot else { break };
-            end = (joint.next.0, 1 - joint.next.1);
+    /// The curve through a chord, three joints each way.
+    fn run(&self, number: usize) -> Run {
+        let mut run = Run { lengths_m: [None; 9], joints: [None; 8] };
+        run.lengths_m[OWN] = Some(norm(self.vector(&self.edges[number])));
+        for way in 0..2 {
+            let mut end = (number, way);
+            for step in 0..3 {
+                let Some(joint) = self.joints[end.0][end.1] else { break };
+                let (at, chord) =
+                    if way == 0 { (OWN - 1 - step, OWN - 1 - step) } else { (OWN + step, OWN + 1 + step) };
+                run.joints[at] = Some(joint);
+                run.lengths_m[chord] = Some(joint.length_m);
+                end = (joint.next.0, 1 - joint.next.1);
+            }
+        }
+        run
+    }
+
+    /// The ends of each chord where a curve continues.
+    fn curved(&self) -> Vec<[bool; 2]> {
+        let mut out: Vec<[bool; 2]> = (0..self.edges.len()).map(|number| self.run(number).curved()).collect();
+        // A hull has one or two joints in a row between fins. That they are a curve shows in the next row, which the fins do not cut.
+        let mut to_see: Vec<(usize, usize)> =
+            (0..out.len()).flat_map(|number| [(number, 0), (number, 1)]).filter(|at| out[at.0][at.1]).collect();
+        while let Some(at) = to_see.pop() {
+            for beside in self.parallel(at) {
+                let is_curved = &mut out[beside.0][beside.1];
+                if !*is_curved {
+                    *is_curved = true;
+                    to_see.push(beside);
+                }
+            }
         }
         out
     }
 
-    /// The ends of a chord where a curve continues, three joints at least of which the chord is a part.
-    fn curved(&self, number: usize) -> [bool; 2] {
-        let length_m = norm(self.vector(&self.edges[number]));
-        let is_short = |a: f64, b: f64| a <= SAME_LENGTH * b;
-        // The neighbour there is curved as well: it has a like joint at its other end, and is not long beside its own neighbours.
-        let goes_on = |[first, second]: [&Option<Joint>; 2], length_m: f64| {
-            let (Some(a), Some(b)) = (first, second) else { return false };
-            a.is_like(b) && is_short(a.length_m, length_m) && is_short(a.length_m, b.length_m)
+    /// Ends of the chords that are parallel to one, with a like joint, where an edge across leads, which is no crease.
+    fn parallel(&self, at: (usize, usize)) -> Vec<(usize, usize)> {
+        let Some(joint) = self.joints[at.0][at.1] else { return Vec::new() };
+        let own = self.outwards(at);
+        let is_across = |edge: &&(usize, usize)| {
+            self.edges[edge.0].groups.is_some() && dot(own, self.outwards(**edge)).abs() < AHEAD
         };
-        let [one, two] = [0, 1].map(|end| self.beyond((number, end)));
-        let alone = |j: &[Option<Joint>; 3]| {
-            let Some(a) = &j[0] else { return false };
-            is_short(length_m, a.length_m) && goes_on([&j[0], &j[1]], length_m) && goes_on([&j[1], &j[2]], a.length_m)
+        let is_like = |other: &&(usize, usize)| {
+            dot(own, self.outwards(**other)) > PARALLEL
+                && self.joints[other.0][other.1].is_some_and(|there| joint.is_parallel(&there))
         };
-        match (&one[0], &two[0]) {
-            (Some(a), Some(b)) => {
-                let is_curve = a.is_like(b)
-                    && is_short(length_m, a.length_m)
-                    && is_short(length_m, b.length_m)
-                    && (goes_on([&one[0], &one[1]], length_m) || goes_on([&two[0], &two[1]], length_m));
-                [is_curve; 2]
-            }
-            (Some(_), None) => [alone(&one), false],
-            (None, Some(_)) => [false, alone(&two)],
-            (None, None) => [false; 2],
-        }
+        let across = self.at_vertex(self.edges[at.0].ends[at.1]).filter(is_across);
+        let there = across.flat_map(|(edge, end)| self.at_vertex(self.edges[*edge].ends[1 - end]));
+        there.filter(is_like).copied().collect()
+    }
+
+    fn at_vertex(&self, vertex: u32) -> impl Iterator<Item = &(usize, usize)> {
+        self.vertices[vertex as usize].iter()
     }
 
     /// From the middle of each chord to that of its arc.
     fn bulges(&self) -> IndexMap<(u32, u32), Vec3> {
+        let curved = self.curved();
         let arc = |number: usize| {
             let chord = &self.edges[number];
-            let ends = self.curved(number);
+            let ends = curved[number];
             let sum = (0..2).filter(|end| ends[*end]).fold([0.0; 3], |sum, end| add(sum, self.bulge(number, end)));
             let count = ends.iter().filter(|end| **end).count();
             let mean = scale(sum, 1.0 / count.max(1) as f64);
-            let next_m = (0..2).filter(|end| ends[*end]).filter_map(|end| Some(self.joint((number, end))?.length_m));
-            let most_m = OF_CHORD * next_m.fold(norm(self.vector(chord)), f64::min);
+            let length_m = norm(self.vector(chord));
+            let next_m = (0..2).filter(|end| ends[*end]).filter_map(|end| Some(self.joints[number][end]?.length_m));
+            let most_m = OF_CHORD * next_m.filter(|next_m| is_short(length_m, *next_m)).fold(length_m, f64::min);
             let size = norm(mean);
             if size > most_m { scale(mean, most_m / size) } else { mean }
         };
@@ -324,7 +410,7 @@ impl<'a> Chords<'a> {
             sub(own, scale(normal, dot(own, normal)))
         } else {
             // Of the circle through three vertices.
-            let Some(joint) = self.joint((number, end)) else { return [0.0; 3] };
+            let Some(joint) = self.joints[number][end] else { return [0.0; 3] };
             sub(scale(own, 1.0 / length_m), scale(self.outwards(joint.next), 1.0 / joint.length_m))
         };
         let tangent = scale(tangent, 1.0 / norm(tangent));

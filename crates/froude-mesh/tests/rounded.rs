@@ -98,4 +98,97 @@ fn flat_bodies_gain_nothing() {
         // Divided in its own planes, a prism of more sides shows that they are flat.
         assert!(gain(&prism(sides + 5)) > 0.01 && gain(&subdivided(&prism(sides + 5))).abs() < 1e-12, "{sides}");
     }
+    // A square bar with bevels of 45°, a sixth as wide as the sides between them; a box of four rows under a ridge of 30°.
+    let bevelled = |k: u32| {
+        let [y, z] = [[1.0, 0.8], [0.8, 1.0]][k as usize % 2];
+        let (sin, cos) = (0.5 * PI * f64::from(k / 2)).sin_cos();
+        [y * cos - z * sin, y * sin + z * cos]
+    };
+    assert!(gain(&bar((0..8).map(bevelled).collect())).abs() < 1e-12);
+    let ridge = (PI / 12.0).tan();
+    assert!(gain(&bar(vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, ridge], [-1.0, 0.0]])).abs() < 1e-12);
+}
+
+/// Four rows of a section, counterclockwise in y and z.
+fn bar(section: Vec<[f64; 2]>) -> Mesh {
+    let around = section.len() as u32;
+    let stations: Vec<[f64; 2]> = (0..5).rev().map(|k| [f64::from(k), 1.0]).collect();
+    let stations = [vec![[4.0, 0.0]], stations, vec![[0.0, 0.0]]].concat();
+    let mut mesh = revolved(&stations, around, true);
+    let ends = [0, mesh.vertices.len() - 1];
+    for (k, vertex) in mesh.vertices.iter_mut().enumerate().filter(|(k, _)| !ends.contains(k)) {
+        [vertex[1], vertex[2]] = section[(k - 1) % around as usize];
+    }
+    mesh
+}
+
+/// A bow of rows, a cylinder of one row with four radial fins over its length, a flat stern; so many chords of the hull between two fins.
+fn finned_hull(between: u32, is_quads: bool) -> (Mesh, f64) {
+    let half = 0.15;
+    let mut angles = Vec::new();
+    for quarter in 0..4 {
+        let middle = 0.5 * PI * f64::from(quarter);
+        let open = 0.5 * PI - 2.0 * half;
+        angles.extend([middle - half, middle]);
+        angles.extend((0..between).map(|k| middle + half + open * f64::from(k) / f64::from(between)));
+    }
+    let around = angles.len() as u32;
+    let stations: Vec<[f64; 2]> = (0..=4).map(|k| PI / 8.0 * f64::from(k)).map(|a| [3.0 + a.cos(), a.sin()]).collect();
+    let stations = [stations, vec![[0.0, 1.0], [0.0, 0.0]]].concat();
+    let mut mesh = revolved(&stations, around, is_quads);
+    let per_ring = mesh.vertices.len() - 2;
+    for (k, vertex) in mesh.vertices[1..=per_ring].iter_mut().enumerate() {
+        let r = vertex[1].hypot(vertex[2]);
+        let angle = angles[k % around as usize];
+        (vertex[1], vertex[2]) = (r * angle.cos(), r * angle.sin());
+    }
+    // Out of the cylinder's panels under a fin.
+    let (bow, stern) = (1 + 3 * around, 1 + 4 * around);
+    let is_fin = |k: u32| k % (2 + between) < 2;
+    let on =
+        |v: u32, k: u32| v == bow + k || v == bow + (k + 1) % around || v == stern + k || v == stern + (k + 1) % around;
+    mesh.panels.retain(|panel| !(0..around).any(|k| is_fin(k) && panel.corners().iter().all(|v| on(*v, k))));
+    let outer = mesh.vertices.len() as u32;
+    for ring in [bow, stern] {
+        for k in 0..around {
+            let [x, y, z] = mesh.vertices[(ring + k) as usize];
+            mesh.vertices.push([x, 1.5 * y, 1.5 * z]);
+        }
+    }
+    let mut add = |[a, b, c, d]: [u32; 4]| {
+        if is_quads {
+            mesh.panels.push(Panel::quad(a, b, c, d));
+        } else {
+            mesh.panels.extend([Panel::triangle(a, b, c), Panel::triangle(a, c, d)]);
+        }
+    };
+    let (far_bow, far_stern) = (outer, outer + around);
+    for k in (0..around).filter(|k| is_fin(*k)) {
+        let next = (k + 1) % around;
+        add([far_bow + k, far_stern + k, far_stern + next, far_bow + next]);
+        add([bow + k, far_bow + k, far_bow + next, bow + next]);
+        add([stern + k, stern + next, far_stern + next, far_stern + k]);
+        if !is_fin((k + around - 1) % around) {
+            add([bow + k, stern + k, far_stern + k, far_bow + k]);
+        }
+        if !is_fin(next) {
+            add([bow + next, far_bow + next, far_stern + next, stern + next]);
+        }
+    }
+    let fins = 4.0 * 3.0 * half.sin() * (1.5 * 1.5 - 1.0);
+    // Under the fins the hull stays a polygon, which the root of a fin does not show.
+    let hull = PI * (2.0 / 3.0 + 3.0) - 3.0 * 4.0 * (half - half.sin());
+    (mesh, hull + fins)
+}
+
+#[test]
+fn a_hull_is_round_between_its_fins() {
+    for between in 2..5 {
+        for is_quads in [false, true] {
+            let (mesh, exact) = finned_hull(between, is_quads);
+            let flat = Measure::of(&mesh).volume_m3;
+            let part = (flat * gain(&mesh)) / (exact - flat);
+            assert!((part - 1.0).abs() < 0.03, "{between} {is_quads}: {part} of {}", exact / flat - 1.0);
+        }
+    }
 }
