@@ -27,12 +27,12 @@ pub struct Change {
     pub aside: Vec<(String, PathBuf)>,
 }
 
-/// Plans a campaign in a folder, which is made where it is missing.
+/// Plans a campaign in a folder, which is made where it is missing. `inputs` is a hash of what the cases were made from ([`Store::is_of`]).
 ///
 /// # Errors
 ///
 /// [`StoreError::Plan`]: a name that is none or stands twice, or a case that starts from one that does not stand before it. [`StoreError::Held`]: the campaign is running, or a case that would be moved. [`StoreError::File`]: something cannot be written.
-pub fn plan(root: &Path, cases: &[Case]) -> Result<(Store, Change), StoreError> {
+pub fn plan(root: &Path, cases: &[Case], inputs: &str) -> Result<(Store, Change), StoreError> {
     check(cases)?;
     only_own(root)?;
     let folder = root.join(CASES);
@@ -75,7 +75,8 @@ pub fn plan(root: &Path, cases: &[Case]) -> Result<(Store, Change), StoreError> 
     }
     let cases = cases.iter().map(|c| Planned { id: c.id.clone(), hash: c.hash() }).collect();
     let path = root.join(CAMPAIGN_FILE);
-    let text = serde_json::to_string_pretty(&Index { cases }).map_err(|e| StoreError::file(&path, e.to_string()))?;
+    let text = serde_json::to_string_pretty(&Index { inputs: Some(inputs.to_owned()), cases })
+        .map_err(|e| StoreError::file(&path, e.to_string()))?;
     write_atomically(&path, (text + "\n").as_bytes())?;
     Ok((Store::open(root)?, change))
 }

@@ -41,6 +41,9 @@ pub struct Store {
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Index {
+    /// Hash of what the cases were made from; an older file has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inputs: Option<String>,
     /// Its cases, each behind the one that it starts from.
     pub cases: Vec<Planned>,
 }
@@ -129,6 +132,12 @@ impl Store {
     #[must_use]
     pub fn root(&self) -> &Path {
         &self.root
+    }
+
+    /// Whether its cases were made from inputs with this hash, as far as its file states that.
+    #[must_use]
+    pub fn is_of(&self, inputs: &str) -> bool {
+        self.index.inputs.as_deref().is_none_or(|own| own == inputs)
     }
 
     /// Names of its cases, in the order of the plan.

@@ -153,6 +153,24 @@ fn a_campaign_that_was_killed_goes_on_and_is_identified() {
     let said = done(&["cfd", "suggest", text(&path)]);
     assert!(said.contains("plan five angles"), "{said}");
 
+    // After the campaign was changed, results are still those of the plan before, until a run replaces it; a budget does not change the flow.
+    let is_outdated = || {
+        let found = json(&["identify", text(&path)]);
+        let states = |found: &Value| found["findings"].to_string().contains("cfd-plan-outdated");
+        let verbs = ["status", "collect"].map(|verb| json(&["cfd", verb, text(&path)])["is_outdated"] == true);
+        let said = done(&["cfd", "collect", text(&path)]) + &done(&["cfd", "status", text(&path)]);
+        [verbs[0], verbs[1], states(&found), said.matches("changed after the cases were planned").count() == 2]
+    };
+    std::fs::write(&path, CAMPAIGN.replace("\"10 %\"", "\"20 %\"")).unwrap();
+    assert_eq!(is_outdated(), [false; 4]);
+    std::fs::write(&path, CAMPAIGN.replace("\"0.4 m/s\"", "\"0.5 m/s\"")).unwrap();
+    assert_eq!(is_outdated(), [true; 4]);
+    std::fs::write(&path, CAMPAIGN).unwrap();
+    std::fs::write(folder.path().join("body.toml"), BODY.replace("\"31 mm\"", "\"32 mm\"")).unwrap();
+    assert_eq!(is_outdated(), [true; 4]);
+    std::fs::write(folder.path().join("body.toml"), BODY).unwrap();
+    assert_eq!(is_outdated(), [false; 4]);
+
     // Edited by hand: it reaches no fit, and is said.
     let result = std::fs::read_dir(folder.path().join("flow/cases/H1LT-u0.4-a90")).unwrap();
     let result = result.map(|e| e.unwrap().path()).find(|p| p.ends_with("result.json")).unwrap();

@@ -19,6 +19,7 @@ use froude_cfd::case::Water;
 use froude_cfd::store::{Store, check_links};
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
 use froude_records::cfd::CfdSpec;
+use froude_records::hash::{sha256_of_bytes, sha256_of_file};
 use froude_records::output::inside;
 
 pub(crate) use self::computed::Computed;
@@ -135,6 +136,20 @@ impl Asked {
         Ok(Self { title: campaign.name.clone(), source: source.clone(), spec, folder, body, water, reference })
     }
 }
+
+impl Asked {
+    /// Hash of what cases are made from: the body's file, and what the campaign says of the flow. Notes, laws and budgets do not change it.
+    fn inputs(&self) -> String {
+        let lies: Vec<[&str; 2]> = self.spec.lies.iter().map(|given| [&*given.name, &*given.text]).collect();
+        let spec = CfdSpec { body: None, lies: Vec::new(), ..self.spec.clone() };
+        let body = sha256_of_file(&self.body).unwrap_or_default();
+        let all = format!("{body} {lies:?} {spec:?} {:?} {:?} {:?}", self.source.plan, self.water, self.reference);
+        sha256_of_bytes(all.as_bytes())
+    }
+}
+
+/// What is said where cases are read that were made from other inputs than those of now.
+const OUTDATED: &str = "the campaign or its body was changed after the cases were planned: these are the cases and results of before; froude cfd plan or run plans them anew";
 
 /// Puts cases that failed or diverged back among those to compute, all of them or by name; the names.
 ///

@@ -43,6 +43,8 @@ const SEEN: f64 = 0.01;
 pub struct Collected {
     /// The table's file.
     pub path: PathBuf,
+    /// Whether the campaign or its body was changed after the cases were planned.
+    pub is_outdated: bool,
     pub(super) table: Table,
     /// Those of the table.
     pub(super) rows: Vec<Row>,
@@ -71,16 +73,19 @@ struct Pair {
 /// As the campaign is read; no case has a result that counts; the table cannot be written.
 pub fn collect(campaign: &Path, source: Option<&str>) -> Result<Collected, Error> {
     let asked = Asked::read(campaign, source)?;
-    of_folder(&asked.folder, &asked.spec, || Ok(()))
+    of_folder(&asked.folder, &asked.spec, Some(&asked), || Ok(()))
 }
 
-/// The same of a folder of cases, which are computed as `spec` says. `may_write` is asked where the table is not there yet.
+/// The same of a folder of cases, which are computed as `spec` says and planned by `asked`, if known. `may_write` is asked where the table is not there yet.
 pub(super) fn of_folder(
     folder: &Path,
     spec: &CfdSpec,
+    asked: Option<&Asked>,
     may_write: impl FnOnce() -> Result<(), RecordError>,
 ) -> Result<Collected, Error> {
-    let found = results(&Store::open(folder)?);
+    let store = Store::open(folder)?;
+    let is_outdated = asked.is_some_and(|asked| !store.is_of(&asked.inputs()));
+    let found = results(&store);
     let numerical = Numerical::of(&found.rows, spec);
     let (mut rows, pairs) = paired(found.rows);
     if rows.is_empty() {
@@ -100,7 +105,7 @@ pub(super) fn of_folder(
         may_write()?;
         take_own_place(Prepared::new(&path, |out| out.write_all(&bytes))?)?;
     }
-    Ok(Collected { path, table, rows, without: found.without, pairs, one_sided, numerical })
+    Ok(Collected { path, is_outdated, table, rows, without: found.without, pairs, one_sided, numerical })
 }
 
 /// The rows of the table, and the repeats, without what was computed on other grids and in other domains: of a setting that both models computed the one with turbulence counts, and of one that was repeated from the inflow the first.
@@ -301,6 +306,7 @@ impl Collected {
         let apart = |what: &str| self.apart(what).map(|([x, y], n)| json!({"cases": n, "f_x": x, "f_y": y}));
         json!({
             "table": self.path,
+            "is_outdated": self.is_outdated,
             "observations": self.rows.len(),
             "without": self.without.iter().map(|(id, why)| json!({"case": id, "reason": why})).collect::<Vec<_>>(),
             "repeated_from_the_inflow": apart("from the inflow"),

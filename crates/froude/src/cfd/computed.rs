@@ -18,7 +18,7 @@ use froude_records::output::inside;
 use froude_records::table::Table;
 
 use super::collect::{Collected, LOADS, of_folder};
-use super::findings;
+use super::{Asked, findings};
 
 /// The cases of a CFD campaign.
 pub(crate) struct Computed;
@@ -53,8 +53,10 @@ impl Method for Computed {
         let spec =
             source.cfd.clone().or_else(|| campaign.sources.iter().find(of_cases)?.cfd.clone()).unwrap_or_default();
         let may_write = || inside(&campaign.path, source.input.path(), &source.place, "cases", "froude identify");
-        let collected = of_folder(source.input.path(), &spec, may_write)
-            .map_err(|e| MethodError::input(source.input.path(), e.to_string()))?;
+        let input = |e: crate::Error| MethodError::input(source.input.path(), e.to_string());
+        let planned = campaign.sources.iter().find(|other| of_cases(other) && !other.plan.is_empty());
+        let asked = planned.and_then(|other| Asked::of(campaign, other, source.input.path().to_owned()).ok());
+        let collected = of_folder(source.input.path(), &spec, asked.as_ref(), may_write).map_err(input)?;
         // Cases of one configuration err alike.
         let group = source.group.clone().or_else(|| Some("configuration".to_owned()));
         let source = Source { group, ..source.clone() };

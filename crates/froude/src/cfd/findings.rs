@@ -11,7 +11,7 @@ use froude_records::number::{count, percent, significant};
 use froude_records::text::counted;
 
 use super::collect::Collected;
-use super::numerical;
+use super::{OUTDATED, numerical};
 
 /// Difference of repeats, of ½ρU²A, from which it is a warning: as the largest drift that a case may end with.
 const APART: f64 = 0.01;
@@ -32,7 +32,9 @@ pub(super) fn of_missing(collected: &Collected) -> Option<Finding> {
 /// What the results themselves show.
 pub(super) fn of_collected(collected: &Collected) -> Vec<Finding> {
     let rows = &collected.rows;
-    let mut out: Vec<Finding> = of_meshes(rows).into_iter().collect();
+    let outdated = || Finding::new(Severity::Warning, "cfd-plan-outdated", OUTDATED.to_owned());
+    let mut out: Vec<Finding> = collected.is_outdated.then(outdated).into_iter().collect();
+    out.extend(of_meshes(rows));
     out.extend(of_wall(rows));
     for (code, what, words) in [
         (

@@ -98,7 +98,7 @@ pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &d
     let refused = |problem| CfdInput { path: campaign.to_owned(), problem };
     let cases = cases(&asked.source, &asked.spec, asked.water, &bodies).map_err(refused)?;
     tell("cases");
-    let (store, change) = plan_cases(&asked.folder, &cases)?;
+    let (store, change) = plan_cases(&asked.folder, &cases, &asked.inputs())?;
     let mut cost = Cost::default();
     for ready in meshed.iter().flat_map(|group| &group.meshes) {
         cost.knows(&ready.mesh, ready.cells);

@@ -123,7 +123,7 @@ pub fn report(
     let out = out.map_or_else(|| default_out(campaign, "cfd"), Path::to_owned);
     results::can_be_written(&out)?;
     tell("results");
-    let standings = of_store(&store);
+    let standings = of_store(&store, &asked);
     let mut solved = Vec::new();
     for id in store.ids() {
         solved.extend(Solved::of(&store, id)?);

@@ -10,7 +10,7 @@ use froude_records::page::{DocumentSection, TextTable};
 use froude_records::text::counted;
 use serde_json::{Value, json};
 
-use super::Asked;
+use super::{Asked, OUTDATED};
 use crate::Error;
 
 /// Rows that a person is shown of those that are open or done as they should be.
@@ -20,6 +20,7 @@ const SHOWN: usize = 20;
 #[derive(Debug, Clone)]
 pub struct Standings {
     folder: PathBuf,
+    is_outdated: bool,
     found: CampaignStatus,
 }
 
@@ -30,12 +31,13 @@ pub struct Standings {
 /// As the campaign is read; a folder that was not planned.
 pub fn status(campaign: &Path, source: Option<&str>) -> Result<Standings, Error> {
     let asked = Asked::read(campaign, source)?;
-    Ok(of_store(&Store::open(&asked.folder)?))
+    Ok(of_store(&Store::open(&asked.folder)?, &asked))
 }
 
 /// The same of a campaign's folder.
-pub(super) fn of_store(store: &Store) -> Standings {
-    Standings { found: CampaignStatus::of(store), folder: store.root().to_owned() }
+pub(super) fn of_store(store: &Store, asked: &Asked) -> Standings {
+    let is_outdated = !store.is_of(&asked.inputs());
+    Standings { found: CampaignStatus::of(store), is_outdated, folder: store.root().to_owned() }
 }
 
 impl Standings {
@@ -57,6 +59,9 @@ impl Standings {
             significant(1e6 * f.s_per_cell_iteration, 2),
             significant(f.disk_bytes as f64 / 1e9, 2),
         )];
+        if self.is_outdated {
+            paragraphs.push(OUTDATED.to_owned());
+        }
         let needs = |row: &&Row| matches!(row.standing, Standing::Failed | Standing::Diverged | Standing::Edited);
         let troubled = f.rows.iter().filter(needs).count();
         let shown = troubled.max(SHOWN).min(f.rows.len());
@@ -95,6 +100,7 @@ impl Standings {
             f.counts.iter().map(|(standing, n)| (standing.word().to_owned(), json!(n))).collect();
         json!({
             "folder": self.folder,
+            "is_outdated": self.is_outdated,
             "counts": counts,
             "cpu_s": f.cpu_s,
             "left_cpu_s": f.left_cpu_s,
