@@ -8,6 +8,9 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
+mod bench;
+use bench::is_without_openfoam;
+
 const BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
      link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }\nends = { length = \"31 mm\" }\n";
 
@@ -76,17 +79,6 @@ fn refused(arguments: &[&str]) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// Whether tests with OpenFOAM are left out here; where CI is set they are not.
-fn is_left_out() -> bool {
-    let paths = std::env::var_os("PATH").unwrap_or_default();
-    let is_there = std::env::split_paths(&paths).any(|folder| folder.join("simpleFoam").is_file());
-    assert!(is_there || std::env::var_os("CI").is_none(), "OpenFOAM is not there; cargo xtask test installs it");
-    if !is_there {
-        println!("left out: OpenFOAM is not there");
-    }
-    !is_there
-}
-
 #[test]
 fn a_campaign_is_priced_before_anything_runs() {
     let folder = tempfile::tempdir().unwrap();
@@ -108,7 +100,7 @@ fn a_campaign_is_priced_before_anything_runs() {
 /// Six cases, stopped by SIGKILL on the way and gone on with; the answer has each once.
 #[test]
 fn a_campaign_that_was_killed_goes_on_and_is_identified() {
-    if is_left_out() {
+    if is_without_openfoam() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -318,7 +310,7 @@ fn a_swing_is_computed_and_identified_as_a_tank_s() {
         assert!(found.contains(said), "{to}: {found}");
     }
     with("", "");
-    if is_left_out() {
+    if is_without_openfoam() {
         return;
     }
     let mut child = Command::new(env!("CARGO_BIN_EXE_froude"))
@@ -421,7 +413,7 @@ fn ellipsoid_mm(keel: f64) -> String {
 
 #[test]
 fn a_closed_mesh_is_meshed_once_computed_and_its_faults_are_told() {
-    if is_left_out() {
+    if is_without_openfoam() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -567,7 +559,7 @@ fn sharp_box() -> String {
 /// The default mesh adds all its layers to a slender hull and an ellipsoid. On a box they end at the sharp edges, and the part without them is in its uncertainty.
 #[test]
 fn the_default_mesh_of_a_surface_has_its_layers() {
-    if is_left_out() {
+    if is_without_openfoam() {
         return;
     }
     for (name, surface, unit, part) in
@@ -594,7 +586,7 @@ fn the_default_mesh_of_a_surface_has_its_layers() {
 /// Rays of an O-grid cross in the necks, and a named mesh is then one of cubes; in a tank it is one too, a mesh an angle.
 #[test]
 fn necks_and_tanks_are_meshed_by_cubes() {
-    if is_left_out() {
+    if is_without_openfoam() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
