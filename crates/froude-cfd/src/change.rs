@@ -27,12 +27,12 @@ pub struct Change {
     pub aside: Vec<(String, PathBuf)>,
 }
 
-/// Plans a campaign in a folder, which is made where it is missing. `inputs` is a hash of what the cases were made from ([`Store::is_of`]).
+/// Plans a campaign in a folder, which is made where it is missing. `inputs_sha256` is that of what the cases were made from ([`Store::was_planned_from`]).
 ///
 /// # Errors
 ///
 /// [`StoreError::Plan`]: a name that is none or stands twice, or a case that starts from one that does not stand before it. [`StoreError::Held`]: the campaign is running, or a case that would be moved. [`StoreError::File`]: something cannot be written.
-pub fn plan(root: &Path, cases: &[Case], inputs: &str) -> Result<(Store, Change), StoreError> {
+pub fn plan(root: &Path, cases: &[Case], inputs_sha256: &str) -> Result<(Store, Change), StoreError> {
     check(cases)?;
     only_own(root)?;
     let folder = root.join(CASES);
@@ -75,7 +75,7 @@ pub fn plan(root: &Path, cases: &[Case], inputs: &str) -> Result<(Store, Change)
     }
     let cases = cases.iter().map(|c| Planned { id: c.id.clone(), hash: c.hash() }).collect();
     let path = root.join(CAMPAIGN_FILE);
-    let text = serde_json::to_string_pretty(&Index { inputs: Some(inputs.to_owned()), cases })
+    let text = serde_json::to_string_pretty(&Index { inputs_sha256: Some(inputs_sha256.to_owned()), cases })
         .map_err(|e| StoreError::file(&path, e.to_string()))?;
     write_atomically(&path, (text + "\n").as_bytes())?;
     Ok((Store::open(root)?, change))

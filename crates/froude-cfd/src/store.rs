@@ -41,9 +41,9 @@ pub struct Store {
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Index {
-    /// Hash of what the cases were made from; an older file has none.
+    /// SHA-256 of what the cases were planned from; an older file has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub inputs: Option<String>,
+    pub inputs_sha256: Option<String>,
     /// Its cases, each behind the one that it starts from.
     pub cases: Vec<Planned>,
 }
@@ -134,10 +134,10 @@ impl Store {
         &self.root
     }
 
-    /// Whether its cases were made from inputs with this hash, as far as its file states that.
+    /// Whether its cases were planned from inputs with this hash; true if its file predates the hash.
     #[must_use]
-    pub fn is_of(&self, inputs: &str) -> bool {
-        self.index.inputs.as_deref().is_none_or(|own| own == inputs)
+    pub fn was_planned_from(&self, inputs_sha256: &str) -> bool {
+        self.index.inputs_sha256.as_deref().is_none_or(|own| own == inputs_sha256)
     }
 
     /// Names of its cases, in the order of the plan.

@@ -33,7 +33,7 @@ fn reason(store: &Store, id: &str) -> String {
 #[test]
 fn each_case_ends_behind_the_one_that_it_starts_from_and_says_so() {
     let folder = folder();
-    let (store, change) = plan(folder.path(), &chains(4), "inputs").unwrap();
+    let (store, change) = plan(folder.path(), &chains(4), "sha256").unwrap();
     assert_eq!(change.new.len(), 12);
     let ended = Mutex::new(Vec::new());
     let cancel = AtomicBool::new(false);
@@ -61,7 +61,7 @@ fn each_case_ends_behind_the_one_that_it_starts_from_and_says_so() {
 #[test]
 fn a_case_that_fails_in_any_way_stops_no_other_and_its_successor_starts_from_the_inflow() {
     let folder = folder();
-    let (store, _) = plan(folder.path(), &chains(4), "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &chains(4), "sha256").unwrap();
     let solver = Stub {
         diverges: vec!["a000"],
         fails: vec!["a003"],
@@ -84,7 +84,7 @@ fn a_case_that_fails_in_any_way_stops_no_other_and_its_successor_starts_from_the
 #[test]
 fn what_is_cancelled_ends_soon_without_a_result_and_goes_on_later() {
     let folder = folder();
-    let (store, _) = plan(folder.path(), &chains(3), "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &chains(3), "sha256").unwrap();
     let slow = Stub { takes: Duration::from_mins(1), ..Stub::default() };
     let cancel = AtomicBool::new(false);
     let start = Instant::now();
@@ -106,7 +106,7 @@ fn what_is_cancelled_ends_soon_without_a_result_and_goes_on_later() {
 #[test]
 fn two_coordinators_do_not_run_one_campaign() {
     let folder = folder();
-    let (store, _) = plan(folder.path(), &chains(3), "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &chains(3), "sha256").unwrap();
     let slow = Stub { takes: Duration::from_millis(30), ..Stub::default() };
     let cancel = AtomicBool::new(false);
     std::thread::scope(|scope| {
@@ -116,7 +116,7 @@ fn two_coordinators_do_not_run_one_campaign() {
         }
         let refused = local::run(&store, &slow, 1, &cancel, &|_| {}).unwrap_err().to_string();
         assert!(refused.contains("works on it; wait for it to end, or end it"), "{refused}");
-        let refused = plan(folder.path(), &chains(1), "inputs").unwrap_err().to_string();
+        let refused = plan(folder.path(), &chains(1), "sha256").unwrap_err().to_string();
         assert!(refused.contains("works on it"), "{refused}");
         first.join().unwrap();
     });
@@ -126,7 +126,7 @@ fn two_coordinators_do_not_run_one_campaign() {
 #[test]
 fn a_file_that_was_edited_is_said_with_both_checksums_and_is_neither_run_nor_used() {
     let folder = folder();
-    let (store, _) = plan(folder.path(), &chains(2), "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &chains(2), "sha256").unwrap();
     run(&store, &Stub::default(), 2);
     let result = store.case_folder("a000").join("result.json");
     let text = std::fs::read_to_string(&result).unwrap();
@@ -151,7 +151,7 @@ fn a_file_that_was_edited_is_said_with_both_checksums_and_is_neither_run_nor_use
 #[test]
 fn a_result_moved_to_another_case_does_not_count_there() {
     let folder = folder();
-    let (store, _) = plan(folder.path(), &chains(1), "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &chains(1), "sha256").unwrap();
     run(&store, &Stub::default(), 1);
     let [first, second] = ["a000", "a001"].map(|id| store.case_folder(id).join("result.json"));
     std::fs::remove_file(&second).unwrap();
@@ -164,20 +164,20 @@ fn a_result_moved_to_another_case_does_not_count_there() {
 fn a_plan_over_a_campaign_keeps_what_is_the_same_and_deletes_nothing() {
     let folder = folder();
     let first: Vec<_> = ["a", "b", "c"].map(|id| case(id, 0.1, None)).to_vec();
-    let (store, _) = plan(folder.path(), &first, "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &first, "sha256").unwrap();
     run(&store, &Stub::default(), 1);
     let mut second = first.clone();
     second[1].flow.speed_m_s = 0.2;
     second[2] = case("d", 0.3, Some("a"));
 
-    let (store, change) = plan(folder.path(), &second, "inputs").unwrap();
+    let (store, change) = plan(folder.path(), &second, "sha256").unwrap();
     assert_eq!((change.kept, change.new), (vec!["a".to_owned()], vec!["b".to_owned(), "d".to_owned()]));
     let aside: Vec<&str> = change.aside.iter().map(|(id, _)| id.as_str()).collect();
     assert_eq!(aside, ["b", "c"]);
     assert!(folder.path().join("aside/001/c/result.json").exists());
     assert!(matches!(store.state("a"), State::Done(_)) && store.state("b") == State::Planned);
 
-    let (store, change) = plan(folder.path(), &first, "inputs").unwrap();
+    let (store, change) = plan(folder.path(), &first, "sha256").unwrap();
     assert_eq!(change.back, ["b", "c"]);
     assert_eq!(change.aside.len(), 2);
     assert!(matches!(store.state("b"), State::Done(_)), "its result came back with it");
@@ -187,7 +187,7 @@ fn a_plan_over_a_campaign_keeps_what_is_the_same_and_deletes_nothing() {
 #[test]
 fn a_plan_that_cannot_be_is_refused() {
     let folder = folder();
-    let refused = |cases: &[Case]| plan(folder.path(), cases, "inputs").unwrap_err().to_string();
+    let refused = |cases: &[Case]| plan(folder.path(), cases, "sha256").unwrap_err().to_string();
     let said = refused(&[case("a/b", 0.1, None)]);
     assert_eq!(
         said,
@@ -216,7 +216,7 @@ fn a_case_keeps_its_hash_through_its_file() {
 #[test]
 fn what_failed_or_diverged_is_tried_again_and_its_old_attempts_stay() {
     let folder = folder();
-    let (store, _) = plan(folder.path(), &chains(2), "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &chains(2), "sha256").unwrap();
     run(&store, &Stub { diverges: vec!["a001"], fails: vec!["a003"], ..Stub::default() }, 2);
     let refused = retry(&store, &["a000".to_owned()]).unwrap_err().to_string();
     assert_eq!(refused, "case \"a000\" cannot be taken: its result counts");
@@ -242,7 +242,7 @@ fn what_failed_or_diverged_is_tried_again_and_its_old_attempts_stay() {
 #[test]
 fn the_table_holds_what_counts_and_says_of_the_rest_why_not() {
     let folder = folder();
-    let (store, _) = plan(folder.path(), &chains(2), "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &chains(2), "sha256").unwrap();
     let nothing = collect(&store);
     assert!(nothing.rows.is_empty());
     assert_eq!(nothing.without[0].1, "nobody has begun it; froude cfd run computes it");
@@ -268,7 +268,7 @@ fn the_status_puts_first_what_needs_a_hand_and_tells_time_and_room() {
     for late in &mut cases[3..] {
         late.mesh = "finer".to_owned();
     }
-    let (store, _) = plan(folder.path(), &cases, "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &cases, "sha256").unwrap();
     let before = CampaignStatus::of(&store);
     assert_eq!(before.counts, [(Standing::Planned, 6)].into());
     // That of simpleFoam, until a case has ended here.
@@ -294,7 +294,7 @@ fn the_status_puts_first_what_needs_a_hand_and_tells_time_and_room() {
 #[test]
 fn of_two_results_of_one_case_the_first_counts() {
     let folder = folder();
-    let (store, _) = plan(folder.path(), &chains(1), "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &chains(1), "sha256").unwrap();
     run(&store, &Stub::default(), 1);
     let case_folder = store.case_folder("a000");
     let State::Done(first) = store.state("a000") else { panic!("a000") };
@@ -321,7 +321,7 @@ fn on_a_full_disk_cases_fail_with_that_reason_and_are_tried_again_when_there_is_
         println!("left out: only root mounts a disk");
         return;
     }
-    let (store, _) = plan(folder.path(), &chains(2), "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &chains(2), "sha256").unwrap();
     let large = Stub { writes: 3 << 20, ..Stub::default() };
     let full = run(&store, &large, 1);
     let said = reason(&store, "a000");

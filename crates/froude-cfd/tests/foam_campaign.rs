@@ -69,7 +69,7 @@ fn a_solver_that_outlived_its_coordinator_is_ended_and_the_chain_goes_on() {
     let written = mesh.write(&meshes).unwrap();
     let name = written.file_name().unwrap().to_str().unwrap();
     let cases = [case("cold", name, 0.2, None), case("warm", name, 0.25, Some("cold"))];
-    let (store, _) = plan(folder.path(), &cases, "inputs").unwrap();
+    let (store, _) = plan(folder.path(), &cases, "sha256").unwrap();
 
     let mut first = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "coordinator"])

@@ -31,7 +31,7 @@ fn coordinator() {
 #[test]
 fn planner() {
     let Ok(root) = std::env::var(CAMPAIGN) else { return };
-    plan(Path::new(&root), &other_chains(), "inputs").unwrap();
+    plan(Path::new(&root), &other_chains(), "sha256").unwrap();
 }
 
 fn other_chains() -> Vec<Case> {
@@ -65,7 +65,7 @@ fn after_any_kill_the_campaign_goes_on_and_each_case_has_exactly_one_result() {
     while killed < kills {
         campaigns += 1;
         let folder = tempfile::tempdir().unwrap();
-        let (store, _) = plan(folder.path(), &chains(20), "inputs").unwrap();
+        let (store, _) = plan(folder.path(), &chains(20), "sha256").unwrap();
         // Until a coordinator comes to the end by itself.
         loop {
             let mut child = start(folder.path());
@@ -140,7 +140,7 @@ impl Phases {
 #[test]
 fn of_many_coordinators_that_take_over_from_a_dead_one_one_runs() {
     let folder = tempfile::tempdir().unwrap();
-    plan(folder.path(), &chains(20), "inputs").unwrap();
+    plan(folder.path(), &chains(20), "sha256").unwrap();
     let mut first = start(folder.path());
     std::thread::sleep(Duration::from_millis(50));
     first.kill().unwrap();
@@ -158,7 +158,7 @@ fn of_many_coordinators_that_take_over_from_a_dead_one_one_runs() {
 fn a_plan_that_is_killed_is_ended_by_the_next_and_no_result_is_lost() {
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path();
-    let (store, _) = plan(root, &chains(40), "inputs").unwrap();
+    let (store, _) = plan(root, &chains(40), "sha256").unwrap();
     run(&store, &Stub::default(), 2);
     let mut killed = 0;
     for round in 0..15 {
@@ -167,15 +167,15 @@ fn a_plan_that_is_killed_is_ended_by_the_next_and_no_result_is_lost() {
         child.kill().unwrap();
         killed += usize::from(!child.wait().unwrap().success());
         if round % 3 == 0 {
-            let (store, change) = plan(root, &chains(40), "inputs").unwrap();
+            let (store, change) = plan(root, &chains(40), "sha256").unwrap();
             assert!(change.new.is_empty(), "all come back with their results: {:?}", change.new);
             assert_eq!(store.states().values().filter(|s| s.status().is_some()).count(), 120);
         }
     }
     assert!(killed > 5, "{killed} of 15 plans were killed");
-    let (store, _) = plan(root, &other_chains(), "inputs").unwrap();
+    let (store, _) = plan(root, &other_chains(), "sha256").unwrap();
     run(&store, &Stub::default(), 2);
     assert_whole(root);
-    plan(root, &chains(40), "inputs").unwrap();
+    plan(root, &chains(40), "sha256").unwrap();
     assert_whole(root);
 }

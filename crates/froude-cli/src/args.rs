@@ -97,7 +97,7 @@ pub enum Verb {
     Simulate {
         /// The campaign, with its `simulate` section and `source.plan` blocks.
         campaign: PathBuf,
-        /// Write over existing tables and runs of a twin.
+        /// Write over tables and runs that a twin wrote and nobody changed.
         #[arg(long)]
         replace: bool,
     },

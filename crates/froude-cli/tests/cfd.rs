@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 mod bench;
-use bench::is_without_openfoam;
+use bench::has_openfoam;
 
 const BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
      link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }\nends = { length = \"31 mm\" }\n";
@@ -100,7 +100,7 @@ fn a_campaign_is_priced_before_anything_runs() {
 /// Six cases, stopped by SIGKILL on the way and gone on with; the answer has each once.
 #[test]
 fn a_campaign_that_was_killed_goes_on_and_is_identified() {
-    if is_without_openfoam() {
+    if !has_openfoam() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -145,13 +145,13 @@ fn a_campaign_that_was_killed_goes_on_and_is_identified() {
     let said = done(&["cfd", "suggest", text(&path)]);
     assert!(said.contains("plan five angles"), "{said}");
 
-    // After the campaign was changed, results are still those of the plan before, until a run replaces it; a budget does not change the flow.
+    // Changing the flow or the body makes the plan outdated; changing an uncertainty budget does not.
     let is_outdated = || {
         let found = json(&["identify", text(&path)]);
         let states = |found: &Value| found["findings"].to_string().contains("cfd-plan-outdated");
         let verbs = ["status", "collect"].map(|verb| json(&["cfd", verb, text(&path)])["is_outdated"] == true);
         let said = done(&["cfd", "collect", text(&path)]) + &done(&["cfd", "status", text(&path)]);
-        [verbs[0], verbs[1], states(&found), said.matches("changed after the cases were planned").count() == 2]
+        [verbs[0], verbs[1], states(&found), said.matches("has changed since the cases were planned").count() == 2]
     };
     std::fs::write(&path, CAMPAIGN.replace("\"10 %\"", "\"20 %\"")).unwrap();
     assert_eq!(is_outdated(), [false; 4]);
@@ -310,7 +310,7 @@ fn a_swing_is_computed_and_identified_as_a_tank_s() {
         assert!(found.contains(said), "{to}: {found}");
     }
     with("", "");
-    if is_without_openfoam() {
+    if !has_openfoam() {
         return;
     }
     let mut child = Command::new(env!("CARGO_BIN_EXE_froude"))
@@ -413,7 +413,7 @@ fn ellipsoid_mm(keel: f64) -> String {
 
 #[test]
 fn a_closed_mesh_is_meshed_once_computed_and_its_faults_are_told() {
-    if is_without_openfoam() {
+    if !has_openfoam() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -559,7 +559,7 @@ fn sharp_box() -> String {
 /// The default mesh adds all its layers to a slender hull and an ellipsoid. On a box they end at the sharp edges, and the part without them is in its uncertainty.
 #[test]
 fn the_default_mesh_of_a_surface_has_its_layers() {
-    if is_without_openfoam() {
+    if !has_openfoam() {
         return;
     }
     for (name, surface, unit, part) in
@@ -586,7 +586,7 @@ fn the_default_mesh_of_a_surface_has_its_layers() {
 /// Rays of an O-grid cross in the necks, and a named mesh is then one of cubes; in a tank it is one too, a mesh an angle.
 #[test]
 fn necks_and_tanks_are_meshed_by_cubes() {
-    if is_without_openfoam() {
+    if !has_openfoam() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();

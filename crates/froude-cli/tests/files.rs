@@ -331,6 +331,15 @@ fn a_plan_is_counted_before_it_is_made() {
         assert_eq!(code, Some(2), "{found}");
         assert!(found.contains(said), "{found}");
     }
+    // Each configuration has a mesh in each domain of a study.
+    let names: Vec<String> = (1..=399).map(|links| format!("\"H{links}LT\"")).collect();
+    let radii: Vec<String> = (0..30).map(|k| format!("{}", 6 + k)).collect();
+    let study = format!("[[source.cfd.study]]\nspeed = \"0.4 m/s\"\nradius = [{}]\n[[source.plan]]", radii.join(", "));
+    let many = CFD.replace("\"H1LT\"", &names.join(", ")).replace("[[source.plan]]", &study);
+    std::fs::write(at.join("c.toml"), many).unwrap();
+    std::fs::write(at.join("body.toml"), BODY).unwrap();
+    let (code, found) = told(at, &["cfd", "plan", "c.toml"]);
+    assert!(code == Some(2) && found.contains("asks for 12369 meshes") && found.contains("at most 10000"), "{found}");
 }
 
 /// Files are opened in `froude_records::read` alone: what is listed reads the system, or is no input.

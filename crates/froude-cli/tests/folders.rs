@@ -1,4 +1,5 @@
-//! The tables of the book's page on limits: every verb writes where its row says and nowhere else, and every file is as long as its row says.
+//! Keeps the tables of the book's page on limits complete: they list every verb and every input. Each verb changes only the files listed here, which
+//! the page names; each reader rejects a file one byte above the limit that the page states.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -30,8 +31,8 @@ const BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
 const PIECE: &str = "schema = 1\nname = \"piece\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n[body]\nshape = \"ellipsoid\"\n\
      semi_axis_x = \"1 m\"\nsemi_axis_y = \"0.8 m\"\nsemi_axis_z = \"0.8 m\"\n";
 const TABLE: &str = "speed [m/s],f_x [N]\n0.1,-0.5\n0.2,-2.0\n0.3,-4.4\n0.4,-8.1\n0.5,-12.4\n";
-/// A plate from the corner of a box: its two panels leave a hole, which `--repair` cannot close, and a vertex twice, which it merges.
-const TWICE: &str = "v 0 0 0\nv 1 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 4 2\nf 1 3 5\nf 1 5 4\nf 2 4 5\n";
+/// A tetrahedron with one vertex stored twice.
+const DUPLICATE_VERTEX: &str = "v 0 0 0\nv 1 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 4 2\nf 1 3 5\nf 1 5 4\nf 2 4 5\n";
 
 /// A verb, its arguments (an underscore is a space within one), and what it writes below the folder that it is called in. Some need what those before
 /// them wrote.
@@ -44,7 +45,7 @@ const ROWS: &[Row] = &[
     ("compare", "compare t-results/estimate.json u-results/estimate.json --out beside", &["beside/"]),
     ("predict", "predict t-results/estimate.json t.csv --out told", &["told/predicted-", "told/froude-files.json"]),
     ("plan", "plan steady.toml", &[]),
-    ("simulate", "simulate mamba/campaign.toml", &["mamba/tank.csv"]),
+    ("simulate", "simulate mamba/campaign.toml", &["mamba/tank.csv", "mamba/froude-files.json"]),
     ("run", "run campaign.toml --yes", &["campaign-runs/"]),
     ("carriage drag", "carriage drag campaign-runs", &["campaign-runs-drag/"]),
     ("carriage calibrate", "carriage calibrate campaign-runs", &["campaign-runs-calibration/"]),
@@ -77,9 +78,12 @@ const ROWS: &[Row] = &[
     ("cfd swing", "cfd swing swing.toml", &["swung/", "swung-cfd/"]),
 ];
 
-/// Those that need OpenFOAM, or what it has computed.
-const OF_FLOWS: [&str; 7] =
+/// Verbs that need OpenFOAM or its results.
+const NEED_OPENFOAM: [&str; 7] =
     ["cfd case", "cfd run", "cfd collect", "cfd report", "cfd suggest", "cfd retry", "cfd swing"];
+
+/// Files whose names are the user's.
+const NAMED_BY_USER: [&str; 2] = ["once.obj", "tank.csv"];
 
 fn lab() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -94,7 +98,7 @@ fn lab() -> tempfile::TempDir {
         ("u.csv", &other),
         ("steady.toml", &example("mamba-steady/campaign.toml")),
         ("piece.toml", PIECE),
-        ("twice.obj", TWICE),
+        ("twice.obj", DUPLICATE_VERTEX),
         ("body.toml", BODY),
         ("cfd.toml", &computed),
         ("swing.toml", &swung),
@@ -103,7 +107,7 @@ fn lab() -> tempfile::TempDir {
     }
     bench::copy(&examples().join("mamba"), &at.join("mamba"));
     bench::copy(&examples().join("mamba-swim"), &at.join("swim"));
-    // One lift of a weight is no calibration.
+    // A calibration needs more than one lift of a weight.
     let changes: Vec<_> = SHORT.into_iter().filter(|(from, _)| *from != "repeats = 6\n").collect();
     bench::campaign(&at, &changes);
     std::fs::create_dir(folder.path().join("home")).unwrap();
@@ -143,21 +147,20 @@ fn files(folder: &Path) -> BTreeMap<String, String> {
     out
 }
 
-/// Verbs in the first column of the page's table; `a b\|c` stands for `a b` and `a c`, and arguments in capitals are left out.
-fn verbs_of_the_page() -> BTreeSet<String> {
+/// Verbs in the first column of the page's table with what they write by the second; `a b\|c` stands for `a b` and `a c`, and arguments in capitals
+/// are left out.
+fn verbs_of_the_page() -> BTreeMap<String, String> {
     let table = PAGE.split("| verb | writes | replaces |").nth(1).unwrap();
     let rows = table.trim_start().lines().skip(1).take_while(|line| line.starts_with('|'));
-    let first = rows.map(|row| row.replace("\\|", "/").split('|').nth(1).unwrap().to_owned());
-    let mut out = BTreeSet::new();
-    for cell in first {
-        for name in cell.split('`').skip(1).step_by(2) {
+    let mut out = BTreeMap::<String, String>::new();
+    for row in rows.map(|row| row.replace("\\|", "/")) {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        for name in cells[1].split('`').skip(1).step_by(2) {
             let is_verb = |word: &&str| *word != "--out" && word.chars().any(char::is_lowercase);
             let words: Vec<&str> = name.split(' ').filter(is_verb).collect();
-            // A flag alone belongs to the verb before it.
             let (last, before) = words.split_last().unwrap();
-            let before = if last.starts_with("--") && before.is_empty() { vec!["swim"] } else { before.to_vec() };
             for last in last.split('/') {
-                out.insert([&before[..], &[last]].concat().join(" "));
+                out.entry([before, &[last]].concat().join(" ")).or_default().push_str(cells[2]);
             }
         }
     }
@@ -178,35 +181,46 @@ fn verbs_of_the_program(folder: &Path, under: &[&str]) -> BTreeSet<String> {
 }
 
 #[test]
-fn every_verb_writes_where_the_book_says_and_nowhere_else() {
+fn each_verb_changes_only_its_files_and_the_book_lists_every_verb() {
     let folder = lab();
     let own: BTreeSet<String> = ROWS.iter().map(|(verb, ..)| (*verb).to_owned()).collect();
-    assert_eq!(own, verbs_of_the_page());
+    let page = verbs_of_the_page();
+    assert_eq!(own, page.keys().cloned().collect());
+    for (verb, _, writes) in ROWS {
+        let cell = &page[*verb];
+        let writes_nothing =
+            cell == "nothing" || cell.contains(&format!("`{}` writes nothing", verb.replace("cfd ", "")));
+        assert_eq!(writes.is_empty(), writes_nothing, "{verb}: {cell}");
+        // A folder of results is named by its input.
+        let names = writes.iter().filter_map(|place| place.rsplit('/').next()).filter(|name| name.contains(['.', '-']));
+        let missing: Vec<&str> = names.filter(|name| !cell.contains(name) && !NAMED_BY_USER.contains(name)).collect();
+        assert!(missing.is_empty(), "{verb}: {missing:?} not in {cell}");
+    }
     let verbs: BTreeSet<String> = own.iter().filter(|verb| !verb.contains("--")).cloned().collect();
     assert_eq!(verbs, verbs_of_the_program(folder.path(), &[]));
 
     froude(folder.path(), &["identify", "u.csv"]);
-    let mut wrong: Vec<String> = Vec::new();
-    let has_openfoam = !bench::is_without_openfoam();
-    for (verb, args, writes) in ROWS.iter().filter(|(verb, ..)| has_openfoam || !OF_FLOWS.contains(verb)) {
+    let mut failures: Vec<String> = Vec::new();
+    let has_openfoam = bench::has_openfoam();
+    for (verb, args, writes) in ROWS.iter().filter(|(verb, ..)| has_openfoam || !NEED_OPENFOAM.contains(verb)) {
         let before = files(folder.path());
         let args: Vec<String> = args.split(' ').map(|word| word.replace('_', " ")).collect();
         let output = froude(folder.path(), &args.iter().map(String::as_str).collect::<Vec<_>>());
         if output.status.code() != Some(0) {
-            wrong.push(format!("{verb}: {}", String::from_utf8_lossy(&output.stderr)));
+            failures.push(format!("{verb}: {}", String::from_utf8_lossy(&output.stderr)));
         }
         let after = files(folder.path());
         let names: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
         let changed = names.into_iter().filter(|name| before.get(*name) != after.get(*name));
         let changed: Vec<&str> = changed.map(|name| name.strip_prefix("lab/").unwrap_or(name)).collect();
         for name in changed.iter().filter(|name| !writes.iter().any(|place| name.starts_with(place))) {
-            wrong.push(format!("{verb} wrote {name}"));
+            failures.push(format!("{verb} wrote {name}"));
         }
         for place in writes.iter().filter(|place| !changed.iter().any(|name| name.starts_with(**place))) {
-            wrong.push(format!("{verb} did not write {place}"));
+            failures.push(format!("{verb} did not write {place}"));
         }
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 /// A row of the page's table of inputs, and readers of such a file: each must reject one that is a byte longer than the row says.
@@ -233,8 +247,8 @@ const INPUTS: &[(&str, &[&str])] = &[
     ("mesh", &["added-mass big.stl --check", "added-mass big.obj --check", "added-mass big.gdf --check"]),
 ];
 
-/// A row, a command, and the limit as the row states it: what the command is given is just beyond it.
-const BEYOND: &[(&str, &str, &str)] = &[
+/// A row, a command whose input just exceeds the limit, and the limit as the row states it.
+const OVER_LIMIT: &[(&str, &str, &str)] = &[
     ("header, cell of text", "inspect header.csv", "1,000"),
     ("number in a table, a campaign or a sidecar", "inspect number.csv", "10⁵⁰"),
     ("formula of a model", "identify formula.toml", "4,096"),
@@ -247,9 +261,9 @@ const BEYOND: &[(&str, &str, &str)] = &[
     ("body by its dimensions", "added-mass long.toml --check", "1 km"),
 ];
 
-/// Its files are unpacked: `limits::a_small_run_cannot_stand_for_gigabytes`.
+/// Limited by its unpacked size; tested in `limits::a_small_run_cannot_stand_for_gigabytes`.
 const RUN: &str = "run (MCAP)";
-/// No verb reads it.
+/// No verb reads it; tested through [`read_wamit`].
 const WAMIT: &str = "added mass in WAMIT's format";
 
 fn bytes_of(limit: &str) -> u64 {
@@ -260,12 +274,12 @@ fn bytes_of(limit: &str) -> u64 {
 }
 
 #[test]
-fn every_input_is_as_long_as_the_book_says_and_no_longer() {
+fn inputs_above_the_limits_of_the_book_are_rejected() {
     let table = PAGE.split("| input | limit |").nth(1).unwrap();
     let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
     let cells = rows.map(|row| row.split('|').map(str::trim).collect::<Vec<_>>());
     let limits: BTreeMap<&str, &str> = cells.map(|cells| (cells[1], cells[2])).collect();
-    let held = INPUTS.iter().map(|(row, _)| *row).chain(BEYOND.iter().map(|(row, ..)| *row)).chain([RUN, WAMIT]);
+    let held = INPUTS.iter().map(|(row, _)| *row).chain(OVER_LIMIT.iter().map(|(row, ..)| *row)).chain([RUN, WAMIT]);
     assert_eq!(held.collect::<BTreeSet<_>>(), limits.keys().copied().collect());
 
     let folder = lab();
@@ -310,7 +324,7 @@ fn every_input_is_as_long_as_the_book_says_and_no_longer() {
     ] {
         std::fs::write(at.join(name), text).unwrap();
     }
-    for (row, args, limit) in BEYOND {
+    for (row, args, limit) in OVER_LIMIT {
         assert!(limits[row].contains(limit), "{row}: {}", limits[row]);
         let (code, said) = run(args);
         let limit = limit.replace(',', "").replace("10⁵⁰", "1e50").replace("1 km", "1000 m");

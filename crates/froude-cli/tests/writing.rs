@@ -272,7 +272,7 @@ fn a_received_campaign_writes_in_its_own_folder_only() {
     assert!(names(&at.join("elsewhere")).is_empty());
     write(&own, "c.toml", &twin(&["sub/t.csv"]));
     succeeds(at, &["simulate", "received/c.toml"]);
-    assert_eq!(names(&own.join("sub")), ["t.csv"]);
+    assert_eq!(names(&own.join("sub")), ["froude-files.json", "t.csv"]);
     // Reading from elsewhere is nobody's harm.
     write(at, "elsewhere/t.csv", TABLE);
     write(
@@ -282,6 +282,26 @@ fn a_received_campaign_writes_in_its_own_folder_only() {
         table = \"../elsewhere/t.csv\"\n[identify]\nmodels = [\"quadratic\"]\n",
     );
     succeeds(&own, &["identify", "c.toml"]);
+}
+
+#[test]
+fn a_measured_table_is_not_replaced_by_a_simulated_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "c.toml", &twin(&["t.csv"]));
+    write(at, "t.csv", TABLE);
+    let not_ours = "t.csv was not written by Froude, and would be replaced; move it away, or name another folder";
+    refuses(at, &["simulate", "c.toml", "--replace"], not_ours);
+    assert_eq!(read(at, "t.csv"), TABLE);
+    std::fs::remove_file(at.join("t.csv")).unwrap();
+    succeeds(at, &["simulate", "c.toml"]);
+    succeeds(at, &["simulate", "c.toml", "--replace"]);
+    let corrected = read(at, "t.csv").replacen('1', "2", 1);
+    write(at, "t.csv", &corrected);
+    let changed =
+        "t.csv was changed after Froude wrote it, and would be replaced; move it away, or name another folder";
+    refuses(at, &["simulate", "c.toml", "--replace"], changed);
+    assert_eq!(read(at, "t.csv"), corrected);
 }
 
 #[test]

@@ -98,18 +98,19 @@ const fn triangle([a, b, c]: [u32; 3]) -> Panel {
 /// Turn of an edge or of a joint that counts as none, rad.
 const STRAIGHT_RAD: f64 = 1e-3;
 /// Largest ratio of the turns at neighbouring joints of one curve: an arc that continues straight turns by half as much at its end.
-const SAME_TURN: f64 = 4.0;
+const MAX_TURN_RATIO: f64 = 4.0;
 /// Largest ratio of a curved chord to its neighbour: of arcs with the same curvature, one of three times the length has nine times the sagitta.
-const SAME_LENGTH: f64 = 3.0;
-/// Largest ratio of the curvatures, turn over mean length, at joints of one circle: below 2, since the joint of a chord of three times the length
-/// has half of the curvature where it turns by as much.
-const SAME_CURVATURE: f64 = 1.5;
-/// Least cosine of the angle between parallel chords, and between their bends: 25°.
-const PARALLEL: f64 = 0.9;
+const MAX_LENGTH_RATIO: f64 = 3.0;
+/// Largest ratio of the curvatures, turn over mean length, at joints of one circle. Below 2: a joint with a chord three times as long and the same turn
+/// has half the curvature.
+const MAX_CURVATURE_RATIO: f64 = 1.5;
+/// Least cosine of the angle between parallel chords, and between their bends: 26°.
+const MIN_PARALLEL_COSINE: f64 = 0.9;
 /// Least cosine of the angle within the surface between an edge and the one that continues it: 45°.
-const AHEAD: f64 = core::f64::consts::FRAC_1_SQRT_2;
-/// Largest bulge as part of the shortest of a chord and those neighbours on the curve that are not short beside it: half of what a semicircle over it has.
-const OF_CHORD: f64 = 0.25;
+const MIN_AHEAD_COSINE: f64 = core::f64::consts::FRAC_1_SQRT_2;
+/// Largest bulge as part of the shortest of a chord and its neighbours on the curve, without those of less than a third of its length: half of what a
+/// semicircle over it has.
+const MAX_BULGE_PER_CHORD: f64 = 0.25;
 
 /// An edge of the mesh as a chord of the smooth surface.
 struct Chord {
@@ -128,8 +129,9 @@ struct Chord {
 struct Joint {
     /// The chord that continues, and its end that lies there.
     next: (usize, usize),
-    /// Lengths of the chord before and of the one that continues, m.
+    /// Length of this chord, m.
     own_m: f64,
+    /// Length of the next chord, m.
     length_m: f64,
     /// Towards the outside of the bend; its length is the angle, rad.
     bend: Vec3,
@@ -140,39 +142,42 @@ impl Joint {
     fn is_like(&self, other: &Self) -> bool {
         let [a, b] = [norm(self.bend), norm(other.bend)];
         a.min(b) > STRAIGHT_RAD
-            && (a.max(b) <= SAME_TURN * a.min(b) || self.has_curvature_of(other))
+            && (a.max(b) <= MAX_TURN_RATIO * a.min(b) || self.has_curvature_of(other))
             && dot(self.bend, other.bend) > 0.0
     }
 
     fn has_curvature_of(&self, other: &Self) -> bool {
         let [a, b] = [self, other].map(|joint| 2.0 * norm(joint.bend) / (joint.own_m + joint.length_m));
-        a.max(b) <= SAME_CURVATURE * a.min(b)
+        a.max(b) <= MAX_CURVATURE_RATIO * a.min(b)
     }
 
-    /// Whether it bends as one of the next row does.
+    /// Whether it bends like a joint of the row beside it.
     fn is_parallel(&self, other: &Self) -> bool {
         let [a, b] = [norm(self.bend), norm(other.bend)];
-        a.min(b) > STRAIGHT_RAD && self.has_curvature_of(other) && dot(self.bend, other.bend) > PARALLEL * a * b
+        a.min(b) > STRAIGHT_RAD
+            && self.has_curvature_of(other)
+            && dot(self.bend, other.bend) > MIN_PARALLEL_COSINE * a * b
     }
 }
 
-/// Whether a chord is short enough beside a neighbour on the curve.
-fn is_short(length_m: f64, next_m: f64) -> bool {
-    length_m <= SAME_LENGTH * next_m
+/// Whether a chord is at most three times as long as its neighbour.
+fn is_within_length_ratio(length_m: f64, next_m: f64) -> bool {
+    length_m <= MAX_LENGTH_RATIO * next_m
 }
 
-/// Three chords of a curve each way from one, as far as it reaches: joint i lies between chords i and i + 1. The first and the last place are empty.
+/// A chord and up to three more of its curve each way. Joint i lies between chords i and i + 1; the first and the last slots stay empty, so that neighbours
+/// of all others exist.
 struct Run {
     lengths_m: [Option<f64>; 9],
     joints: [Option<Joint>; 8],
 }
 
-/// Place of the chord in question.
+/// Index of the central chord.
 const OWN: usize = 4;
 
 impl Run {
-    /// The ends of the chord where the curve continues, three joints at least of which the chord is a part.
-    fn curved(&self) -> [bool; 2] {
+    /// Ends at which the central chord is part of a curve of at least three joints.
+    fn curved_ends(&self) -> [bool; 2] {
         let is_like = |chord: usize| {
             let ends = [self.joints[chord - 1], self.joints[chord]];
             matches!(ends, [Some(a), Some(b)] if a.is_like(&b)) && self.fits(chord)
@@ -186,15 +191,18 @@ impl Run {
         }
     }
 
-    /// Whether a chord is no facet beside the chords of a fillet: not long beside its neighbours, or of the curvature that two short ones have.
+    /// False for a flat side between fillets: more than three times as long as a neighbour, unless the joints at the neighbour's two ends have the same
+    /// curvature.
     fn fits(&self, chord: usize) -> bool {
         let beside = |next: usize, beyond: usize, joints: [usize; 2]| {
             let (Some(length_m), Some(next_m)) = (self.lengths_m[chord], self.lengths_m[next]) else { return true };
             let goes_on = || match (self.lengths_m[beyond], joints.map(|k| self.joints[k])) {
-                (Some(beyond_m), [Some(a), Some(b)]) => is_short(beyond_m, next_m) && a.has_curvature_of(&b),
+                (Some(beyond_m), [Some(a), Some(b)]) => {
+                    is_within_length_ratio(beyond_m, next_m) && a.has_curvature_of(&b)
+                }
                 _ => false,
             };
-            is_short(length_m, next_m) || goes_on()
+            is_within_length_ratio(length_m, next_m) || goes_on()
         };
         beside(chord - 1, chord - 2, [chord - 1, chord - 2]) && beside(chord + 1, chord + 2, [chord, chord + 1])
     }
@@ -208,7 +216,7 @@ struct Chords<'a> {
     smooth: IndexMap<u32, (Vec<(usize, usize)>, Vec3)>,
     /// Chords that end at a vertex.
     vertices: Vec<Vec<(usize, usize)>>,
-    /// At both ends of each chord.
+    /// The joint at each end of each chord.
     joints: Vec<[Option<Joint>; 2]>,
 }
 
@@ -297,7 +305,7 @@ impl<'a> Chords<'a> {
                 let (a, b) = (flat(own), flat(self.outwards(**other)));
                 -dot(a, b) / (norm(a) * norm(b))
             };
-            let next = others.iter().filter(|other| other.0 != number && ahead(other) > AHEAD);
+            let next = others.iter().filter(|other| other.0 != number && ahead(other) > MIN_AHEAD_COSINE);
             let next = *next.max_by(|a, b| ahead(a).total_cmp(&ahead(b)))?;
             let dip = |v: Vec3| -dot(v, *normal).clamp(-1.0, 1.0).asin();
             (next, scale(*normal, dip(own) + dip(self.outwards(next))))
@@ -335,10 +343,10 @@ impl<'a> Chords<'a> {
         run
     }
 
-    /// The ends of each chord where a curve continues.
-    fn curved(&self) -> Vec<[bool; 2]> {
-        let mut out: Vec<[bool; 2]> = (0..self.edges.len()).map(|number| self.run(number).curved()).collect();
-        // A hull has one or two joints in a row between fins. That they are a curve shows in the next row, which the fins do not cut.
+    /// The ends of each chord at which it is part of a curve.
+    fn curved_ends(&self) -> Vec<[bool; 2]> {
+        let mut out: Vec<[bool; 2]> = (0..self.edges.len()).map(|number| self.run(number).curved_ends()).collect();
+        // Between its fins a hull has only one or two joints in a row; the rows of its bow show that they belong to a curve.
         let mut to_see: Vec<(usize, usize)> =
             (0..out.len()).flat_map(|number| [(number, 0), (number, 1)]).filter(|at| out[at.0][at.1]).collect();
         while let Some(at) = to_see.pop() {
@@ -353,15 +361,15 @@ impl<'a> Chords<'a> {
         out
     }
 
-    /// Ends of the chords that are parallel to one, with a like joint, where an edge across leads, which is no crease.
+    /// Ends of parallel chords with a similar joint in the rows beside this one, reached over a transverse edge that is no crease.
     fn parallel(&self, at: (usize, usize)) -> Vec<(usize, usize)> {
         let Some(joint) = self.joints[at.0][at.1] else { return Vec::new() };
         let own = self.outwards(at);
         let is_across = |edge: &&(usize, usize)| {
-            self.edges[edge.0].groups.is_some() && dot(own, self.outwards(**edge)).abs() < AHEAD
+            self.edges[edge.0].groups.is_some() && dot(own, self.outwards(**edge)).abs() < MIN_AHEAD_COSINE
         };
         let is_like = |other: &&(usize, usize)| {
-            dot(own, self.outwards(**other)) > PARALLEL
+            dot(own, self.outwards(**other)) > MIN_PARALLEL_COSINE
                 && self.joints[other.0][other.1].is_some_and(|there| joint.is_parallel(&there))
         };
         let across = self.at_vertex(self.edges[at.0].ends[at.1]).filter(is_across);
@@ -375,7 +383,7 @@ impl<'a> Chords<'a> {
 
     /// From the middle of each chord to that of its arc.
     fn bulges(&self) -> IndexMap<(u32, u32), Vec3> {
-        let curved = self.curved();
+        let curved = self.curved_ends();
         let arc = |number: usize| {
             let chord = &self.edges[number];
             let ends = curved[number];
@@ -384,7 +392,8 @@ impl<'a> Chords<'a> {
             let mean = scale(sum, 1.0 / count.max(1) as f64);
             let length_m = norm(self.vector(chord));
             let next_m = (0..2).filter(|end| ends[*end]).filter_map(|end| Some(self.joints[number][end]?.length_m));
-            let most_m = OF_CHORD * next_m.filter(|next_m| is_short(length_m, *next_m)).fold(length_m, f64::min);
+            let most_m = MAX_BULGE_PER_CHORD
+                * next_m.filter(|next_m| is_within_length_ratio(length_m, *next_m)).fold(length_m, f64::min);
             let size = norm(mean);
             if size > most_m { scale(mean, most_m / size) } else { mean }
         };

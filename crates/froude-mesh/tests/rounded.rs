@@ -122,7 +122,7 @@ fn bar(section: Vec<[f64; 2]>) -> Mesh {
     mesh
 }
 
-/// A bow of rows, a cylinder of one row with four radial fins over its length, a flat stern; so many chords of the hull between two fins.
+/// A bow of rows, a cylinder of one row with four radial fins over its length, a flat stern. `between`: chords of the hull between two fins. Returns the mesh and the volume of the smooth body, m³.
 fn finned_hull(between: u32, is_quads: bool) -> (Mesh, f64) {
     let half = 0.15;
     let mut angles = Vec::new();
@@ -142,7 +142,7 @@ fn finned_hull(between: u32, is_quads: bool) -> (Mesh, f64) {
         let angle = angles[k % around as usize];
         (vertex[1], vertex[2]) = (r * angle.cos(), r * angle.sin());
     }
-    // Out of the cylinder's panels under a fin.
+    // Remove the cylinder's panels under each fin.
     let (bow, stern) = (1 + 3 * around, 1 + 4 * around);
     let is_fin = |k: u32| k % (2 + between) < 2;
     let on =
@@ -176,7 +176,7 @@ fn finned_hull(between: u32, is_quads: bool) -> (Mesh, f64) {
         }
     }
     let fins = 4.0 * 3.0 * half.sin() * (1.5 * 1.5 - 1.0);
-    // Under the fins the hull stays a polygon, which the root of a fin does not show.
+    // Under the fins the hull stays a polygon: the mesh has no panels there to show a curve.
     let hull = PI * (2.0 / 3.0 + 3.0) - 3.0 * 4.0 * (half - half.sin());
     (mesh, hull + fins)
 }

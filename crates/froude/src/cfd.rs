@@ -138,8 +138,8 @@ impl Asked {
 }
 
 impl Asked {
-    /// Hash of what cases are made from: the body's file, and what the campaign says of the flow. Notes, laws and budgets do not change it.
-    fn inputs(&self) -> String {
+    /// SHA-256 of what cases are planned from: the body file and the flow settings of the campaign. Notes, laws and uncertainty budgets are excluded.
+    fn inputs_sha256(&self) -> String {
         let lies: Vec<[&str; 2]> = self.spec.lies.iter().map(|given| [&*given.name, &*given.text]).collect();
         let spec = CfdSpec { body: None, lies: Vec::new(), ..self.spec.clone() };
         let body = sha256_of_file(&self.body).unwrap_or_default();
@@ -148,8 +148,8 @@ impl Asked {
     }
 }
 
-/// What is said where cases are read that were made from other inputs than those of now.
-const OUTDATED: &str = "the campaign or its body was changed after the cases were planned: these are the cases and results of before; froude cfd plan or run plans them anew";
+/// Warning if the inputs have changed since the cases were planned.
+const OUTDATED: &str = "the campaign or its body file has changed since the cases were planned, and these results belong to the previous plan; froude cfd plan or run updates it";
 
 /// Puts cases that failed or diverged back among those to compute, all of them or by name; the names.
 ///

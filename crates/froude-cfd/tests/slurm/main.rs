@@ -86,7 +86,7 @@ fn coordinator() {
 #[test]
 fn where_there_is_no_slurm_a_sentence_says_where_to_run() {
     let folder = tempfile::tempdir().unwrap();
-    plan(folder.path(), &chains(1), "inputs").unwrap();
+    plan(folder.path(), &chains(1), "sha256").unwrap();
     let output = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "coordinator", "--nocapture"])
         .env(CAMPAIGN, folder.path())
@@ -107,7 +107,7 @@ struct Campaign {
 impl Campaign {
     fn new(lab: &Lab, cases: &[Case]) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let (store, _) = plan(folder.path(), cases, "inputs").unwrap();
+        let (store, _) = plan(folder.path(), cases, "sha256").unwrap();
         let me = std::env::current_exe().unwrap();
         let script = format!("#!/bin/sh\n{CASES}=\"$*\" exec {} --exact worker --nocapture\n", me.display());
         std::fs::write(folder.path().join("worker.sh"), script).unwrap();

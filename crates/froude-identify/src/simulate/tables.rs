@@ -6,6 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
+use froude_records::manifest::{may_replace, take_own_place};
 use froude_records::table::prepare_table;
 
 use super::{observations, table};
@@ -79,7 +80,7 @@ pub struct Written {
 
 /// Writes the table of every source with a `plan`.
 ///
-/// An existing table is replaced only when `replace` is true. All tables lie whole on the disk before the first takes its place.
+/// An existing table is replaced only when `replace` is true, it was written by Froude, and nobody changed it since: a campaign may name a measured one. All tables lie whole on the disk before the first takes its place.
 ///
 /// # Errors
 ///
@@ -108,6 +109,7 @@ pub fn write(campaign: &Path, replace: bool) -> Result<Vec<Written>, SimulateErr
         if path.exists() && !replace {
             return Err(SimulateError::Exists { path: path.to_owned() });
         }
+        may_replace(path)?;
         places.push((place, source));
     }
     let mut prepared = Vec::new();
@@ -119,9 +121,7 @@ pub fn write(campaign: &Path, replace: bool) -> Result<Vec<Written>, SimulateErr
     }
     let mut written: Vec<Written> = Vec::new();
     for (table, done) in prepared {
-        if let Err(error) = if replace { table.take_place() } else { table.take_free_place() } {
-            return Err(half_way(error, &written));
-        }
+        take_own_place(table).map_err(|error| half_way(error, &written))?;
         written.push(done);
     }
     Ok(written)

@@ -76,7 +76,7 @@ pub fn collect(campaign: &Path, source: Option<&str>) -> Result<Collected, Error
     of_folder(&asked.folder, &asked.spec, Some(&asked), || Ok(()))
 }
 
-/// The same of a folder of cases, which are computed as `spec` says and planned by `asked`, if known. `may_write` is asked where the table is not there yet.
+/// Collects a folder of cases computed with `spec`; `asked`, if known, tells whether the plan is outdated. `may_write` is called before a missing table is written.
 pub(super) fn of_folder(
     folder: &Path,
     spec: &CfdSpec,
@@ -84,7 +84,7 @@ pub(super) fn of_folder(
     may_write: impl FnOnce() -> Result<(), RecordError>,
 ) -> Result<Collected, Error> {
     let store = Store::open(folder)?;
-    let is_outdated = asked.is_some_and(|asked| !store.is_of(&asked.inputs()));
+    let is_outdated = asked.is_some_and(|asked| !store.was_planned_from(&asked.inputs_sha256()));
     let found = results(&store);
     let numerical = Numerical::of(&found.rows, spec);
     let (mut rows, pairs) = paired(found.rows);

@@ -1,5 +1,6 @@
 //! `froude cfd plan`: meshes are made, cases are written, and priced before anything runs.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -7,7 +8,7 @@ use froude_cfd::again::Again;
 use froude_cfd::case::{Case, LAMINAR_REYNOLDS, Reference, Water};
 use froude_cfd::change::{Change, plan as plan_cases};
 use froude_cfd::cost::Cost;
-use froude_cfd::matrix::{Meshed, cases};
+use froude_cfd::matrix::{Meshed, cases, computed_again};
 use froude_cfd::snappy::Made;
 use froude_cfd::store::{State, Store};
 use froude_hydro::similarity::{friction_ittc57, friction_laminar};
@@ -23,6 +24,9 @@ use crate::Error;
 
 /// Disk that a cell takes with one set of fields and a history of forces, bytes.
 const BYTES_PER_CELL: f64 = 110.0;
+
+/// Most meshes of a plan: a thousand bodies of ten meshes each are a day's work of a processor.
+const MOST_MESHES: usize = 10_000;
 
 /// A campaign that is planned.
 #[derive(Debug, Clone)]
@@ -85,8 +89,18 @@ pub struct PlannedConfiguration {
 /// A campaign, a body file or a surface that cannot be used; a body that no mesh fits; OpenFOAM is not there and a mesh needs it; a folder that cannot be written, or that another process runs.
 pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &dyn Fn(&str)) -> Result<Planned, Error> {
     let asked = Asked::read(campaign, source)?;
+    let refused = |problem| CfdInput { path: campaign.to_owned(), problem };
     let mut meshed: Vec<Group> = Vec::new();
     let named = asked.source.plan.iter().flat_map(|block| &block.configurations);
+    let names: BTreeSet<&String> = named.clone().collect();
+    let meshes: usize = names.into_iter().map(|name| 1 + computed_again(&asked.spec, name).len()).sum();
+    if meshes > MOST_MESHES {
+        let problem = format!(
+            "source {:?} asks for {meshes} meshes, of its configurations and of studies and fine with them; at most {MOST_MESHES} are made: split the campaign",
+            asked.source.name
+        );
+        return Err(refused(problem).into());
+    }
     bodies::each(&asked, named, &mut |body| {
         if cancel.load(Ordering::SeqCst) {
             return Err(Error::Stopped);
@@ -95,10 +109,9 @@ pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &d
         Ok(())
     })?;
     let bodies: Vec<Meshed> = meshed.iter().map(|group| group.meshed.clone()).collect();
-    let refused = |problem| CfdInput { path: campaign.to_owned(), problem };
     let cases = cases(&asked.source, &asked.spec, asked.water, &bodies).map_err(refused)?;
     tell("cases");
-    let (store, change) = plan_cases(&asked.folder, &cases, &asked.inputs())?;
+    let (store, change) = plan_cases(&asked.folder, &cases, &asked.inputs_sha256())?;
     let mut cost = Cost::default();
     for ready in meshed.iter().flat_map(|group| &group.meshes) {
         cost.knows(&ready.mesh, ready.cells);

@@ -34,9 +34,9 @@ pub fn status(campaign: &Path, source: Option<&str>) -> Result<Standings, Error>
     Ok(of_store(&Store::open(&asked.folder)?, &asked))
 }
 
-/// The same of a campaign's folder.
+/// The status of a campaign's folder.
 pub(super) fn of_store(store: &Store, asked: &Asked) -> Standings {
-    let is_outdated = !store.is_of(&asked.inputs());
+    let is_outdated = !store.was_planned_from(&asked.inputs_sha256());
     Standings { found: CampaignStatus::of(store), is_outdated, folder: store.root().to_owned() }
 }
 
