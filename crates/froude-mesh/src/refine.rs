@@ -116,6 +116,8 @@ const MAX_BULGE_PER_CHORD: f64 = 0.25;
 struct Chord {
     /// Its vertices, the smaller number first.
     ends: [u32; 2],
+    /// Groups of the corners at each end, of the panel on either side.
+    sides: [[u32; 2]; 2],
     /// Group of the corners at each end; `None` on a crease.
     groups: Option<[u32; 2]>,
     /// Angle between its panels, rad.
@@ -178,33 +180,51 @@ const OWN: usize = 4;
 impl Run {
     /// Ends at which the central chord is part of a curve of at least three joints.
     fn curved_ends(&self) -> [bool; 2] {
-        let is_like = |chord: usize| {
-            let ends = [self.joints[chord - 1], self.joints[chord]];
-            matches!(ends, [Some(a), Some(b)] if a.is_like(&b)) && self.fits(chord)
-        };
-        let alone = |first: usize, second: usize| self.fits(OWN) && is_like(first) && is_like(second);
+        let alone = |first: usize, second: usize| self.fits(OWN) && self.is_like(first) && self.is_like(second);
         match [self.joints[OWN - 1], self.joints[OWN]] {
-            [Some(_), Some(_)] => [is_like(OWN) && (is_like(OWN - 1) || is_like(OWN + 1)); 2],
+            [Some(_), Some(_)] => [self.is_like(OWN) && (self.is_like(OWN - 1) || self.is_like(OWN + 1)); 2],
             [Some(_), None] => [alone(OWN - 1, OWN - 2), false],
             [None, Some(_)] => [false, alone(OWN + 1, OWN + 2)],
             [None, None] => [false; 2],
         }
     }
 
-    /// False for a flat side between fillets: more than three times as long as a neighbour, unless the joints at the neighbour's two ends have the same
-    /// curvature.
+    /// Whether one or two joints of a curve are all that there is of it, which alone do not show a curve.
+    fn is_short(&self) -> bool {
+        let joints = self.joints.iter().flatten().count();
+        let bends = |joint: &Joint| norm(joint.bend) > STRAIGHT_RAD;
+        let is_like =
+            |chord: usize| self.joints[chord - 1].is_none() || self.joints[chord].is_none() || self.is_like(chord);
+        (1..3).contains(&joints)
+            && self.fits(OWN)
+            && self.joints.iter().flatten().all(bends)
+            && (OWN - 1..=OWN + 1).all(is_like)
+    }
+
+    /// Whether the joints at both ends of a chord may belong to one curve.
+    fn is_like(&self, chord: usize) -> bool {
+        matches!([self.joints[chord - 1], self.joints[chord]], [Some(a), Some(b)] if a.is_like(&b)) && self.fits(chord)
+    }
+
+    /// False for a flat beside a short chord, between fillets or cut off a circle: more than three times as long as a neighbour, unless the curve has the
+    /// same curvature at its other end, where a chord of like length follows, and beyond the neighbour.
     fn fits(&self, chord: usize) -> bool {
-        let beside = |next: usize, beyond: usize, joints: [usize; 2]| {
+        // Places of the chords beside it, and of the joints at its other end, on the way to the neighbour, and beyond that.
+        let beside = |next: usize, other: usize, joints: [usize; 3]| {
             let (Some(length_m), Some(next_m)) = (self.lengths_m[chord], self.lengths_m[next]) else { return true };
-            let goes_on = || match (self.lengths_m[beyond], joints.map(|k| self.joints[k])) {
-                (Some(beyond_m), [Some(a), Some(b)]) => {
-                    is_within_length_ratio(beyond_m, next_m) && a.has_curvature_of(&b)
+            let goes_on = || match (self.lengths_m[other], joints.map(|k| self.joints[k])) {
+                (Some(other_m), [Some(behind), Some(here), Some(beyond)]) => {
+                    is_within_length_ratio(length_m, other_m)
+                        && is_within_length_ratio(other_m, length_m)
+                        && here.has_curvature_of(&behind)
+                        && here.has_curvature_of(&beyond)
                 }
                 _ => false,
             };
             is_within_length_ratio(length_m, next_m) || goes_on()
         };
-        beside(chord - 1, chord - 2, [chord - 1, chord - 2]) && beside(chord + 1, chord + 2, [chord, chord + 1])
+        beside(chord - 1, chord + 1, [chord, chord - 1, chord - 2])
+            && beside(chord + 1, chord - 1, [chord - 1, chord, chord + 1])
     }
 }
 
@@ -272,8 +292,11 @@ impl<'a> Chords<'a> {
                     entry.0.push((number, end));
                 }
             }
+            let sides =
+                [from, to].map(|vertex| [edge[0], edge[edge.len() - 1]].map(|side| groups.of(corner(&side, vertex))));
             out.edges.push(Chord {
                 ends: [from, to],
+                sides,
                 groups: is_smooth.then_some(own),
                 turn_rad,
                 around: around(mesh, edge),
@@ -347,34 +370,48 @@ impl<'a> Chords<'a> {
     fn curved_ends(&self) -> Vec<[bool; 2]> {
         let mut out: Vec<[bool; 2]> = (0..self.edges.len()).map(|number| self.run(number).curved_ends()).collect();
         // Between its fins a hull has only one or two joints in a row; the rows of its bow show that they belong to a curve.
-        let mut to_see: Vec<(usize, usize)> =
-            (0..out.len()).flat_map(|number| [(number, 0), (number, 1)]).filter(|at| out[at.0][at.1]).collect();
-        while let Some(at) = to_see.pop() {
-            for beside in self.parallel(at) {
-                let is_curved = &mut out[beside.0][beside.1];
-                if !*is_curved {
-                    *is_curved = true;
-                    to_see.push(beside);
+        let mut to_see: Vec<usize> = (0..out.len()).filter(|number| out[*number] != [false; 2]).collect();
+        while let Some(number) = to_see.pop() {
+            let ends = out[number];
+            for end in (0..2).filter(|end| ends[*end]) {
+                for beside in self.parallel((number, end)) {
+                    if out[beside] == [false; 2] && self.run(beside).is_short() {
+                        out[beside] = self.joints[beside].map(|joint| joint.is_some());
+                        to_see.push(beside);
+                    }
                 }
             }
         }
         out
     }
 
-    /// Ends of parallel chords with a similar joint in the rows beside this one, reached over a transverse edge that is no crease.
-    fn parallel(&self, at: (usize, usize)) -> Vec<(usize, usize)> {
+    /// Chords in the rows beside this one that are parallel and have a joint like that at an end of this, reached over a transverse edge.
+    fn parallel(&self, at: (usize, usize)) -> Vec<usize> {
         let Some(joint) = self.joints[at.0][at.1] else { return Vec::new() };
         let own = self.outwards(at);
-        let is_across = |edge: &&(usize, usize)| {
-            self.edges[edge.0].groups.is_some() && dot(own, self.outwards(**edge)).abs() < MIN_AHEAD_COSINE
-        };
-        let is_like = |other: &&(usize, usize)| {
-            dot(own, self.outwards(**other)) > MIN_PARALLEL_COSINE
-                && self.joints[other.0][other.1].is_some_and(|there| joint.is_parallel(&there))
-        };
-        let across = self.at_vertex(self.edges[at.0].ends[at.1]).filter(is_across);
-        let there = across.flat_map(|(edge, end)| self.at_vertex(self.edges[*edge].ends[1 - end]));
-        there.filter(is_like).copied().collect()
+        let mut out = Vec::new();
+        for edge in self.at_vertex(self.edges[at.0].ends[at.1]) {
+            let Some(groups) = self.edges[edge.0].groups else { continue };
+            if dot(own, self.outwards(*edge)).abs() > MIN_AHEAD_COSINE || !self.bends_with(at, groups[edge.1]) {
+                continue;
+            }
+            let is_beside = |other: &&(usize, usize)| {
+                dot(own, self.outwards(**other)) > MIN_PARALLEL_COSINE
+                    && self.joints[other.0][other.1].is_some_and(|there| joint.is_parallel(&there))
+                    && self.bends_with(**other, groups[1 - edge.1])
+            };
+            let there = self.at_vertex(self.edges[edge.0].ends[1 - edge.1]);
+            out.extend(there.filter(is_beside).map(|(number, _)| *number));
+        }
+        out
+    }
+
+    /// Whether a chord lies in the surface of a group of corners at its end, or borders on it, and bends as that surface does and not within it: the
+    /// rim of a cylinder bends with its side, and not with its end.
+    fn bends_with(&self, at: (usize, usize), group: u32) -> bool {
+        let (Some(joint), Some((_, normal))) = (self.joints[at.0][at.1], self.smooth.get(&group)) else { return false };
+        self.edges[at.0].sides[at.1].contains(&group)
+            && dot(joint.bend, *normal).abs() > MIN_AHEAD_COSINE * norm(joint.bend)
     }
 
     fn at_vertex(&self, vertex: u32) -> impl Iterator<Item = &(usize, usize)> {

@@ -15,6 +15,7 @@ pub mod swing;
 
 use std::path::{Path, PathBuf};
 
+use froude_added_mass::load::is_body_file;
 use froude_cfd::case::Water;
 use froude_cfd::store::{Store, check_links};
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
@@ -138,18 +139,21 @@ impl Asked {
 }
 
 impl Asked {
-    /// SHA-256 of what cases are planned from: the body file and the flow settings of the campaign. Notes, laws and uncertainty budgets are excluded.
+    /// SHA-256 of what cases are planned from: the body file, the flow settings of the campaign and the version of Froude. Notes, laws and uncertainty budgets are excluded.
     fn inputs_sha256(&self) -> String {
         let lies: Vec<[&str; 2]> = self.spec.lies.iter().map(|given| [&*given.name, &*given.text]).collect();
         let spec = CfdSpec { body: None, lies: Vec::new(), ..self.spec.clone() };
         let body = sha256_of_file(&self.body).unwrap_or_default();
-        let all = format!("{body} {lies:?} {spec:?} {:?} {:?} {:?}", self.source.plan, self.water, self.reference);
+        // Of a body file the campaign's references are not used.
+        let reference = if is_body_file(&self.body) { [None; 2] } else { self.reference };
+        let version = env!("CARGO_PKG_VERSION");
+        let all = format!("{version} {body} {lies:?} {spec:?} {:?} {:?} {reference:?}", self.source.plan, self.water);
         sha256_of_bytes(all.as_bytes())
     }
 }
 
 /// Warning if the inputs have changed since the cases were planned.
-const OUTDATED: &str = "the campaign or its body file has changed since the cases were planned, and these results belong to the previous plan; froude cfd plan or run updates it";
+const OUTDATED: &str = "the campaign, its body file or Froude has changed since the cases were planned, and these results belong to the previous plan; froude cfd plan or run updates it";
 
 /// Puts cases that failed or diverged back among those to compute, all of them or by name; the names.
 ///

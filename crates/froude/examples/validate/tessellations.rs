@@ -38,6 +38,8 @@ struct Piece {
 /// Four flat plates on one of the pieces.
 struct Fins {
     piece: usize,
+    /// Chords of the hull under each.
+    under: usize,
     half_thickness_rad: f64,
     height_m: f64,
 }
@@ -80,7 +82,8 @@ impl Intended {
                 }
                 let fins = (kind == 5).then(|| Fins {
                     piece: 1,
-                    half_thickness_rad: of(rng, 0.1, 0.2),
+                    under: rng.random_range(1..3),
+                    half_thickness_rad: of(rng, 0.03, 0.2),
                     height_m: of(rng, 0.2, 0.5),
                 });
                 Self::Round(Round { pieces, around, is_quads, fins })
@@ -169,7 +172,7 @@ impl Growing {
 }
 
 impl Round {
-    /// Angles around, symmetric about y = 0 and z = 0; with fins two of them beside each.
+    /// Angles around, symmetric about y = 0 and z = 0.
     fn angles(&self, finer: usize) -> (Vec<f64>, Vec<bool>) {
         let (mut angles, mut is_fin) = (Vec::new(), Vec::new());
         let mut add = |from: f64, to: f64, cells: usize, fin: bool| {
@@ -185,7 +188,7 @@ impl Round {
         let half = fins.half_thickness_rad;
         for quarter in 0..4 {
             let middle = 0.5 * PI * f64::from(quarter);
-            add(middle - half, middle + half, 2 * finer, true);
+            add(middle - half, middle + half, fins.under * finer, true);
             add(middle + half, middle + 0.5 * PI - half, (self.around / 4).max(2) * finer, false);
         }
         (angles, is_fin)
@@ -236,7 +239,7 @@ impl Round {
 
     fn add_fins(&self, out: &mut Growing, fins: &Fins, finer: usize) {
         let piece = &self.pieces[fins.piece];
-        let (rows, up, across) = (piece.rows * finer, 2 * finer, 2 * finer);
+        let (rows, up, across) = (piece.rows * finer, 2 * finer, fins.under * finer);
         let (radius, half) = (piece.from_m[1], fins.half_thickness_rad);
         for quarter in 0..4 {
             let (sin, cos) = (0.5 * PI * f64::from(quarter)).sin_cos();

@@ -73,18 +73,18 @@ struct Pair {
 /// As the campaign is read; no case has a result that counts; the table cannot be written.
 pub fn collect(campaign: &Path, source: Option<&str>) -> Result<Collected, Error> {
     let asked = Asked::read(campaign, source)?;
-    of_folder(&asked.folder, &asked.spec, Some(&asked), || Ok(()))
+    of_folder(&asked.folder, &asked.spec, Some(&asked.inputs_sha256()), || Ok(()))
 }
 
-/// Collects a folder of cases computed with `spec`; `asked`, if known, tells whether the plan is outdated. `may_write` is called before a missing table is written.
+/// Collects a folder of cases computed with `spec`; `inputs_sha256`, if known, tells whether the plan is outdated. `may_write` is called before a missing table is written.
 pub(super) fn of_folder(
     folder: &Path,
     spec: &CfdSpec,
-    asked: Option<&Asked>,
+    inputs_sha256: Option<&str>,
     may_write: impl FnOnce() -> Result<(), RecordError>,
 ) -> Result<Collected, Error> {
     let store = Store::open(folder)?;
-    let is_outdated = asked.is_some_and(|asked| !store.was_planned_from(&asked.inputs_sha256()));
+    let is_outdated = inputs_sha256.is_some_and(|inputs_sha256| !store.was_planned_from(inputs_sha256));
     let found = results(&store);
     let numerical = Numerical::of(&found.rows, spec);
     let (mut rows, pairs) = paired(found.rows);

@@ -54,9 +54,14 @@ impl Method for Computed {
             source.cfd.clone().or_else(|| campaign.sources.iter().find(of_cases)?.cfd.clone()).unwrap_or_default();
         let may_write = || inside(&campaign.path, source.input.path(), &source.place, "cases", "froude identify");
         let input = |e: crate::Error| MethodError::input(source.input.path(), e.to_string());
-        let planned = campaign.sources.iter().find(|other| of_cases(other) && !other.plan.is_empty());
-        let asked = planned.and_then(|other| Asked::of(campaign, other, source.input.path().to_owned()).ok());
-        let collected = of_folder(source.input.path(), &spec, asked.as_ref(), may_write).map_err(input)?;
+        let mut planning = std::iter::once(source).chain(&campaign.sources);
+        let planned = planning.find(|other| of_cases(other) && !other.plan.is_empty());
+        // A campaign that cannot be planned any more is none that was planned.
+        let inputs_sha256 = planned.map(|other| {
+            let asked = Asked::of(campaign, other, source.input.path().to_owned());
+            asked.map_or_else(|_| String::new(), |asked| asked.inputs_sha256())
+        });
+        let collected = of_folder(source.input.path(), &spec, inputs_sha256.as_deref(), may_write).map_err(input)?;
         // Cases of one configuration err alike.
         let group = source.group.clone().or_else(|| Some("configuration".to_owned()));
         let source = Source { group, ..source.clone() };

@@ -89,6 +89,8 @@ pub struct PlannedConfiguration {
 /// A campaign, a body file or a surface that cannot be used; a body that no mesh fits; OpenFOAM is not there and a mesh needs it; a folder that cannot be written, or that another process runs.
 pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &dyn Fn(&str)) -> Result<Planned, Error> {
     let asked = Asked::read(campaign, source)?;
+    // A body that is edited while meshes are made is not what was planned.
+    let inputs_sha256 = asked.inputs_sha256();
     let refused = |problem| CfdInput { path: campaign.to_owned(), problem };
     let mut meshed: Vec<Group> = Vec::new();
     let named = asked.source.plan.iter().flat_map(|block| &block.configurations);
@@ -111,7 +113,7 @@ pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &d
     let bodies: Vec<Meshed> = meshed.iter().map(|group| group.meshed.clone()).collect();
     let cases = cases(&asked.source, &asked.spec, asked.water, &bodies).map_err(refused)?;
     tell("cases");
-    let (store, change) = plan_cases(&asked.folder, &cases, &asked.inputs_sha256())?;
+    let (store, change) = plan_cases(&asked.folder, &cases, &inputs_sha256)?;
     let mut cost = Cost::default();
     for ready in meshed.iter().flat_map(|group| &group.meshes) {
         cost.knows(&ready.mesh, ready.cells);
