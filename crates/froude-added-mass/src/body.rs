@@ -88,7 +88,7 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
                     if job.is_smooth {
                         notes.push(facets::IS_SMOOTH.to_owned());
                     } else {
-                        findings.push(facets::finding(found.mean));
+                        findings.push(facets::finding(found.largest));
                     }
                     correct(&mut cases, &found);
                 }
@@ -103,8 +103,8 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
     let mut tables =
         vec![hydrostatics(&cases[0].refined, loaded.shape.is_none(), cases[0].facets.as_ref(), density_kg_m3, &frame)];
     let (shape, refined) = (loaded.shape.as_ref(), &cases[0].refined);
-    tables.push(cross_checks::table(shape, &coarse, refined, density_kg_m3, &frame));
-    tables.extend(facets::table(&cases[0], density_kg_m3));
+    tables.extend(cross_checks::table(shape, &coarse, refined, density_kg_m3, &frame));
+    tables.extend(facets::table(&cases[0], density_kg_m3, job.is_smooth));
     if let (Some(tank), Some(surface_m)) = (job.tank_m, job.surface_m) {
         findings.push(limits::clearance(&coarse, tank, surface_m));
     }
@@ -196,7 +196,7 @@ pub(crate) fn hydrostatics(
         ]);
     }
     TextTable {
-        caption: "Hydrostatics; area, centre and inertia are those of the finest mesh.".to_owned(),
+        caption: "Hydrostatics; area, centre and inertia are those of the finest mesh with its flat facets.".to_owned(),
         head: vec![String::new(), "value".to_owned()],
         rows,
     }

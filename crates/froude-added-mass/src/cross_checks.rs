@@ -18,9 +18,15 @@ const LIKE: f64 = 0.3;
 /// Differences along x that count as one station, as part of the length.
 const SAME: f64 = 1e-9;
 
-/// The table.
+/// The table; `None` where no closed form is like the body.
 #[must_use]
-pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m3: f64, frame: &Frame) -> TextTable {
+pub fn table(
+    shape: Option<&Shape>,
+    mesh: &Mesh,
+    refined: &Refined,
+    density_kg_m3: f64,
+    frame: &Frame,
+) -> Option<TextTable> {
     let line = |name: &str, diagonal: [Option<f64>; 6]| {
         let cells = diagonal.map(|a| a.map_or_else(|| "–".to_owned(), |a| number::plain(density_kg_m3 * a, 5)));
         std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>()
@@ -60,11 +66,11 @@ pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m
         rows.push(line("circular cylinder (DNV-RP-C205)", [None, Some(across), Some(across), None, None, None]));
     }
     let caption = "Cross-checks in unbounded water. These are other bodies: the more the shape differs, the more the result may differ.";
-    TextTable {
+    (rows.len() > 1).then(|| TextTable {
         caption: caption.to_owned(),
         head: std::iter::once(String::new()).chain((0..6).map(diagonal_head)).collect(),
         rows,
-    }
+    })
 }
 
 fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {

@@ -49,8 +49,8 @@ pub struct Facets {
     pub volume_m3: f64,
     /// Expanded uncertainty of the volume of the case, m³.
     pub volume_uncertainty_m3: f64,
-    /// Mean correction, as part of displaced water and added mass.
-    pub mean: f64,
+    /// Largest correction of displaced water and of added mass along the axes, as part of each.
+    pub largest: f64,
     /// Part of the correction that is uncertain.
     pub part: f64,
 }
@@ -88,9 +88,11 @@ pub(super) fn of_mesh(
     let squares: f64 = (0..6).map(|i| (correction[i][i] / size[i]).powi(2)).sum();
     let mean = (squares / 6.0).sqrt();
     let volume_m3 = LEFT * (of_rounded_m3 - case.refined.volume_m3);
+    let parts = (0..3).map(|i| (correction[i][i] / value[i][i]).abs()).filter(|part| part.is_finite());
+    let largest = parts.fold((volume_m3 / case.refined.volume_m3).abs(), f64::max);
     let part = counted(is_smooth);
     let volume_uncertainty_m3 = part * volume_m3.abs();
-    let mut out = Facets { correction, uncertainty: [[0.0; 6]; 6], volume_m3, volume_uncertainty_m3, mean, part };
+    let mut out = Facets { correction, uncertainty: [[0.0; 6]; 6], volume_m3, volume_uncertainty_m3, largest, part };
     out.uncertainty = out.uncertainty_of(&case.refined);
     Ok((mean > NONE).then_some(out))
 }
@@ -171,7 +173,7 @@ pub(super) fn correct(cases: &mut [Case], facets: &Facets) {
     }
 }
 
-/// Corrects the matrix of several parts by their facets as that of one body; the mean correction of displaced water and added mass, `None`
+/// Corrects the matrix of several parts by their facets as that of one body; the largest correction of displaced water and of added mass along the axes, as part of each, `None`
 /// where all edges are edges of the bodies.
 pub(super) fn correct_parts(
     refined: &mut RefinedParts,
@@ -191,6 +193,7 @@ pub(super) fn correct_parts(
     let changed: Vec<f64> = flat_m3.iter().zip(round_m3).map(|(flat, round)| LEFT * (round - flat) / flat).collect();
     let part = counted(is_smooth);
     let mut squares = 0.0;
+    let mut largest = changed.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
     for i in 0..flat.len() {
         for j in 0..flat.len() {
             let symmetric = |of: &[Vec<f64>]| 0.5 * (of[i][j] + of[j][i]);
@@ -204,19 +207,20 @@ pub(super) fn correct_parts(
                 panels.hypot(uncertain([value, correction], volume(i).max(volume(j)), part, panels));
             if i == j && i % 6 < 3 {
                 squares += (correction / (value + flat_m3[i / 6])).powi(2);
+                largest = if value > 0.0 { largest.max((correction / value).abs()) } else { largest };
             }
         }
     }
     let mean = (squares / (0.5 * flat.len() as f64)).sqrt();
-    Ok((mean > NONE).then_some(mean))
+    Ok((mean > NONE).then_some(largest))
 }
 
 /// The mesh does not decide which body is meant.
-pub(super) fn finding(mean: f64) -> Finding {
+pub(super) fn finding(largest: f64) -> Finding {
     let text = format!(
-        "the mesh may be a smooth body or the polyhedron itself, which differ by {} in displaced water and added mass (root mean square): the values are those of the smooth body and the intervals \
+        "the mesh may be a smooth body or the polyhedron itself, which differ by up to {} in displaced water and in added mass along the axes: the values are those of the smooth body and the intervals \
          contain both; to decide, write --smooth (smooth body, narrower intervals) or --polyhedron",
-        number::percent(mean)
+        number::percent(largest)
     );
     Finding::new(Severity::Note, "facets-rounded", text)
 }
@@ -247,7 +251,7 @@ pub(super) fn is_sharp(is_smooth: bool) -> Result<&'static str, Finding> {
 }
 
 /// What the facets change, entry by entry.
-pub(super) fn table(case: &Case, density_kg_m3: f64) -> Option<TextTable> {
+pub(super) fn table(case: &Case, density_kg_m3: f64, is_smooth: bool) -> Option<TextTable> {
     let facets = case.facets.as_ref()?;
     let rows = (0..6).map(|i| {
         let (value, of_all) = (case.refined.value[i][i], case.refined.uncertainty[i][i]);
@@ -266,8 +270,9 @@ pub(super) fn table(case: &Case, density_kg_m3: f64) -> Option<TextTable> {
     Some(TextTable {
         caption: format!(
             "The matrix is that of the smooth body with the corners of the mesh: polyhedron plus difference. Edges of more than {:.0}°, and those that belong to no curve of three turns or more, count as edges of \
-             the body. The two uncertainties add up. --smooth and --polyhedron state which body is meant.",
-            CREASE_RAD.to_degrees()
+             the body. The two uncertainties add up. {}",
+            CREASE_RAD.to_degrees(),
+            if is_smooth { IS_SMOOTH } else { "--smooth and --polyhedron state which body is meant." }
         ),
         head: [
             "",

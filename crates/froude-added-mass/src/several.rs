@@ -99,7 +99,7 @@ pub fn several(
             let of_mesh = |mesh: &Mesh| given.on(mesh);
             match facets::correct_parts(&mut refined, &given.mesh, &of_mesh, wanted, job.is_smooth) {
                 Ok(Some(_)) if job.is_smooth => notes.push(facets::IS_SMOOTH.to_owned()),
-                Ok(Some(mean)) => findings.push(facets::finding(mean)),
+                Ok(Some(largest)) => findings.push(facets::finding(largest)),
                 Ok(None) => match facets::is_sharp(job.is_smooth) {
                     Ok(note) => notes.push(note.to_owned()),
                     Err(finding) => findings.push(finding),

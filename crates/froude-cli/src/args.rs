@@ -118,7 +118,7 @@ pub enum Verb {
     },
     /// Added mass from potential flow, of a mesh, a shape given by its dimensions, or a snake robot with any number of links.
     #[command(
-        after_help = "Examples:\n  froude added-mass hull.stl --density '1025 kg/m^3'\n  froude added-mass robot.toml --links 1..9"
+        after_help = "Examples:\n  froude added-mass hull.stl --unit mm --density '1025 kg/m^3'\n  froude added-mass robot.toml --links 1..9"
     )]
     AddedMass(Box<AddedMassArgs>),
     /// Swim a robot of modules with a gait: speed, powers, cost of transport, torques and stability of the motion that repeats.
