@@ -96,6 +96,9 @@ fn every_verb_rejects_a_unit_that_is_none() {
             "[[source.plan]]\nconfigurations = [\"H1LT\"]\nspeed = [\"0.1 m/s\"]\nangle = [\"0 deg\"]\n[simulate]\nseed = 1\nrecord = \"drag.json\"\nselect = \"{DRAG}\"\n"
         ),
     );
+    // No twin replaces a measured table.
+    let simulated = std::fs::read_to_string(&truth).unwrap().replace("table = \"tank.csv\"", "table = \"twin.csv\"");
+    std::fs::write(&truth, simulated).unwrap();
     let gait = [&["swim", text(&path)], &GAIT[..]].concat();
     let verbs: [&[&str]; 9] = [
         &gait,
@@ -106,7 +109,7 @@ fn every_verb_rejects_a_unit_that_is_none() {
         &["identify", text(&tare)],
         &["identify", text(&prior)],
         &["identify", text(&known)],
-        &["simulate", text(&truth), "--replace"],
+        &["simulate", text(&truth)],
     ];
     for verb in verbs {
         let said = rejected(verb);
