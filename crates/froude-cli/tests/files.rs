@@ -22,7 +22,7 @@ fn froude(folder: &Path, args: &[&str]) -> Output {
 }
 
 /// Exit code and standard error.
-fn told(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
+fn outcome(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
     let output = froude(folder, args);
     (output.status.code(), String::from_utf8_lossy(&output.stderr).trim_end().to_owned())
 }
@@ -214,7 +214,7 @@ fn cfd_writes_below_the_campaign_only() {
         std::fs::create_dir(&victim).unwrap();
         std::os::unix::fs::symlink(&victim, lab.join("link")).unwrap();
         for verb in ["plan", "status", "collect"] {
-            let (code, said) = told(&lab, &["cfd", verb, "c.toml"]);
+            let (code, said) = outcome(&lab, &["cfd", verb, "c.toml"]);
             assert_eq!(code, Some(2), "{cases} {verb}: {said}");
             assert!(
                 said.contains("c.toml:9:9: `cases` is") && said.contains("leads out of the campaign's folder"),
@@ -229,7 +229,7 @@ fn cfd_writes_below_the_campaign_only() {
     std::fs::create_dir(&victim).unwrap();
     std::fs::create_dir(lab.join("flow")).unwrap();
     std::os::unix::fs::symlink(&victim, lab.join("flow/meshes")).unwrap();
-    let (code, said) = told(&lab, &["cfd", "plan", "c.toml"]);
+    let (code, said) = outcome(&lab, &["cfd", "plan", "c.toml"]);
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("flow/meshes: is a link that leads out of the campaign's folder"), "{said}");
     assert!(std::fs::read_dir(&victim).unwrap().next().is_none());
@@ -242,20 +242,20 @@ fn cfd_replaces_no_file_that_it_did_not_write() {
     let flow = lab.join("flow");
     std::fs::create_dir_all(flow.join("cases/photos")).unwrap();
     std::fs::write(flow.join("cases/photos/a.jpg"), "mine").unwrap();
-    let (code, said) = told(&lab, &["cfd", "plan", "c.toml"]);
+    let (code, said) = outcome(&lab, &["cfd", "plan", "c.toml"]);
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("photos: was not written by Froude"), "{said}");
     std::fs::remove_dir_all(flow.join("cases")).unwrap();
     for mine in ["{\"mine\": true}\n", "not JSON", "{\"cases\": [], \"mine\": 1}"] {
         std::fs::write(flow.join("campaign.json"), mine).unwrap();
-        let (code, said) = told(&lab, &["cfd", "plan", "c.toml"]);
+        let (code, said) = outcome(&lab, &["cfd", "plan", "c.toml"]);
         assert_eq!(code, Some(2), "{said}");
         assert!(said.contains("campaign.json") && said.contains("move this one away"), "{said}");
         assert_eq!(std::fs::read_to_string(flow.join("campaign.json")).unwrap(), mine);
     }
     std::fs::remove_file(flow.join("campaign.json")).unwrap();
-    assert_eq!(told(&lab, &["cfd", "plan", "c.toml"]).0, Some(0));
-    assert_eq!(told(&lab, &["cfd", "plan", "c.toml"]).0, Some(0));
+    assert_eq!(outcome(&lab, &["cfd", "plan", "c.toml"]).0, Some(0));
+    assert_eq!(outcome(&lab, &["cfd", "plan", "c.toml"]).0, Some(0));
 }
 
 #[test]
@@ -263,16 +263,16 @@ fn predictions_and_sweeps_replace_no_file_that_they_did_not_write() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::write(at.join("t.csv"), TABLE).unwrap();
-    assert_eq!(told(at, &["identify", "t.csv", "--models", "quadratic"]).0, Some(0));
+    assert_eq!(outcome(at, &["identify", "t.csv", "--models", "quadratic"]).0, Some(0));
     let predict = ["predict", "t-results/estimate.json", "t.csv", "--out", "p"];
-    assert_eq!((told(at, &predict).0, told(at, &predict).0), (Some(0), Some(0)));
+    assert_eq!((outcome(at, &predict).0, outcome(at, &predict).0), (Some(0), Some(0)));
     let table = std::fs::read_dir(at.join("p"))
         .unwrap()
         .map(|e| e.unwrap().path())
         .find(|p| p.extension().is_some_and(|e| e == "csv"))
         .unwrap();
     std::fs::write(&table, "mine").unwrap();
-    let (code, said) = told(at, &predict);
+    let (code, said) = outcome(at, &predict);
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("was changed after Froude wrote it, and would be replaced"), "{said}");
     assert_eq!(std::fs::read_to_string(&table).unwrap(), "mine");
@@ -292,11 +292,11 @@ fn predictions_and_sweeps_replace_no_file_that_they_did_not_write() {
     ];
     std::fs::create_dir(at.join("s")).unwrap();
     std::fs::write(at.join("s/result.json"), "mine").unwrap();
-    let (code, said) = told(at, &sweep);
+    let (code, said) = outcome(at, &sweep);
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("result.json was not written by Froude"), "{said}");
     std::fs::remove_file(at.join("s/result.json")).unwrap();
-    assert_eq!((told(at, &sweep).0, told(at, &sweep).0), (Some(0), Some(0)));
+    assert_eq!((outcome(at, &sweep).0, outcome(at, &sweep).0), (Some(0), Some(0)));
 }
 
 /// Each block is within its limit; together they are not. Nothing of them is simulated.
@@ -327,7 +327,7 @@ fn a_plan_is_counted_before_it_is_made() {
         (cfd_plan, "`speed` (5001) × `angle` (2) × `pitch` (1) × `repeats` (1) is 10002; at most 10000 are made"),
     ] {
         std::fs::write(at.join("c.toml"), text).unwrap();
-        let (code, found) = told(at, &["plan", "c.toml"]);
+        let (code, found) = outcome(at, &["plan", "c.toml"]);
         assert_eq!(code, Some(2), "{found}");
         assert!(found.contains(said), "{found}");
     }
@@ -338,7 +338,7 @@ fn a_plan_is_counted_before_it_is_made() {
     let many = CFD.replace("\"H1LT\"", &names.join(", ")).replace("[[source.plan]]", &study);
     std::fs::write(at.join("c.toml"), many).unwrap();
     std::fs::write(at.join("body.toml"), BODY).unwrap();
-    let (code, found) = told(at, &["cfd", "plan", "c.toml"]);
+    let (code, found) = outcome(at, &["cfd", "plan", "c.toml"]);
     assert!(code == Some(2) && found.contains("asks for 12369 meshes") && found.contains("at most 10000"), "{found}");
 }
 

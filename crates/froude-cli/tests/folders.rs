@@ -43,7 +43,11 @@ const ROWS: &[Row] = &[
     ("identify", "identify t.csv", &["t-results/"]),
     ("inspect", "inspect t.csv", &[]),
     ("compare", "compare t-results/estimate.json u-results/estimate.json --out beside", &["beside/"]),
-    ("predict", "predict t-results/estimate.json t.csv --out told", &["told/predicted-", "told/froude-files.json"]),
+    (
+        "predict",
+        "predict t-results/estimate.json t.csv --out predicted",
+        &["predicted/predicted-", "predicted/froude-files.json"],
+    ),
     ("plan", "plan steady.toml", &[]),
     ("simulate", "simulate mamba/campaign.toml", &["mamba/tank.csv", "mamba/froude-files.json"]),
     ("run", "run campaign.toml --yes", &["campaign-runs/"]),

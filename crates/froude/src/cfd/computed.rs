@@ -56,7 +56,7 @@ impl Method for Computed {
         let input = |e: crate::Error| MethodError::input(source.input.path(), e.to_string());
         let mut planning = std::iter::once(source).chain(&campaign.sources);
         let planned = planning.find(|other| of_cases(other) && !other.plan.is_empty());
-        // A campaign that cannot be planned any more is none that was planned.
+        // A campaign that can no longer be planned is not the one that was planned.
         let inputs_sha256 = planned.map(|other| {
             let asked = Asked::of(campaign, other, source.input.path().to_owned());
             asked.map_or_else(|_| String::new(), |asked| asked.inputs_sha256())
