@@ -191,6 +191,7 @@ pub fn estimate(refined: &Refined, facets: Option<&Facets>, about: &About) -> Es
                 interval_95: known.then_some([value - expanded, value + expanded]),
                 effective_dof: None,
                 unconstrained: None,
+                range_95: None,
             },
         );
     }
@@ -238,7 +239,7 @@ pub fn estimate(refined: &Refined, facets: Option<&Facets>, about: &About) -> Es
             ..Diagnostics::default()
         },
         recommended: true,
-        formula_of: None,
+        not_contradicted: Vec::new(),
         reason: Some("the only model of its source".to_owned()),
         ..Estimate::default()
     }

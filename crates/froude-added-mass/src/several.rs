@@ -481,6 +481,7 @@ fn record(
                     interval_95: known.then_some([a - u, a + u]),
                     effective_dof: None,
                     unconstrained: None,
+                    range_95: None,
                 },
             );
         }
@@ -514,7 +515,7 @@ fn record(
         coefficients,
         diagnostics: froude_records::estimate::Diagnostics { notes: notes.to_vec(), ..Default::default() },
         recommended: true,
-        formula_of: None,
+        not_contradicted: Vec::new(),
         reason: Some("the only model of its source".to_owned()),
         ..Estimate::default()
     }

@@ -131,17 +131,17 @@ fn observations(n: usize) -> String {
 }
 
 fn coefficients(estimate: &Estimate) -> Table {
-    let mut out = table(&["coefficient", "value", "unit", "95 % interval", "type A", "type B", "status"]);
+    let has_others = estimate.not_contradicted.len() > 1;
+    let intervals =
+        if has_others { &["95 % interval if it is true", "range over all"][..] } else { &["95 % interval"] };
+    let mut out = table(&[&["coefficient", "value", "unit"], intervals, &["type A", "type B", "status"]].concat());
+    let ends = |ends: Option<[f64; 2]>| right(ends.map_or("—".to_owned(), number::interval));
     for (name, c) in &estimate.coefficients {
-        out.add_row(vec![
-            cell(name),
-            right(number::coefficient(c)),
-            cell(&c.unit),
-            right(c.interval_95.map_or("—".to_owned(), number::interval)),
-            right(c.type_a.map_or("—".to_owned(), |x| number::significant(x, 2))),
-            right(c.type_b.map_or("—".to_owned(), |x| number::significant(x, 2))),
-            cell(status(c.status)),
-        ]);
+        let mut row = vec![cell(name), right(number::coefficient(c)), cell(&c.unit), ends(c.interval_95)];
+        row.extend(has_others.then(|| ends(c.range_95)));
+        row.extend([c.type_a, c.type_b].map(|x| right(x.map_or("—".to_owned(), |x| number::significant(x, 2)))));
+        row.push(cell(status(c.status)));
+        out.add_row(row);
     }
     out
 }
@@ -271,18 +271,8 @@ fn estimate_facts(e: &Estimate) {
     if let Some(reason) = &e.reason {
         sentence(reason);
     }
-    if let Some(formula) = &e.formula_of {
-        let apart: Vec<String> = formula
-            .largest_difference
-            .iter()
-            .map(|(load, m)| format!("{} {} in {load}", number::plain(m.value, 2), m.unit))
-            .collect();
-        sentence(&format!(
-            "a formula of {}: at most {} from it, and its uncertainties widened by {} to hold its band",
-            formula.estimate,
-            apart.join(", "),
-            number::plain(formula.widened, 3)
-        ));
+    if e.not_contradicted.len() > 1 {
+        sentence(&format!("not contradicted by the data: {}", e.not_contradicted.join(", ")));
     }
     let mut about = vec![observations(e.n_observations)];
     about.extend(
@@ -292,7 +282,8 @@ fn estimate_facts(e: &Estimate) {
             .map(str::to_owned),
     );
     sentence(&about.join("; "));
-    let mut out = table(&["coefficient", "value", "unit", "standard uncertainty", "95 % interval", "status"]);
+    let head = ["coefficient", "value", "unit", "standard uncertainty", "95 % interval", "range", "status"];
+    let mut out = table(&head);
     for (name, c) in &e.coefficients {
         let or_none = |x: Option<f64>, digits: usize| right(x.map_or("—".to_owned(), |x| number::plain(x, digits)));
         out.add_row(vec![
@@ -301,6 +292,7 @@ fn estimate_facts(e: &Estimate) {
             cell(&c.unit),
             or_none(c.standard_uncertainty, 2),
             right(c.interval_95.map_or("—".to_owned(), number::interval)),
+            right(c.range_95.map_or("—".to_owned(), number::interval)),
             cell(if c.status == Status::Free { "free" } else { status(c.status) }),
         ]);
     }

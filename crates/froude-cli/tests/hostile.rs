@@ -126,7 +126,7 @@ fn a_power_law_that_cannot_be_fitted_costs_its_row_and_hides_no_finding() {
     assert!(ended.said.contains(&format!("  not fitted: power_law_y: {why}")), "{}", ended.said);
     assert!(ended.said.contains("[not-fitted]"), "{}", ended.said);
     assert!(ended.said.contains("[force-along-motion]"), "{}", ended.said);
-    assert!(ended.said.contains("also fitted: quadratic, power_law_x"), "{}", ended.said);
+    assert!(ended.said.contains("also fitted: linear_quadratic, power_law_x"), "{}", ended.said);
     let report = std::fs::read_to_string(folder.path().join("t-results/report.html")).unwrap();
     assert!(report.contains("Not fitted") && report.contains(why), "the report has its row");
     // Asked for alone, it is the error, with what explains it.

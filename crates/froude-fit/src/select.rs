@@ -2,7 +2,7 @@
 //!
 //! | question                                     | function                      |
 //! |----------------------------------------------|-------------------------------|
-//! | does the larger model earn its coefficients? | [`nested_tests`], [`aicc`]    |
+//! | does the larger model earn its coefficients? | [`aicc`]                      |
 //! | does it predict a group it has not seen?     | [`leave_one_group_out`]       |
 //! | does it predict beyond the range it saw?     | [`range_block`]               |
 //! | does it fit as well as the repeats allow?    | [`lack_of_fit`]               |
@@ -13,13 +13,11 @@
 mod aicc;
 mod group_out;
 mod lack_of_fit;
-mod nested;
 mod range_block;
 
 pub use aicc::{TooFewRows, aicc};
 pub use group_out::{GroupScore, leave_one_group_out};
 pub use lack_of_fit::{LackOfFit, lack_of_fit};
-pub use nested::{NestedTest, nested_tests};
 pub use range_block::{BlockScore, RangeBlock, range_block};
 
 use crate::options::{CovarianceKind, Options};

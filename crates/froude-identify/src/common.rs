@@ -5,7 +5,8 @@
 //! (u²(a − b) = u_a² + u_b² − 2 cov(a, b), GUM 5.2.2).
 //!
 //! The expanded uncertainty of the difference is U² = U_a² + U_b² + U_c²: that of what only the first has, that of what only the second has
-//! (ISO 13528:2022, 9.7), and that of the common errors in the difference. Each is the arm of its interval that points to the other value.
+//! (ISO 13528:2022, 9.7), and that of the common errors in the difference. Each is the arm of its interval that points to the other value; of a source with several laws that its data do
+//! not contradict, the arm of the envelope.
 
 use std::collections::BTreeSet;
 
@@ -24,6 +25,8 @@ pub(crate) struct Number<'a> {
     estimate: &'a Estimate,
     /// ∂number/∂β, in the order of the covariance; empty where the number has an uncertainty without one.
     slopes: Vec<f64>,
+    /// How far the laws that the data do not contradict reach beyond its interval, below and above.
+    beyond: [f64; 2],
     /// The number with its uncertainty.
     pub stated: Stated,
 }
@@ -31,14 +34,38 @@ pub(crate) struct Number<'a> {
 impl<'a> Number<'a> {
     /// A coefficient, with the uncertainty that the record states.
     pub fn of_coefficient(estimate: &'a Estimate, name: &str) -> Self {
-        let Coefficient { value, standard_uncertainty, effective_dof, .. } = &estimate.coefficients[name];
+        let Coefficient { value, standard_uncertainty, effective_dof, interval_95, range_95, .. } =
+            &estimate.coefficients[name];
         let names = estimate.type_a.as_ref().map_or(&[][..], |a| &a.names);
         let is_there = names.iter().any(|n| n == name);
         let slopes =
             if is_there { names.iter().map(|n| if n == name { 1.0 } else { 0.0 }).collect() } else { Vec::new() };
         let is_refused = estimate.without_interval().contains(&name);
-        let stated = Stated { value: *value, standard: *standard_uncertainty, dof: *effective_dof, is_refused };
-        Self { estimate, slopes, stated }
+        let stated =
+            Stated { value: *value, standard: *standard_uncertainty, dof: *effective_dof, is_refused, beyond: 0.0 };
+        let ends = interval_95.zip(*range_95);
+        let beyond = ends.map_or([0.0; 2], |(own, range)| [own[0] - range[0], range[1] - own[1]]);
+        Self { estimate, slopes, beyond: [0.0; 2], stated }.reaching(beyond)
+    }
+
+    /// The same with laws beside its own, which reach further.
+    fn reaching(mut self, beyond: [f64; 2]) -> Self {
+        self.beyond = beyond.map(|x| x.max(0.0));
+        self.stated.beyond = self.beyond[0].max(self.beyond[1]);
+        self
+    }
+
+    /// The same number with others of the same quantity, of laws that the data of its record do not contradict either: its interval holds theirs.
+    pub fn around(self, others: &[Self]) -> Self {
+        let ends = |of: &Self| {
+            of.stated.value.map(|value| {
+                let [below, above] = of.arms(&|_| true);
+                [value - below, value + above]
+            })
+        };
+        let Some([low, high]) = ends(&self) else { return self };
+        let hull = others.iter().filter_map(ends).fold([low, high], |[a, b], [c, d]| [a.min(c), b.max(d)]);
+        self.reaching([low - hull[0], hull[1] - high])
     }
 
     /// A number made from the coefficients; `slope` is its derivative by each.
@@ -51,10 +78,11 @@ impl<'a> Number<'a> {
     /// JCGM 100:2008 (GUM), 5.2.2 and G.4.1.
     pub fn of_number(estimate: &'a Estimate, value: Option<f64>, slope: impl Fn(&str) -> f64) -> Self {
         let Some(scatter) = &estimate.type_a else {
-            return Self { estimate, slopes: Vec::new(), stated: Stated { value, ..Stated::default() } };
+            return Self { stated: Stated { value, ..Stated::default() }, ..Self::of_nothing(estimate) };
         };
         let slopes: Vec<f64> = scatter.names.iter().map(|name| slope(name)).collect();
-        let mut side = Self { estimate, slopes, stated: Stated { value, ..Stated::default() } };
+        let stated = Stated { value, ..Stated::default() };
+        let mut side = Self { estimate, slopes, beyond: [0.0; 2], stated };
         let all = combine(&side.parts(&|_| true), 0, OUTSIDE_95);
         side.stated.standard = Some(all.standard);
         side.stated.dof = Some(all.dof).filter(|d| d.is_finite());
@@ -64,7 +92,7 @@ impl<'a> Number<'a> {
 
     /// No number at all.
     pub fn of_nothing(estimate: &'a Estimate) -> Self {
-        Self { estimate, slopes: Vec::new(), stated: Stated::default() }
+        Self { estimate, slopes: Vec::new(), beyond: [0.0; 2], stated: Stated::default() }
     }
 
     /// What moves the number: its scatter, and the errors that `is_meant`.
@@ -90,7 +118,8 @@ impl<'a> Number<'a> {
 
     /// Its interval's arm towards smaller numbers and towards larger ones, from its own parts.
     fn arms(&self, is_meant: &dyn Fn(&str) -> bool) -> [f64; 2] {
-        combine(&self.parts(is_meant), 0, self.outside()).arms
+        let [below, above] = combine(&self.parts(is_meant), 0, self.outside()).arms;
+        [below + self.beyond[0], above + self.beyond[1]]
     }
 
     fn outside(&self) -> f64 {

@@ -283,44 +283,37 @@ fn regressed(
     reduced: &Reduced,
 ) -> Result<Vec<Fitted>, IdentifyError> {
     let is_clustered = reduced.scatter == Scatter::Cluster;
-    let begin = |law| linear(law, source).map(|law| Fold::new(law, &source.name, is_clustered));
-    let mut folds: Vec<Result<Fold<'_>, IdentifyError>> = reduced.laws.iter().map(begin).collect();
+    let linear: Vec<&ForceLaw> = reduced.laws.iter().filter(|law| !law.is_nonlinear()).collect();
+    let mut fold = Fold::new(linear, &source.name, is_clustered);
     each(campaign, source, reads_speed(source, &reduced.laws), &mut |chunk| {
         let group = chunk.data.group.as_deref().unwrap_or_default();
         let clusters = if is_clustered { facts.numbered(group) } else { Vec::new() };
-        for fold in &mut folds {
-            if let Ok(so_far) = fold
-                && let Err(error) = so_far.take(&chunk.data, &clusters)
-            {
-                *fold = Err(error);
-            }
-        }
+        fold.take(&chunk.data, &clusters);
         Ok(())
     })?;
     let settings = reduced.settings(&campaign.identify);
     let fit = |law: &ForceLaw, condensed: &Condensed| {
         regress(law, &few.ends, Settings { condensed: Some(condensed), ..settings })
     };
-    let finish = |(fold, law): (Result<Fold<'_>, IdentifyError>, &ForceLaw)| {
-        let model = fold.and_then(Fold::finish).and_then(|condensed| fit(law, &condensed));
+    let mut condensed = fold.finish().into_iter();
+    let finish = |law: &ForceLaw| {
+        let rows = if law.is_nonlinear() { None } else { condensed.next() };
+        let model = rows.unwrap_or_else(|| Err(iterated(law, source))).and_then(|rows| fit(law, &rows));
         model.map_err(|error| (law.name.clone(), error))
     };
-    Ok(folds.into_iter().zip(&reduced.laws).map(finish).collect())
+    Ok(reduced.laws.iter().map(finish).collect())
 }
 
-/// A law, if it is linear in its coefficients.
-fn linear<'a>(law: &'a ForceLaw, source: &Source) -> Result<&'a ForceLaw, IdentifyError> {
-    if !law.is_nonlinear() {
-        return Ok(law);
-    }
-    Err(IdentifyError::NoFit {
+/// Why a law is not fitted to rows that are read once.
+fn iterated(law: &ForceLaw, source: &Source) -> IdentifyError {
+    IdentifyError::NoFit {
         source_name: source.name.clone(),
         model: law.name.clone(),
         why: format!(
             "it is not linear in its coefficients, and would be iterated over a table of more than {MOST_KEPT} rows, which is read in \
              chunks; give fewer rows, or a law with a given exponent (quadratic)"
         ),
-    })
+    }
 }
 
 /// The models with what the residuals of all rows say, and the largest leverage of each.

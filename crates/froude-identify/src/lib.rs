@@ -23,6 +23,7 @@ pub mod dataset;
 pub mod diagnosis;
 pub mod dissipation;
 pub mod eiv;
+pub mod envelope;
 mod error;
 pub mod formula;
 pub mod inspect;

@@ -89,7 +89,7 @@ fn fitted(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
         } else {
             source.estimates.first().map(budget::of_estimate).unwrap_or_default()
         };
-        out.curves = curves::of(model, &source.data)?;
+        out.curves = curves::of(source, model, &source.data)?;
     }
     Ok(out)
 }

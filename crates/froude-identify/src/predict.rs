@@ -1,8 +1,10 @@
 //! What a record's law gives on rows that it was not fitted to, beside what was measured there.
 //!
-//! In a row the law gives F = F(x; β) with Cov(F) = X·Cov(β)·Xᵀ, X = ∂F/∂β: scatter and every declared error of the record. A single measurement scatters about it by s: its own standard uncertainty where the table states one (`std_f_x`), and else the residual standard deviation of the record, which holds what the law itself misses. The band is that of the law, F ± k u_law; the error e = measured − F has u² = u_law² + s², and E_n = e/(k u), beyond ±1 in one row of twenty by chance. k is Student's at the degrees of freedom of Welch and Satterthwaite.
+//! In a row the law gives F = F(x; β) with Cov(F) = X·Cov(β)·Xᵀ, X = ∂F/∂β: scatter and every declared error of the record. A single measurement scatters about it by s: its own standard uncertainty where the table states one (`std_f_x`), and else the residual standard deviation of the record, which holds what the law itself misses. The band of one law is F ± k u_law; a measurement errs by e = measured − F with u² = u_law² + s². k is Student's at the degrees of freedom of Welch and Satterthwaite.
 //!
-//! Rows of one record err together: a coefficient that is too large is so in all of them. So one number judges all rows, χ² = eᵀ(X Cov(β) Xᵀ + diag s²)⁻¹e, which has a mean of as many as there are rows. Where s was estimated, χ²/n is compared with F(n, ν) and not with χ². A record whose scatter is that of clusters has no such p.
+//! The band of a record is the envelope of the bands of all laws that its data do not contradict, the chosen one among them. E_n = e/U, with U as far as the envelope of their F ± k u reaches from F towards the measured load: beyond ±1 in at most one row of twenty by chance, whichever of the laws is true.
+//!
+//! Rows of one record err together: a coefficient that is too large is so in all of them. So one number judges all rows, χ² = eᵀ(X Cov(β) Xᵀ + diag s²)⁻¹e, which has a mean of as many as there are rows. Where s was estimated, χ²/n is compared with F(n, ν) and not with χ². A record whose scatter is that of clusters has no such p. Of several laws χ² is that of the one which agrees best.
 //!
 //! An error that the table has too (the same balance, the same tank) is counted as if it had none: the record cannot know it.
 //!
@@ -13,6 +15,7 @@ use faer::linalg::solvers::Solve as _;
 use froude_fit::distribution::{coverage_factor, f_upper};
 use froude_records::estimate::Estimate;
 use froude_records::units::Dimension;
+use indexmap::IndexMap;
 
 use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
@@ -30,6 +33,8 @@ pub struct Predicted {
     pub id: String,
     /// Name of its law.
     pub law: String,
+    /// Ids of the laws whose envelope the bands are, the estimate first.
+    pub laws: Vec<String>,
     /// Loads, row by row.
     pub rows: Vec<Row>,
     /// All rows with a measurement inside of what the record covers; `None` where there is none, or no scatter is known.
@@ -47,10 +52,12 @@ pub struct Row {
     pub unit: String,
     /// F.
     pub predicted: f64,
-    /// Standard uncertainty of F; `None` where the record states no covariance.
+    /// Standard uncertainty of F if its law is true; `None` where the record states no covariance.
     pub u_law: Option<f64>,
-    /// Half-width of the 95 % band of F; `None` also where a coefficient that it goes with has no interval, as one cluster decides it.
-    pub half_width_95: Option<f64>,
+    /// 95 % band of F over all laws; `None` also where a coefficient that it goes with has no interval, as one cluster decides it.
+    pub band_95: Option<[f64; 2]>,
+    /// The same of a single measurement.
+    spread_95: Option<[f64; 2]>,
     /// What was measured.
     pub measured: Option<f64>,
     /// Standard deviation of a single measurement; `None` where neither table nor record states one.
@@ -82,12 +89,45 @@ pub struct Joint {
     pub p: Option<f64>,
 }
 
-/// A record's law on the rows of a data set.
+/// A record's law on the rows of a data set; `others` are the laws beside it that its data do not contradict.
 ///
 /// # Errors
 ///
-/// A law that is none of forces; a channel that it reads and the data lack; a coefficient without a value.
-pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyError> {
+/// A law that is none of forces; a channel that one of them reads and the data lack; a coefficient without a value.
+pub fn predict(estimate: &Estimate, others: &[&Estimate], data: &Dataset) -> Result<Predicted, IdentifyError> {
+    let mut out = by_law(estimate, data)?;
+    for other in others {
+        let beside = by_law(other, data)?;
+        let mut first: IndexMap<&String, usize> = IndexMap::new();
+        for (place, row) in beside.rows.iter().enumerate() {
+            first.entry(&row.load).or_insert(place);
+        }
+        for row in &mut out.rows {
+            // A law without this load says nothing of its band.
+            let Some(of_other) = first.get(&row.load).and_then(|first| beside.rows.get(first + row.row)) else {
+                continue;
+            };
+            let around = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.max(d)];
+            row.band_95 = row.band_95.zip(of_other.band_95).map(|(own, other)| around(own, other));
+            row.spread_95 = row.spread_95.zip(of_other.spread_95).map(|(own, other)| around(own, other));
+        }
+        let p = |joint: &Option<Joint>| joint.and_then(|joint| joint.p);
+        if p(&beside.joint).zip(p(&out.joint)).is_some_and(|(other, own)| other > own) {
+            out.joint = beside.joint;
+        }
+        out.laws.extend(beside.laws);
+    }
+    for row in &mut out.rows {
+        row.e_n = row.error().zip(row.spread_95).and_then(|(error, [low, high])| {
+            let reach = if error < 0.0 { row.predicted - low } else { high - row.predicted };
+            (reach > 0.0).then_some(error / reach)
+        });
+    }
+    Ok(out)
+}
+
+/// The same of one law.
+fn by_law(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyError> {
     let data = &with_loads(estimate, data);
     let law = ForceLaw::of_estimate(estimate, data)?;
     let value = |name: &str| estimate.coefficients.get(name).and_then(|c| c.value);
@@ -120,9 +160,7 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
             let outside = outside(estimate, data, row);
             let own = (scatter.unwrap_or(0.0), if stated.is_some() { f64::INFINITY } else { of_sigma });
             let (u, all_dof) = combined(&[parts.clone().unwrap_or_default(), vec![own]].concat());
-            let e_n = measured
-                .filter(|_| u > 0.0 && has_quantile)
-                .map(|m| (m - forces[place]) / (coverage_factor(0.95, all_dof) * u));
+            let about = |half: f64| [forces[place] - half, forces[place] + half];
             if measured.is_some() && scatter.is_some() && outside.is_empty() {
                 inside.push((place, measured.unwrap_or_default() - forces[place], own.0));
                 dof = dof.min(own.1);
@@ -133,13 +171,14 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
                 unit: unit_text(data, load),
                 predicted: forces[place],
                 u_law,
-                half_width_95: parts
+                band_95: parts
                     .filter(|_| has_quantile)
                     .map(|parts| combined(&parts))
-                    .map(|(u, dof)| coverage_factor(0.95, dof) * u),
+                    .map(|(u, dof)| about(coverage_factor(0.95, dof) * u)),
+                spread_95: has_quantile.then(|| about(coverage_factor(0.95, all_dof) * u)),
                 measured,
                 scatter,
-                e_n,
+                e_n: None,
                 outside,
             });
         }
@@ -149,7 +188,8 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
         let p = estimate.clusters.is_none().then(|| f_upper(chi_squared / n as f64, n as f64, dof));
         Joint { chi_squared, n, dof, p }
     });
-    Ok(Predicted { id: estimate.id.clone(), law: estimate.law.name.clone(), rows, joint })
+    let id = estimate.id.clone();
+    Ok(Predicted { laws: vec![id.clone()], id, law: estimate.law.name.clone(), rows, joint })
 }
 
 /// The data with a channel for each load of the law: formulas need its unit, and what was not measured is no number.

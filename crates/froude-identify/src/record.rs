@@ -4,26 +4,24 @@ use froude_fit as fit;
 use froude_fit::budget::{Kind as Evaluation, Part};
 use froude_fit::faer::Mat;
 use froude_records::estimate::{
-    self as of_record, Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Interval, Law, Measured,
-    MethodUsed, OWN, Output, SharedError, Signs, Status, TypeA,
+    Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Interval, Law, Measured, MethodUsed, OWN, Output,
+    SharedError, Signs, Status, TypeA,
 };
 use indexmap::IndexMap;
 
 use crate::dataset::{Dataset, unit_text};
+use crate::error::IdentifyError;
 use crate::law::{Kind, REFERENCE_SPEED_M_S, geometry_of};
-use crate::regression::{FormulaOf, ModelFit, Scatter};
+use crate::regression::{ModelFit, Scatter};
 use crate::seam::reduced::{self, Choice, Reduced};
 use crate::selection::Recommendation;
 
-/// The record of one fitted model; `chosen` says why the data recommend it, where they do, `formula` what it is of the recommended one.
+/// Relative difference of two regressors that are one.
+const SAME_REGRESSOR: f64 = 1e-9;
+
+/// The record of one fitted model; `chosen` says why the data recommend it, where they do.
 #[must_use]
-pub fn estimate(
-    model: &ModelFit,
-    of: &Reduced,
-    diagnostics: Diagnostics,
-    chosen: Option<&Recommendation>,
-    formula: Option<&FormulaOf>,
-) -> Estimate {
+pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen: Option<&Recommendation>) -> Estimate {
     let Reduced { data, stated, .. } = of;
     let mut constants = IndexMap::new();
     let mut refers_to = IndexMap::new();
@@ -80,17 +78,56 @@ pub fn estimate(
         diagnostics,
         recommended: chosen.is_some(),
         reason: chosen.map(|r| r.reason.clone()),
-        formula_of: formula.map(|f| formula_of(f, &of.source, data)),
+        not_contradicted: Vec::new(),
     }
 }
 
-fn formula_of(formula: &FormulaOf, source: &str, data: &Dataset) -> of_record::FormulaOf {
-    let difference = |(load, x): &(String, f64)| (load.clone(), Measured { value: *x, unit: unit_text(data, load) });
-    of_record::FormulaOf {
-        estimate: format!("{source}/{}", formula.law),
-        largest_difference: formula.largest_difference.iter().map(difference).collect(),
-        widened: formula.widened,
+/// States in each record of a source which laws the data do not contradict, and the range of each coefficient: the envelope of its intervals in all of these laws that contain it.
+///
+/// A law contains a coefficient of another one where one of the same name has the same regressors. What a law holds at a value has no part in the range; where one of them has no interval for
+/// another reason there is no range.
+///
+/// # Errors
+///
+/// A channel that one of the laws reads and the data lack.
+pub(crate) fn with_ranges(
+    estimates: &mut [Estimate],
+    models: &[ModelFit],
+    data: &Dataset,
+    not_contradicted: &[usize],
+) -> Result<(), IdentifyError> {
+    let ids: Vec<String> = not_contradicted.iter().map(|i| estimates[*i].id.clone()).collect();
+    let mut terms: Vec<(usize, &str, Vec<(&String, Vec<f64>)>)> = Vec::new();
+    for &i in not_contradicted {
+        let law = &models[i].law;
+        let slopes = law.regressors(data, models[i].law_coefficients())?;
+        for (j, c) in law.coefficients.iter().enumerate() {
+            let of = |r: usize| (0..data.rows).map(|k| slopes[(r * data.rows + k, j)]).collect::<Vec<f64>>();
+            let by_load = law.responses.iter().enumerate().map(|(r, load)| (load, of(r)));
+            terms.push((i, &c.name, by_load.filter(|(_, x)| x.iter().any(|x| *x != 0.0)).collect()));
+        }
     }
+    let is_held = |c: &Coefficient| matches!(c.status, Status::Fixed | Status::Excluded);
+    let close = |(x, y): (&f64, &f64)| (x - y).abs() <= SAME_REGRESSOR * x.abs();
+    let same = |a: &[(&String, Vec<f64>)], b: &[(&String, Vec<f64>)]| {
+        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.0 == b.0 && a.1.iter().zip(&b.1).all(close))
+    };
+    let mut ranges = Vec::new();
+    for (i, name, own) in &terms {
+        let alike = terms.iter().filter(|(_, other, columns)| other == name && same(own, columns));
+        let alike = alike.map(|(k, ..)| &estimates[*k].coefficients[*name]).filter(|c| !is_held(c));
+        let hull = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        let range = alike.map(|c| c.interval_95).reduce(|a, b| a.zip(b).map(|(a, b)| hull(a, b)));
+        ranges.push((*i, (*name).to_owned(), range.flatten()));
+    }
+    for (i, name, range) in ranges {
+        let c = &mut estimates[i].coefficients[&name];
+        c.range_95 = range.filter(|_| !is_held(c));
+    }
+    for estimate in estimates {
+        estimate.not_contradicted.clone_from(&ids);
+    }
+    Ok(())
 }
 
 /// Degrees of freedom and σ of each load. Replicates hold more than the residuals of the rows, and rows that are correlated are worth fewer: they have degrees of
@@ -216,6 +253,7 @@ fn coefficients(model: &ModelFit, labels: &IndexMap<String, String>) -> IndexMap
                 type_a: combined.map(|c| c.type_a),
                 type_b: combined.map(|c| c.type_b),
                 interval_95,
+                range_95: None,
                 effective_dof: combined.map(|c| c.dof).filter(|d| d.is_finite()),
             };
             (spec.name.clone(), coefficient)

@@ -2,11 +2,10 @@
 
 mod fitted;
 mod fitted_weights;
-pub(crate) mod formula_of;
 mod generalised;
 mod held;
 mod job;
-mod known;
+pub(crate) mod known;
 mod problem;
 mod uncertain;
 
@@ -24,7 +23,6 @@ use crate::regression::uncertain::Uncertainty;
 use crate::{dissipation, eiv};
 
 pub use crate::regression::fitted::{Condensed, ModelFit, Scatter, Settings, Weight};
-pub use crate::regression::formula_of::FormulaOf;
 
 /// Fits `law` to `data`.
 ///
@@ -89,6 +87,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         law: law.clone(),
         specs: job.specs,
         problem,
+        beside: settings.condensed.map(|condensed| condensed.beside.clone()).unwrap_or_default(),
         options,
         fit: fitted,
         whitened,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use froude_records::campaign::SourceKind;
-use froude_records::comparison::NestedTest;
+use froude_records::comparison::AddedTerms;
 use froude_records::estimate::{Estimate, Range};
 use froude_records::finding::Finding;
 use froude_records::run::step::Step;
@@ -30,8 +30,8 @@ pub struct SourceResult {
     pub not_fitted: Vec<NotFitted>,
     /// Their records, in the same order.
     pub estimates: Vec<Estimate>,
-    /// F tests of nested pairs.
-    pub tests: Vec<NestedTest>,
+    /// Each law beside the terms of the others.
+    pub tests: Vec<AddedTerms>,
     /// Leave-one-configuration-out scores, in the order of the models.
     pub scores: Vec<Score>,
     /// Declared range blocks, model by model.

@@ -48,7 +48,10 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, us
     }
     let residuals = match &model.whitened {
         _ if data.sample.is_some() => of_sample(model, data),
-        Some(problem) => Residuals::with(problem, &model.options, &vec![1.0; problem.components.len()]),
+        Some(whitened) => {
+            let problem = &whitened.problem;
+            Residuals::with(problem, &model.options, &vec![1.0; problem.components.len()])
+        }
         None => Residuals::of(&model.problem, &model.options, &model.fit),
     };
     let Ok(predicted) = model.law.predict(data, model.law_coefficients()) else { return Vec::new() };

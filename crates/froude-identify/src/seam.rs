@@ -6,20 +6,16 @@
 
 pub(crate) mod reduced;
 
-use std::fmt::Write as _;
-
 use froude_records::campaign::{Identify, StatedUnit};
 use froude_records::finding::{Finding, Severity};
-use froude_records::number::significant;
 use froude_records::units::parse_unit;
 
-use crate::dataset::{Dataset, unit_text};
+use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
-use crate::regression::formula_of::as_formula;
-use crate::regression::{FormulaOf, ModelFit, Settings, regress};
+use crate::regression::{ModelFit, Settings, regress};
 use crate::result::{NotFitted, SourceResult};
-use crate::selection::{Recommendation, Score, leave_one_out, nested_tests, range_block, recommend};
+use crate::selection::{Recommendation, Score, added_terms, leave_one_out, range_block, recommend};
 use crate::{bootstrap, diagnosis, record, uncertainty};
 
 pub use crate::seam::reduced::{Choice, Derived, Reduced, Stated};
@@ -69,7 +65,8 @@ pub(crate) fn conclude(
         let text = format!("model {} could not be fitted and is left out: {}", n.model, n.why);
         Finding::new(Severity::Warning, "not-fitted", text)
     }));
-    let tests = nested_tests(&models, data);
+    let by_data = reduced.choice == Choice::Selection;
+    let tests = if by_data { added_terms(&models, data, settings) } else { Vec::new() };
     let scores: Vec<Score> = models.iter().map(|m| leave_one_out(m, data)).collect();
     let blocks = identify
         .cross_validation
@@ -78,16 +75,12 @@ pub(crate) fn conclude(
         .collect();
     let recommendation = match &reduced.choice {
         Choice::Selection => recommend(&models, data, &tests),
-        Choice::Method(words) => Some(Recommendation { index: 0, formula: None, reason: words.clone() }),
+        Choice::Method(words) => Some(Recommendation { index: 0, not_contradicted: Vec::new(), reason: words.clone() }),
     };
-    let mut recommendation = recommendation;
-    let formula =
-        recommendation.as_mut().map(|r| with_formula(&mut models, r, data, reduced.looks)).transpose()?.flatten();
-    let by_data = recommendation.as_ref().filter(|_| reduced.choice == Choice::Selection);
     let mut estimates = Vec::new();
     for (i, model) in models.iter().enumerate() {
         let mut diagnostics = diagnosis::diagnostics(model, data, &scores[i])?;
-        let chosen = by_data.filter(|r| r.index == i);
+        let chosen = recommendation.as_ref().filter(|r| by_data && r.index == i);
         // Draws are fitted by least squares alone.
         if let Some(draws) = identify.monte_carlo.filter(|_| chosen.is_some() && model.whitened.is_none()) {
             progress(&format!("{} by {draws} Monte Carlo draws", model.law.name));
@@ -100,8 +93,10 @@ pub(crate) fn conclude(
                 Err(finding) => findings.push(finding),
             }
         }
-        let is_formula = by_data.is_some_and(|r| r.formula == Some(i));
-        estimates.push(record::estimate(model, &reduced, diagnostics, chosen, formula.as_ref().filter(|_| is_formula)));
+        estimates.push(record::estimate(model, &reduced, diagnostics, chosen));
+    }
+    if let Some(chosen) = &recommendation {
+        record::with_ranges(&mut estimates, &models, data, &chosen.not_contradicted)?;
     }
     Ok(SourceResult {
         findings: findings.into_iter().map(|f| f.of_source(&reduced.source)).collect(),
@@ -137,28 +132,6 @@ fn check_units(identify: &Identify, laws: &[ForceLaw]) -> Result<(), IdentifyErr
         }
     }
     Ok(())
-}
-
-/// Widens the smaller law that the data support to a formula of the recommended one, and says how far it is from that.
-fn with_formula(
-    models: &mut [ModelFit],
-    recommendation: &mut Recommendation,
-    data: &Dataset,
-    looks: usize,
-) -> Result<Option<FormulaOf>, IdentifyError> {
-    let Some(formula) = recommendation.formula else { return Ok(None) };
-    let full = models[recommendation.index].clone();
-    let Some(found) = as_formula(&mut models[formula], &full, data, looks)? else {
-        recommendation.formula = None;
-        return Ok(None);
-    };
-    let differences: Vec<String> = found
-        .largest_difference
-        .iter()
-        .map(|(load, x)| format!("{} {} in {load}", significant(*x, 2), unit_text(data, load)))
-        .collect();
-    let _ = write!(recommendation.reason, "; it differs from {} by at most {}", found.law, differences.join(", "));
-    Ok(Some(found))
 }
 
 /// Why an error came about, without the source and the model that it names: where it is shown, they stand beside it.

@@ -13,7 +13,7 @@
 use froude_fit::faer::Mat;
 use froude_records::campaign::BudgetEntry;
 use froude_records::comparison::Validation;
-use froude_records::estimate::{ErrorKind, Estimate, Status};
+use froude_records::estimate::{ErrorKind, Estimate, Status, beside};
 
 use crate::compare::Named;
 use crate::dataset::{Dataset, unit_text};
@@ -114,12 +114,13 @@ pub fn validate(simulation: Simulation<'_>, measured: &[Named<'_>]) -> Result<Va
     let (Some(computed), Some(model)) = (result.estimates.get(recommended), result.models.get(recommended)) else {
         return Ok(out);
     };
-    for data in laws(measured) {
+    for named in laws(measured) {
+        let data = named.estimate;
         if !data.validity.contains_key("speed") {
             out.without_range.push(data.id.clone());
             continue;
         }
-        let flows = loads(simulation, model, data)?;
+        let flows = loads(simulation, model, &named)?;
         for load in &model.law.responses {
             let own: Vec<&ComparedFlow> = flows.iter().filter(|flow| flow.load == *load).collect();
             out.numbers.extend(over_flows(computed, &own));
@@ -130,7 +131,7 @@ pub fn validate(simulation: Simulation<'_>, measured: &[Named<'_>]) -> Result<Va
 }
 
 /// One estimate of each measured source.
-fn laws<'a>(measured: &[Named<'a>]) -> Vec<&'a Estimate> {
+fn laws<'a>(measured: &[Named<'a>]) -> Vec<Named<'a>> {
     let mut out: Vec<Named<'a>> = Vec::new();
     let rank = |named: &Named<'_>| (named.estimate.recommended, named.estimate.coefficients.len());
     for named in measured {
@@ -142,7 +143,7 @@ fn laws<'a>(measured: &[Named<'a>]) -> Vec<&'a Estimate> {
             None => out.push(*named),
         }
     }
-    out.into_iter().map(|named| named.estimate).collect()
+    out
 }
 
 /// Standard uncertainties of what S is made of.
@@ -179,7 +180,10 @@ fn coefficients(computed: &Estimate, data: &Estimate) -> Vec<Validation> {
             parts.add(error.kind, error.between(row, row));
         }
         let u_fit = scatter.matrix.get(j)?.get(j)?.max(0.0).sqrt();
-        let u_data = other.standard_uncertainty;
+        // What other laws of the measured source leave open is uncertainty of the measurement too.
+        let ends = other.interval_95.zip(other.range_95);
+        let open = ends.map_or(0.0, |(own, all)| (own[0] - all[0]).max(all[1] - own[1]).max(0.0) / COVERAGE);
+        let u_data = other.standard_uncertainty.map(|u| u + open);
         Some(Validation {
             simulation: computed.id.clone(),
             data: data.id.clone(),
@@ -200,15 +204,13 @@ fn coefficients(computed: &Estimate, data: &Estimate) -> Vec<Validation> {
     scatter.names.iter().enumerate().filter_map(of).collect()
 }
 
-fn loads(
-    simulation: Simulation<'_>,
-    model: &ModelFit,
-    measured: &Estimate,
-) -> Result<Vec<ComparedFlow>, IdentifyError> {
-    let data = &simulation.result.data;
+fn loads(simulation: Simulation<'_>, model: &ModelFit, named: &Named<'_>) -> Result<Vec<ComparedFlow>, IdentifyError> {
+    let (data, measured) = (&simulation.result.data, named.estimate);
     let rows: Vec<usize> = (0..data.rows).filter(|&row| is_covered(measured, data, row)).collect();
     // A law that reads what the table does not have gives nothing there.
     let Some(prediction) = Prediction::of(measured, data) else { return Ok(Vec::new()) };
+    let others: Vec<Prediction> =
+        beside(&named.record.estimates, measured).into_iter().filter_map(|e| Prediction::of(e, data)).collect();
     let fit = Linearised {
         law: &model.law,
         data,
@@ -230,6 +232,11 @@ fn loads(
             }
             parts.add(ErrorKind::Numerical, own.map_or(0.0, |own| own[row].powi(2)));
             let (d, u_data) = prediction.at(of_data * data.rows + row);
+            let of_others = others.iter().filter_map(|other| Some((other, other.response(load)?)));
+            let of_others = of_others.map(|(other, r)| other.at(r * data.rows + row));
+            // What other laws of the measured source leave open is uncertainty of the measurement too.
+            let u_data = u_data
+                .map(|own| of_others.map(|(x, u)| (x - d).abs() / COVERAGE + u.unwrap_or(0.0)).fold(own, f64::max));
             ComparedFlow {
                 data: measured.id.clone(),
                 load: load.clone(),

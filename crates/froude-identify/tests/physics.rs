@@ -449,6 +449,7 @@ fn known_coefficients_of_one_record_keep_their_covariance() {
         interval_95: Some([value - 1.0, value + 1.0]),
         effective_dof: None,
         unconstrained: None,
+        range_95: None,
     };
     let estimate = Estimate {
         id: "hull/added_mass_6x6".to_owned(),

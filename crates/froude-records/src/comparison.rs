@@ -223,20 +223,20 @@ impl Validation {
     }
 }
 
-/// An F test of a simple model inside a general one, fitted to the same observations.
+/// An F test of a law beside the terms that another one would add to it, both fitted to the same observations.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct NestedTest {
-    /// The restricted model.
-    pub simple: String,
-    /// The model it is nested in.
-    pub general: String,
+pub struct AddedTerms {
+    /// The law.
+    pub law: String,
+    /// The law that has the terms.
+    pub of: String,
     /// Load component.
     pub component: String,
     /// The statistic.
     pub f: f64,
-    /// Degrees of freedom of numerator and denominator: restrictions, residual.
+    /// Degrees of freedom of numerator and denominator: terms, residual.
     pub dof: [f64; 2],
-    /// Chance of a larger statistic if the simple model is true.
+    /// Chance of a larger statistic if the law is true.
     pub p: f64,
 }
 

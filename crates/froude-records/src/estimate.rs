@@ -131,9 +131,12 @@ pub struct Coefficient {
     /// Its part from the declared budget (GUM type B).
     #[serde(default)]
     pub type_b: Option<f64>,
-    /// 95 % interval, cut by the bounds.
+    /// 95 % interval if the law is true, cut by the bounds.
     #[serde(default)]
     pub interval_95: Option<[f64; 2]>,
+    /// Envelope of its 95 % intervals in all laws of the source that contain it and that the data do not contradict; null where no laws were compared, or the data contradict this one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range_95: Option<[f64; 2]>,
     /// Effective degrees of freedom of the combined uncertainty; null when infinite or none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effective_dof: Option<f64>,
@@ -495,21 +498,18 @@ pub struct Estimate {
     /// Why it is recommended, or why it is not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// The larger law that it is a formula of: nearly the same loads by fewer coefficients, no narrower at any observation.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub formula_of: Option<FormulaOf>,
+    /// Ids of all estimates of its source, in this file, whose laws the data do not contradict: the band of a force is the envelope of theirs, and the range of a coefficient that of its
+    /// intervals in them. Empty where no laws were compared.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_contradicted: Vec<String>,
 }
 
-/// What a law chosen by the data is of the larger one, whose intervals hold.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FormulaOf {
-    /// Id of the estimate of the larger law.
-    pub estimate: String,
-    /// Largest difference of the two laws over the observations, by load.
-    pub largest_difference: IndexMap<String, Measured>,
-    /// Factor by which its standard uncertainties are widened, so that its band holds that of the larger law \[-\].
-    pub widened: f64,
+impl Coefficient {
+    /// Its range, where other laws make that wider than its interval.
+    #[must_use]
+    pub fn wider_range(&self) -> Option<[f64; 2]> {
+        self.range_95.filter(|range| self.interval_95.is_none_or(|own| range[0] < own[0] || own[1] < range[1]))
+    }
 }
 
 impl Estimate {
@@ -582,6 +582,12 @@ impl EstimateFile {
     pub fn data_of<'a>(&'a self, estimate: &'a Estimate) -> impl Iterator<Item = &'a DataFile> {
         estimate.data.iter().filter_map(|key| self.data.get(key))
     }
+}
+
+/// Of all estimates of a file, the others of one's source whose laws the data do not contradict.
+#[must_use]
+pub fn beside<'a>(all: impl IntoIterator<Item = &'a Estimate>, estimate: &Estimate) -> Vec<&'a Estimate> {
+    all.into_iter().filter(|e| e.id != estimate.id && estimate.not_contradicted.contains(&e.id)).collect()
 }
 
 /// Files by short keys, `d1`, `d2`, ….

@@ -405,14 +405,8 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
         diagnostics,
         recommended: _,
         reason: _,
-        formula_of,
+        not_contradicted: _,
     } = estimate;
-    if let Some(formula) = formula_of {
-        for (name, m) in &formula.largest_difference {
-            see(&|| format!("formula_of.largest_difference.{name}"), m.value);
-        }
-        see(&|| "formula_of.widened".to_owned(), formula.widened);
-    }
     for (section, measured) in [("law.constants", constants), ("refers_to", refers_to), ("sigma", sigma)] {
         for (name, m) in measured {
             see(&|| format!("{section}.{name}"), m.value);
@@ -467,6 +461,7 @@ fn numbers_of_coefficient(name: &str, coefficient: &Coefficient, see: &mut dyn F
         type_a,
         type_b,
         interval_95,
+        range_95,
         effective_dof,
     } = coefficient;
     let named = [
@@ -482,8 +477,10 @@ fn numbers_of_coefficient(name: &str, coefficient: &Coefficient, see: &mut dyn F
             see(&|| format!("coefficients.{name}.{key}"), *number);
         }
     }
-    for end in interval_95.iter().flatten() {
-        see(&|| format!("coefficients.{name}.interval_95"), *end);
+    for (key, ends) in [("interval_95", interval_95), ("range_95", range_95)] {
+        for end in ends.iter().flatten() {
+            see(&|| format!("coefficients.{name}.{key}"), *end);
+        }
     }
 }
 

@@ -505,6 +505,7 @@ mod tests {
             interval_95: None,
             effective_dof: None,
             unconstrained: None,
+            range_95: None,
         };
         assert_eq!(coefficient(&c), MISSING);
         assert_eq!(coefficient_expanded(&c), MISSING);

@@ -287,7 +287,7 @@ impl Page<'_> {
                 parts.push(self.tables.selection(source));
             }
             if !source.tests.is_empty() {
-                parts.push(self.tables.nested(source));
+                parts.push(self.tables.added_terms(source));
             }
         }
         if let Some(estimate) = shown
@@ -446,7 +446,10 @@ fn summary_of(i: usize, source: &SourceSection) -> Markup {
             @if let Some(best) = best {
                 ul class="keys" {
                     @for (name, c) in &best.coefficients {
-                        li { (tables::named(name, c)) span { (tables::expanded(c, best)) } }
+                        li {
+                            (tables::named(name, c)) span { (tables::expanded(c, best)) }
+                            @if let Some(ends) = c.wider_range() { span class="kind" { "range " (number::interval(ends)) } }
+                        }
                     }
                 }
             }

@@ -4,7 +4,7 @@
 mod sample;
 
 use froude_records::comparison::{
-    CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LargestLoad, LoadComparison, NestedTest,
+    AddedTerms, CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LargestLoad, LoadComparison,
     Side, Verdict,
 };
 use froude_records::estimate::{Coefficient, Estimate, Measured, Range, Status};
@@ -149,6 +149,7 @@ fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
         interval_95: None,
         effective_dof: None,
         unconstrained: None,
+        range_95: None,
     }
 }
 
@@ -160,7 +161,7 @@ fn estimate(source: &str, model: &str, coefficients: &[(&str, Coefficient)]) -> 
         law: froude_records::estimate::Law { name: model.to_owned(), ..Default::default() },
         coefficients: coefficients.iter().map(|(n, c)| ((*n).to_owned(), c.clone())).collect(),
         recommended: true,
-        formula_of: None,
+        not_contradicted: Vec::new(),
         ..Estimate::default()
     }
 }
@@ -294,7 +295,7 @@ fn hostile_names_are_escaped_everywhere() {
                 cross_validation: Err(h()),
                 ..SelectionRow::default()
             }],
-            tests: vec![NestedTest { simple: h(), general: h(), component: h(), ..NestedTest::default() }],
+            tests: vec![AddedTerms { law: h(), of: h(), component: h(), ..AddedTerms::default() }],
             recommendation: h(),
         }],
         published: vec![e],
@@ -609,7 +610,7 @@ proptest! {
             selection: vec![SelectionRow { model: "f4".to_owned(), component: "f_x".to_owned(), sigma: values[0],
                 delta_aicc: Ok(values[1]), cross_validation: Ok(values[2]), range_blocks: vec![("r".to_owned(), values[3])],
                 lack_of_fit_p: Some(values[4]), ..SelectionRow::default() }],
-            tests: vec![NestedTest { f: values[5], dof: [values[6], values[7]], p: values[0], ..NestedTest::default() }],
+            tests: vec![AddedTerms { f: values[5], dof: [values[6], values[7]], p: values[0], ..AddedTerms::default() }],
             ..SourceSection::default()
         };
         let report = Report {

@@ -4,10 +4,10 @@
 //!
 //! **Covariance.** As the records state it. Errors that two estimates of one file share by their key make a covariance between them; estimates of two files have none.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use froude_hydro::{DragModel, Link as Section, Setting};
-use froude_records::estimate::{Covariance, Estimate, OWN, Range, Status};
+use froude_records::estimate::{Covariance, Estimate, OWN, Range, Status, beside};
 use froude_records::robot::{AddedFile, AddedForm, DragForm, FromRecord, RobotFile};
 
 use crate::added::{Added, added_masses, c_a_of};
@@ -70,9 +70,12 @@ struct Fitted {
 impl Fitted {
     fn new(from: &FromRecord) -> Result<Self, RobotError> {
         let (mut record, at) = selected(from)?;
-        let estimate = record.estimates.swap_remove(at);
+        Ok(Self::at(&from.path, record.estimates.swap_remove(at)))
+    }
+
+    fn at(path: &Path, estimate: Estimate) -> Self {
         let covariance = estimate.covariance();
-        Ok(Self { path: from.path.clone(), estimate, covariance })
+        Self { path: path.to_owned(), estimate, covariance }
     }
 
     fn number(&self, name: &str, unit: &str, value: f64) -> Number {
@@ -128,7 +131,24 @@ impl Blueprint {
     ///
     /// [`RobotError`]: records that cannot be read, estimates that are none of a robot, numbers without what they refer to.
     pub fn of(file: &RobotFile) -> Result<Self, RobotError> {
-        let drag = Fitted::new(&file.drag)?;
+        Self::by(file, Fitted::new(&file.drag)?)
+    }
+
+    /// That of the estimate, and one for each other law of its source that the data do not contradict and a robot can have.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::of`], of the estimate itself.
+    pub fn of_all_laws(file: &RobotFile) -> Result<Vec<Self>, RobotError> {
+        let own = Self::of(file)?;
+        let (record, at) = selected(&file.drag)?;
+        let others = beside(&record.estimates, &record.estimates[at]).into_iter();
+        let others = others.map(|estimate| Fitted::at(&file.drag.path, estimate.clone()));
+        let others: Vec<Self> = others.filter_map(|drag| Self::by(file, drag).ok()).collect();
+        Ok(std::iter::once(own).chain(others).collect())
+    }
+
+    fn by(file: &RobotFile, drag: Fitted) -> Result<Self, RobotError> {
         let setting = setting(file, &drag.estimate)?;
         let (model, values) = law(&file.drag, &drag.estimate)?;
         let distribution = if file.model.is_by_origin { Distribution::ByOrigin } else { Distribution::Uniform };

@@ -47,6 +47,13 @@ pub struct Beyond {
     pub refused: usize,
 }
 
+impl std::ops::AddAssign for Beyond {
+    fn add_assign(&mut self, other: Self) {
+        self.brought_back += other.brought_back;
+        self.refused += other.refused;
+    }
+}
+
 /// Why nothing is drawn.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -216,6 +223,13 @@ fn root(c: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, usize> {
         }
     }
     Ok(l)
+}
+
+/// The envelope of the intervals of several laws, each from so many numbers in turn; `None` where one of them has fewer than two.
+#[must_use]
+pub fn envelope_95<'a>(laws: impl IntoIterator<Item = &'a [f64]>) -> Option<[f64; 2]> {
+    let each: Option<Vec<[f64; 2]>> = laws.into_iter().map(interval_95).collect();
+    each?.into_iter().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }
 
 /// The interval that leaves 2.5 % of the distribution of the numbers on either side, as far as there are numbers; `None` of fewer than two.

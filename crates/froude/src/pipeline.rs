@@ -253,7 +253,8 @@ impl Gathered {
         let observations = reduce(campaign, source)?;
         let of_source = |f: Finding| f.of_source(&source.name);
         self.findings.extend(observations.findings.into_iter().map(of_source));
-        let all: Vec<&Estimate> = self.sources.iter().flat_map(Answer::estimates).filter(|e| e.recommended).collect();
+        let every: Vec<&Estimate> = self.sources.iter().flat_map(Answer::estimates).collect();
+        let all: Vec<&Estimate> = every.iter().copied().filter(|e| e.recommended).collect();
         if all.is_empty() {
             let what =
                 "has role = \"validation\", and no other source of the campaign gave an estimate to be held against it"
@@ -261,7 +262,7 @@ impl Gathered {
             return Err(IdentifyError::Campaign { place: format!("source {:?}", source.name), what }.into());
         }
         let seen = self.seen(&all, source, campaign, &observations.data);
-        let found = of_rows(&all, observations.data)?.seen(seen);
+        let found = of_rows(&every, &all, observations.data)?.seen(seen);
         for predicted in &found.estimates {
             self.findings.push(found.finding(predicted).of_source(&source.name));
             let section = found.section(predicted);

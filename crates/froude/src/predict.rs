@@ -10,7 +10,7 @@ use froude_identify::lint::repeats::identical_copies;
 use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate};
 use froude_identify::reduce::rows_of;
 use froude_records::csv_table::csv_bytes;
-use froude_records::estimate::{Estimate, EstimateFile};
+use froude_records::estimate::{Estimate, EstimateFile, beside};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
 use froude_records::json::read_estimates;
@@ -82,7 +82,7 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
             seen.insert(estimate.id.clone(), why);
         }
     }
-    let mut out = of_rows(&chosen, data)?.seen(seen);
+    let mut out = of_rows(&record.estimates.iter().collect::<Vec<_>>(), &chosen, data)?.seen(seen);
     out.findings = [findings, out.findings].concat();
     if let Some(folder) = &job.out {
         std::fs::create_dir_all(folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
@@ -97,13 +97,15 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
     Ok(out)
 }
 
-/// The same of rows that are reduced already.
+/// The same of rows that are reduced already; `all` are the estimates that those may have laws beside them in.
 ///
 /// # Errors
 ///
 /// A law that reads what the rows lack.
-pub fn of_rows(estimates: &[&Estimate], data: Dataset) -> Result<Prediction, Error> {
-    let of = |estimate: &&Estimate| of_estimate(estimate, &with_density(&data, estimate));
+pub fn of_rows(all: &[&Estimate], estimates: &[&Estimate], data: Dataset) -> Result<Prediction, Error> {
+    let of = |estimate: &&Estimate| {
+        of_estimate(estimate, &beside(all.iter().copied(), estimate), &with_density(&data, estimate))
+    };
     let findings = estimates.iter().filter_map(|estimate| without_bands(estimate)).collect();
     let estimates = estimates.iter().map(of).collect::<Result<_, _>>()?;
     Ok(Prediction { estimates, findings, written: Vec::new(), seen: IndexMap::new(), data })
@@ -307,14 +309,15 @@ impl Prediction {
                 format!("{}, {}", row.load, row.unit),
                 number(row.measured),
                 number(Some(row.predicted)),
-                number(row.half_width_95),
+                row.band_95
+                    .map_or_else(dash, |[low, high]| format!("{} to {}", significant(low, 3), significant(high, 3))),
                 number(row.error()),
                 number(row.e_n),
                 if row.outside.is_empty() { String::new() } else { row.outside.join(", ") },
             ]
         };
         if !worst.is_empty() {
-            let head = ["row", "load", "measured", "predicted", "± 95 %", "error", "E_n", "outside its range of"];
+            let head = ["row", "load", "measured", "predicted", "95 % band", "error", "E_n", "outside its range of"];
             tables.push(TextTable {
                 caption: "rows with the largest |E_n|".to_owned(),
                 head: head.map(str::to_owned).to_vec(),
@@ -322,6 +325,12 @@ impl Prediction {
             });
         }
         let mut paragraphs: Vec<String> = predicted.joint.iter().map(joint).collect();
+        if predicted.laws.len() > 1 {
+            paragraphs.push(format!(
+                "The bands and E_n are those of the envelope of all laws that the data of the record do not contradict ({}), and χ² that of the law which agrees best.",
+                predicted.laws.join(", ")
+            ));
+        }
         if let Some(why) = self.seen.get(&predicted.id) {
             paragraphs.push(format!("On {}", no_validation(why)));
         }
@@ -369,7 +378,8 @@ impl Prediction {
             put("", &load.unit, &|row| row.measured);
             put("_predicted", &load.unit, &|row| Some(row.predicted));
             put("_u_law", &load.unit, &|row| row.u_law);
-            put("_half_width_95", &load.unit, &|row| row.half_width_95);
+            put("_low_95", &load.unit, &|row| row.band_95.map(|[low, _]| low));
+            put("_high_95", &load.unit, &|row| row.band_95.map(|[_, high]| high));
             put("_scatter", &load.unit, &|row| row.scatter);
             put("_error", &load.unit, &Row::error);
             put("_e_n", "1", &|row| row.e_n);
@@ -397,7 +407,7 @@ impl Prediction {
                 "unit": row.unit,
                 "predicted": row.predicted,
                 "u_law": row.u_law,
-                "half_width_95": row.half_width_95,
+                "band_95": row.band_95,
                 "measured": row.measured,
                 "scatter": row.scatter,
                 "error": row.error(),
@@ -412,6 +422,7 @@ impl Prediction {
             json!({
                 "estimate": predicted.id,
                 "law": predicted.law,
+                "laws": predicted.laws,
                 "fitted_to_these_rows": self.seen.get(&predicted.id),
                 "joint": joint,
                 "rows": predicted.rows.iter().map(row).collect::<Vec<_>>(),

@@ -65,7 +65,7 @@ fn one_number_over_all_rows_rejects_as_often_as_it_says() {
             beyond += usize::from(row.e_n.unwrap().abs() > 1.0);
             let u = [0.3, 0.5, 0.7, 0.9, 1.0][row.row / 2];
             let truth = -TRUTH[0] * u - TRUTH[1] * u * u;
-            outside_band += usize::from((truth - row.predicted).abs() > row.half_width_95.unwrap());
+            outside_band += usize::from(!(row.band_95.unwrap()[0]..=row.band_95.unwrap()[1]).contains(&truth));
         }
     }
     let part = |n: usize, of: usize| n as f64 / of as f64;
@@ -118,7 +118,7 @@ fn a_record_of_clusters_has_no_p_and_no_band_where_one_cluster_decides() {
         let found = predict(&asked(place("days").join("estimate.json"), place("new.csv"))).unwrap();
         assert!(found.estimates[0].joint.is_some() && joint_p(&found).is_none());
         let rows = &found.estimates[0].rows;
-        assert!(rows.iter().all(|row| row.half_width_95.is_some() == has_band && row.e_n.is_some() == has_band));
+        assert!(rows.iter().all(|row| row.band_95.is_some() == has_band && row.e_n.is_some() == has_band));
         assert_eq!(found.findings.iter().any(|f| f.code == "no-band"), !has_band, "{:?}", found.findings);
     }
 }
@@ -151,7 +151,7 @@ fn what_lies_outside_is_flagged_and_a_changed_body_is_seen() {
     assert!(joint_p(&found).is_none() && found.estimates[0].rows.iter().all(|row| row.measured.is_none()));
     let text = std::fs::read_to_string(&found.written[0]).unwrap();
     assert!(
-        text.starts_with("line [1],speed [m/s]") && text.contains("f_x_half_width_95 [N]") && !text.contains("f_x_e_n"),
+        text.starts_with("line [1],speed [m/s]") && text.contains("f_x_low_95 [N]") && !text.contains("f_x_e_n"),
         "{text}"
     );
     assert_eq!(text.lines().count(), 3);

@@ -270,6 +270,7 @@ fn coefficient(c: &ServoCoefficient, dof: Option<f64>) -> Coefficient {
         interval_95: Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite())),
         effective_dof: dof,
         unconstrained: None,
+        range_95: None,
     }
 }
 

@@ -48,6 +48,7 @@ pub(super) fn of_response(
             interval_95: value.zip(half).map(|(x, half)| [x - half, x + half]),
             effective_dof: own.and_then(|(_, dof)| finite(dof)),
             unconstrained: None,
+            range_95: None,
         };
         (name.to_owned(), coefficient)
     });

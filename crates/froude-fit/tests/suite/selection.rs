@@ -1,57 +1,9 @@
 //! Choosing between models.
 
-use froude_fit::select::{Score, lack_of_fit, leave_one_group_out, nested_tests, range_block};
-use froude_fit::{Constraint, Options, Problem, fit};
+use froude_fit::select::{Score, lack_of_fit, leave_one_group_out, range_block};
+use froude_fit::{Options, fit};
 
-use crate::{assert_close, normal, polynomial, rng, single};
-
-/// F of one dropped column is the square of its t.
-#[test]
-fn f_of_one_restriction_is_t_squared() {
-    let x: Vec<f64> = (0..12).map(f64::from).collect();
-    let mut rng = rng(1);
-    let y: Vec<f64> = x.iter().map(|x| 1.0 + 0.3 * x + 0.5 * normal(&mut rng)).collect();
-    let problem = single(&polynomial(&x, 3), &y);
-    let full = fit(&problem, &Options::default()).unwrap();
-    let c = &full.coefficients[2];
-    let t = c.value.unwrap() / c.standard.unwrap();
-    let restriction = Constraint { row: vec![0.0, 0.0, 1.0], value: 0.0 };
-    let tests = nested_tests(&problem, &Options::default(), &[restriction]).unwrap();
-    let test = tests[0].score.as_ref().unwrap();
-    assert_close(test.f, t * t, 1e-10);
-    assert_eq!(test.dof, [1.0, 9.0]);
-    assert_close(test.p, froude_fit::distribution::t_two_sided(t, 9.0), 1e-10);
-}
-
-/// A restriction of one component leaves the other unscored, and its rows alone.
-#[test]
-fn a_restriction_is_tested_on_its_own_component() {
-    let mut rng = rng(2);
-    let n = 20;
-    let problem = Problem {
-        design: faer::Mat::from_fn(n, 4, |i, j| {
-            let x = (i / 2) as f64;
-            match (i % 2, j) {
-                (0, 0) | (1, 2) => x + 1.0,
-                (0, 1) | (1, 3) => x * x,
-                _ => 0.0,
-            }
-        }),
-        response: (0..n).map(|i| (i / 2) as f64 + 1.0 + 0.1 * normal(&mut rng)).collect(),
-        weight: None,
-        component: (0..n).map(|i| i % 2).collect(),
-        components: vec!["f_x".into(), "f_y".into()],
-        cluster: None,
-        names: crate::names(4),
-    };
-    // b0 = 2 b1: not true of x + 1.
-    let restriction = Constraint { row: vec![1.0, -2.0, 0.0, 0.0], value: 0.0 };
-    let tests = nested_tests(&problem, &Options::default(), &[restriction]).unwrap();
-    let test = tests[0].score.as_ref().unwrap();
-    assert!(test.p < 1e-6);
-    assert_eq!(test.dof, [1.0, 8.0]);
-    assert_eq!(tests[1].score, Score::NotScorable { reason: "the restrictions do not touch this component".into() });
-}
+use crate::{assert_close, polynomial, single};
 
 #[test]
 fn leaving_groups_out_by_hand() {

@@ -4,14 +4,36 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 use froude_fit::distribution::f_upper;
 use froude_records::comparison::JointComparison;
-use froude_records::estimate::{Estimate, Status};
+use froude_records::estimate::{Estimate, Status, beside};
 
 use super::coefficients::{SAME_DATA_JOINTLY, no_interval, not_free};
 use crate::common::Common;
 use crate::compare::named::Named;
 
-/// χ² = dᵀC⁻¹d over the coefficients that both estimate, C = C_a + C_b less what common errors make of the covariance between them.
+/// χ² of two estimates of one law, or of the law that agrees best among those that the data of both sources do not contradict.
 pub(super) fn joint(
+    [a, b]: [&Named<'_>; 2],
+    ids: [&str; 2],
+    common: &Common<'_>,
+    is_same_data: bool,
+) -> JointComparison {
+    let mut out = of_law([a, b], ids, common, is_same_data);
+    for first in beside(&a.record.estimates, a.estimate) {
+        let others = beside(&b.record.estimates, b.estimate);
+        let Some(second) = others.into_iter().find(|e| e.law.name == first.law.name) else { continue };
+        let (of_a, of_b) = (Named { estimate: first, ..*a }, Named { estimate: second, ..*b });
+        let other = of_law([&of_a, &of_b], ids, &Common::of(first, second), is_same_data);
+        if other.p.zip(out.p).is_some_and(|(other, own)| other > own) {
+            let note =
+                format!("by {}, of the laws that the data do not contradict the one that agrees best", other.model);
+            out = JointComparison { model: out.model, note, ..other };
+        }
+    }
+    out
+}
+
+/// χ² = dᵀC⁻¹d over the coefficients that both estimate, C = C_a + C_b less what common errors make of the covariance between them.
+fn of_law(
     [a, b]: [&Named<'_>; 2],
     [first, second]: [&str; 2],
     common: &Common<'_>,

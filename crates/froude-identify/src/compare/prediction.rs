@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use froude_records::comparison::{Comparison, LoadComparison, coverage_note};
-use froude_records::estimate::{Estimate, Range};
+use froude_records::estimate::{Estimate, Range, beside};
 use froude_records::finding::{Finding, Severity};
 use froude_records::units::Dimension;
 
@@ -109,26 +109,41 @@ impl Points {
 
 /// Forces of one estimate at these points.
 struct Prediction<'a> {
-    named: &'a Named<'a>,
+    named: Named<'a>,
     label: &'a String,
     law: ForceLaw,
     force: Vec<f64>,
     slopes: Mat<f64>,
+    /// The same of the other laws of its source that the data do not contradict.
+    others: Vec<Self>,
 }
 
 impl<'a> Prediction<'a> {
     /// `None` where a coefficient has no value, or the law needs what the points do not have.
-    fn of(named: &'a Named<'a>, label: &'a String, data: &Dataset) -> Option<Self> {
+    fn of(named: &Named<'a>, label: &'a String, data: &Dataset) -> Option<Self> {
+        let others = beside(&named.record.estimates, named.estimate).into_iter();
+        let others = others.filter_map(|estimate| Self::of_law(&Named { estimate, ..*named }, label, data)).collect();
+        Some(Self { others, ..Self::of_law(named, label, data)? })
+    }
+
+    /// Without others.
+    fn of_law(named: &Named<'a>, label: &'a String, data: &Dataset) -> Option<Self> {
         let law = ForceLaw::of_estimate(named.estimate, data).ok()?;
         let values: Option<Vec<f64>> =
             law.coefficients.iter().map(|c| named.estimate.coefficients.get(&c.name)?.value).collect();
         let values = values?;
         let (force, slopes) = (law.predict(data, &values).ok()?, law.regressors(data, &values).ok()?);
-        Some(Self { named, label, law, force, slopes })
+        Some(Self { named: *named, label, law, force, slopes, others: Vec::new() })
+    }
+
+    /// The load of one point, with the envelope of all laws.
+    fn number(&self, component: &str, point: usize, points: usize) -> Number<'_> {
+        let others: Vec<Number<'_>> = self.others.iter().map(|of| of.by_law(component, point, points)).collect();
+        self.by_law(component, point, points).around(&others)
     }
 
     /// The load of one point, with its slope in each coefficient.
-    fn number(&self, component: &str, point: usize, points: usize) -> Number<'_> {
+    fn by_law(&self, component: &str, point: usize, points: usize) -> Number<'_> {
         let Some(r) = self.law.responses.iter().position(|name| name == component) else {
             return Number::of_nothing(self.named.estimate);
         };
@@ -165,7 +180,7 @@ fn doubts(predictions: &[Prediction<'_>]) -> Vec<Finding> {
 /// Each load at each point by the first estimate, beside every other.
 fn loads(predictions: &[Prediction<'_>], points: &Points) -> Vec<LoadComparison> {
     let data = &points.data;
-    let named: Vec<Named<'_>> = predictions.iter().map(|p| *p.named).collect();
+    let named: Vec<Named<'_>> = predictions.iter().map(|p| p.named).collect();
     let origins = origins(&named);
     let is_same_data: Vec<bool> =
         (0..named.len()).map(|j| same_data([&named[0], &named[j]], [&origins[0], &origins[j]])).collect();

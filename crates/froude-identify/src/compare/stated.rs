@@ -14,10 +14,12 @@ pub(crate) struct Stated {
     pub dof: Option<f64>,
     /// Whether the record gives no interval, as one cluster decides the number.
     pub is_refused: bool,
+    /// How far other laws that the data do not contradict reach beyond its interval, at most.
+    pub beyond: f64,
 }
 
 impl Stated {
-    /// As a side of a comparison: with the coverage factor k of the 95 % uncertainty U = k·u.
+    /// As a side of a comparison: with the coverage factor k of the 95 % uncertainty U = k·u, and what other laws add to it.
     pub(super) fn of(self, source: &str) -> Side {
         let coverage_factor =
             self.standard.filter(|_| !self.is_refused).map(|_| self.dof.map_or(NORMAL_COVERAGE, coverage_factor));
@@ -27,7 +29,7 @@ impl Stated {
             standard_uncertainty: self.standard,
             effective_dof: self.dof,
             coverage_factor,
-            expanded_uncertainty: coverage_factor.zip(self.standard).map(|(k, u)| k * u),
+            expanded_uncertainty: coverage_factor.zip(self.standard).map(|(k, u)| k * u + self.beyond),
         }
     }
 }

@@ -10,16 +10,24 @@ use crate::large::limits::MOST_CLUSTERS;
 use crate::law::{ForceLaw, Kind};
 use crate::regression::{Condensed, ModelFit};
 
-/// The columns of `[X | y]` that one load of a law has, and their triangles so far.
+/// Larger regressors have no square.
+const LARGEST: f64 = 1e150;
+
+/// Triangles of `[X | y]` so far, a load each, where X has the columns of all laws: of two laws each is asked for the terms of the other.
 pub(super) struct Fold<'a> {
-    law: &'a ForceLaw,
     source: &'a str,
+    laws: Vec<&'a ForceLaw>,
+    /// Why a law is left out.
+    failed: Vec<Option<IdentifyError>>,
     loads: Vec<Load>,
+    /// Rows so far.
+    n: usize,
 }
 
 struct Load {
-    /// Coefficients that it has.
-    columns: Vec<usize>,
+    name: String,
+    /// Law, coefficient, and place of the load among those of the law.
+    columns: Vec<(usize, usize, usize)>,
     rows: Rows,
 }
 
@@ -30,82 +38,162 @@ enum Rows {
 
 impl<'a> Fold<'a> {
     /// Of no rows.
-    pub(super) fn new(law: &'a ForceLaw, source: &'a str, is_clustered: bool) -> Self {
-        let load = |r: usize| {
-            let columns = columns(law, r);
+    pub(super) fn new(laws: Vec<&'a ForceLaw>, source: &'a str, is_clustered: bool) -> Self {
+        let mut loads: Vec<(String, Vec<(usize, usize, usize)>)> = Vec::new();
+        for (l, law) in laws.iter().enumerate() {
+            for (r, name) in law.responses.iter().enumerate() {
+                let own = columns(law, r).into_iter().map(|j| (l, j, r));
+                match loads.iter_mut().find(|(other, _)| other == name) {
+                    Some((_, columns)) => columns.extend(own),
+                    None => loads.push((name.clone(), own.collect())),
+                }
+            }
+        }
+        let load = |(name, columns): (String, Vec<(usize, usize, usize)>)| {
             let shape = Shape { regressors: columns.len(), responses: 1 };
             let rows = if is_clustered {
                 Rows::Clustered(ClusterAccumulator::new(shape, MOST_CLUSTERS))
             } else {
                 Rows::All(Accumulator::new(shape))
             };
-            Load { columns, rows }
+            Load { name, columns, rows }
         };
-        Self { law, source, loads: (0..law.responses.len()).map(load).collect() }
+        let failed = laws.iter().map(|_| None).collect();
+        Self { source, failed, loads: loads.into_iter().map(load).collect(), laws, n: 0 }
     }
 
     /// Takes in a chunk; `clusters` has the cluster of each row.
-    pub(super) fn take(&mut self, data: &Dataset, clusters: &[u64]) -> Result<(), IdentifyError> {
-        let design = self.law.regressors(data, &[])?;
-        let measured = self.law.measured(data)?;
+    pub(super) fn take(&mut self, data: &Dataset, clusters: &[u64]) {
         let n = data.rows;
-        for (r, load) in self.loads.iter_mut().enumerate() {
-            let rows = r * n..(r + 1) * n;
-            let regressors: Vec<&[f64]> = load.columns.iter().map(|&j| &design.col_as_slice(j)[rows.clone()]).collect();
-            let response = &measured[rows.clone()];
-            let taken = match &mut load.rows {
-                Rows::All(all) => all.push(&regressors, &[response]),
-                Rows::Clustered(all) => all.push(clusters, &regressors, &[response]),
+        let designs: Vec<Mat<f64>> = (0..self.laws.len()).map(|l| self.design(l, data)).collect();
+        for load in &mut self.loads {
+            let of = |&(l, j, r): &(usize, usize, usize)| &designs[l].col_as_slice(j)[r * n..(r + 1) * n];
+            let regressors: Vec<&[f64]> = load.columns.iter().map(of).collect();
+            let taken = match (data.values(&load.name), &mut load.rows) {
+                (None, _) => continue,
+                (Some(response), Rows::All(all)) => all.push(&regressors, &[response]),
+                (Some(response), Rows::Clustered(all)) => all.push(clusters, &regressors, &[response]),
             };
-            taken.map_err(|error| refused(self.law, self.source, &load.columns, error))?;
-        }
-        Ok(())
-    }
-
-    /// All rows, condensed.
-    pub(super) fn finish(self) -> Result<Condensed, IdentifyError> {
-        let Self { law, source, loads } = self;
-        let p = law.coefficients.len();
-        let (mut rows, mut response, mut component, mut cluster) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut observations = Vec::new();
-        let mut is_clustered = false;
-        for (r, load) in loads.into_iter().enumerate() {
-            let Load { columns, rows: all } = load;
-            let mut n = 0;
-            let mut put = |factor: &Factor, of: u64| {
-                n += factor.rows();
-                let width = columns.len() + 1;
-                for i in 0..width {
-                    let mut row = vec![0.0; p];
-                    for (k, &j) in columns.iter().enumerate() {
-                        row[j] = factor.entry(i, k);
-                    }
-                    rows.push(row);
-                    response.push(factor.entry(i, width - 1));
-                    component.push(r);
-                    cluster.push(usize::try_from(of).unwrap_or(usize::MAX));
-                }
+            let Err(error) = taken else { continue };
+            let why = match error {
+                StreamError::NotFinite { row, value, .. } => format!("the load is {value} in observation {}", row + 1),
+                other => other.to_string(),
             };
-            match all {
-                Rows::All(all) => put(&all.finish(), 0),
-                Rows::Clustered(all) => {
-                    is_clustered = true;
-                    let all = all.finish().map_err(|error| refused(law, source, &columns, error))?;
-                    all.iter().for_each(|(of, factor)| put(factor, of));
+            for (failed, law) in self.failed.iter_mut().zip(&self.laws) {
+                if failed.is_none() && law.responses.contains(&load.name) {
+                    *failed = Some(no_fit(law, self.source, why.clone()));
                 }
             }
-            observations.push(usize::try_from(n).unwrap_or(usize::MAX));
         }
-        let problem = fit::Problem {
-            design: Mat::from_fn(rows.len(), p, |i, j| rows[i][j]),
-            response,
-            weight: None,
-            component,
-            components: law.responses.clone(),
-            cluster: is_clustered.then_some(cluster),
-            names: law.coefficients.iter().map(|c| c.name.clone()).collect(),
+        self.n += n;
+    }
+
+    /// Regressors of a law; zero from where it is left out on.
+    fn design(&mut self, l: usize, data: &Dataset) -> Mat<f64> {
+        let law = self.laws[l];
+        let p = law.coefficients.len();
+        let nothing = || Mat::zeros(law.responses.len() * data.rows, p);
+        if self.failed[l].is_some() {
+            return nothing();
+        }
+        let found = law.regressors(data, &[]).and_then(|design| {
+            let bad = |j: &usize| design.col_as_slice(*j).iter().position(|x| x.is_nan() || x.abs() > LARGEST);
+            let Some((j, i)) = (0..p).find_map(|j| Some((j, bad(&j)?))) else { return Ok(design) };
+            let of = &law.coefficients[j].name;
+            let row = self.n + i % data.rows + 1;
+            let why = format!("the regressor of {of} is {} in observation {row}", design[(i, j)]);
+            Err(no_fit(law, self.source, why))
+        });
+        found.unwrap_or_else(|error| {
+            self.failed[l] = Some(error);
+            nothing()
+        })
+    }
+
+    /// All rows, condensed, for each law.
+    pub(super) fn finish(self) -> Vec<Result<Condensed, IdentifyError>> {
+        let Self { source, laws, mut failed, loads, .. } = self;
+        let mut all: Vec<Triangles> = Vec::new();
+        for Load { name, columns, rows } in loads {
+            let mut triangles = Triangles { name, columns, of: Vec::new(), is_clustered: false, observations: 0 };
+            match rows {
+                Rows::All(rows) => triangles.put(0, &rows.finish()),
+                Rows::Clustered(rows) => match rows.finish() {
+                    Ok(rows) => {
+                        triangles.is_clustered = true;
+                        rows.iter().for_each(|(of, factor)| triangles.put(of, factor));
+                    }
+                    Err(error) => {
+                        let gives = |(_, law): &(usize, &&ForceLaw)| law.responses.contains(&triangles.name);
+                        for (l, law) in laws.iter().enumerate().filter(gives) {
+                            failed[l].get_or_insert_with(|| no_fit(law, source, error.to_string()));
+                        }
+                    }
+                },
+            }
+            all.push(triangles);
+        }
+        let is_left: Vec<bool> = failed.iter().map(Option::is_none).collect();
+        let condensed = |(l, failed): (usize, Option<IdentifyError>)| match failed {
+            Some(error) => Err(error),
+            None => Ok(condensed(l, &laws, &is_left, &all)),
         };
-        Ok(Condensed { problem, observations })
+        failed.into_iter().enumerate().map(condensed).collect()
+    }
+}
+
+/// All rows of a load as those of triangles.
+struct Triangles {
+    name: String,
+    columns: Vec<(usize, usize, usize)>,
+    /// Cluster, columns and load of each row.
+    of: Vec<(u64, Vec<f64>)>,
+    is_clustered: bool,
+    observations: u64,
+}
+
+impl Triangles {
+    fn put(&mut self, cluster: u64, factor: &Factor) {
+        let width = self.columns.len() + 1;
+        self.observations += factor.rows();
+        self.of.extend((0..width).map(|i| (cluster, (0..width).map(|k| factor.entry(i, k)).collect())));
+    }
+}
+
+/// The rows of one law, with the columns of the others on them.
+fn condensed(l: usize, laws: &[&ForceLaw], is_left: &[bool], all: &[Triangles]) -> Condensed {
+    let law = laws[l];
+    let of_law: Vec<&Triangles> =
+        law.responses.iter().filter_map(|load| all.iter().find(|triangles| triangles.name == *load)).collect();
+    let rows: Vec<(usize, &Triangles, &(u64, Vec<f64>))> =
+        of_law.iter().enumerate().flat_map(|(r, t)| t.of.iter().map(move |row| (r, *t, row))).collect();
+    let design = |of: usize| {
+        let mut out = Mat::zeros(rows.len(), laws[of].coefficients.len());
+        for (i, (_, triangles, (_, row))) in rows.iter().enumerate() {
+            for (k, (other, j, _)) in triangles.columns.iter().enumerate() {
+                if *other == of {
+                    out[(i, *j)] = row[k];
+                }
+            }
+        }
+        out
+    };
+    let is_clustered = of_law.iter().any(|t| t.is_clustered);
+    let cluster = |(_, _, (of, _)): &(usize, &Triangles, &(u64, Vec<f64>))| usize::try_from(*of).unwrap_or(usize::MAX);
+    let problem = fit::Problem {
+        design: design(l),
+        response: rows.iter().map(|(_, t, (_, row))| row[t.columns.len()]).collect(),
+        weight: None,
+        component: rows.iter().map(|(r, ..)| *r).collect(),
+        components: law.responses.clone(),
+        cluster: is_clustered.then(|| rows.iter().map(cluster).collect()),
+        names: law.coefficients.iter().map(|c| c.name.clone()).collect(),
+    };
+    let others = (0..laws.len()).filter(|other| *other != l && is_left[*other]);
+    Condensed {
+        problem,
+        observations: of_law.iter().map(|t| usize::try_from(t.observations).unwrap_or(usize::MAX)).collect(),
+        beside: others.map(|other| (laws[other].name.clone(), design(other))).collect(),
     }
 }
 
@@ -128,17 +216,7 @@ fn columns(law: &ForceLaw, r: usize) -> Vec<usize> {
     }
 }
 
-/// What keeps rows from being folded in, in the words of the fit.
-fn refused(law: &ForceLaw, source: &str, columns: &[usize], error: StreamError) -> IdentifyError {
-    let why = match error {
-        StreamError::NotFinite { row, column, value } => {
-            let of = columns
-                .get(column)
-                .map_or_else(|| "the load".to_owned(), |&j| format!("the regressor of {}", law.coefficients[j].name));
-            format!("{of} is {value} in observation {}", row + 1)
-        }
-        other => other.to_string(),
-    };
+fn no_fit(law: &ForceLaw, source: &str, why: String) -> IdentifyError {
     IdentifyError::NoFit { source_name: source.to_owned(), model: law.name.clone(), why }
 }
 

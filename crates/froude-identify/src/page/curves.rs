@@ -1,4 +1,4 @@
-//! Lines of the recommended law with their 95 % bands.
+//! Lines of the recommended law with the envelope of the 95 % bands of all laws that the data do not contradict.
 
 use froude_records::page::{Abscissa, Against, Curve};
 use froude_records::units::Dimension;
@@ -7,7 +7,9 @@ use super::points::abscissa;
 use super::settings::{frequent, settings_of_angle, settings_of_speed};
 use crate::IdentifyError;
 use crate::dataset::{Dataset, unit_text};
+use crate::envelope::{self, Band};
 use crate::regression::ModelFit;
+use crate::result::SourceResult;
 
 /// Places along a curve.
 const CURVE_POINTS: usize = 60;
@@ -17,9 +19,9 @@ const MOST_ANGLES: usize = 5;
 const MOST_SPEEDS: usize = 12;
 
 /// Lines of the recommended model: against speed at the most frequent angles, against angle at the most frequent speeds.
-pub(super) fn of(model: &ModelFit, data: &Dataset) -> Result<Vec<Curve>, IdentifyError> {
+pub(super) fn of(source: &SourceResult, model: &ModelFit, data: &Dataset) -> Result<Vec<Curve>, IdentifyError> {
     if let Some(channel) = abscissa(model, data) {
-        return other_curves(model, data, &channel);
+        return other_curves(source, model, data, &channel);
     }
     let mut out = Vec::new();
     for configuration in data.configurations() {
@@ -47,7 +49,7 @@ pub(super) fn of(model: &ModelFit, data: &Dataset) -> Result<Vec<Curve>, Identif
                 d.velocity_from_speed_and_angle();
             });
             let of = Along { configuration: &configuration, x: &x, against: Against::Speed { angle_rad: angle } };
-            out.extend(bands(model, &places, &of, &held)?);
+            out.extend(bands(source, model, &places, &of, &held)?);
         }
         if most > least {
             for speed in speeds {
@@ -58,14 +60,19 @@ pub(super) fn of(model: &ModelFit, data: &Dataset) -> Result<Vec<Curve>, Identif
                     d.velocity_from_speed_and_angle();
                 });
                 let of = Along { configuration: &configuration, x: &x, against: Against::Angle { speed_m_s: speed } };
-                out.extend(bands(model, &places, &of, &held)?);
+                out.extend(bands(source, model, &places, &of, &held)?);
             }
         }
     }
     Ok(out)
 }
 
-fn other_curves(model: &ModelFit, data: &Dataset, channel: &str) -> Result<Vec<Curve>, IdentifyError> {
+fn other_curves(
+    source: &SourceResult,
+    model: &ModelFit,
+    data: &Dataset,
+    channel: &str,
+) -> Result<Vec<Curve>, IdentifyError> {
     let Some(values) = data.values(channel) else { return Ok(Vec::new()) };
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -78,7 +85,7 @@ fn other_curves(model: &ModelFit, data: &Dataset, channel: &str) -> Result<Vec<C
         let held = held(model, data, &rows, &[channel]);
         let places = place(data, &rows, &held, &x, |d, x| d.put(channel, x.to_vec(), dimension));
         let of = Along { configuration: &configuration, x: &x, against: against.clone() };
-        out.extend(bands(model, &places, &of, &held)?);
+        out.extend(bands(source, model, &places, &of, &held)?);
     }
     Ok(out)
 }
@@ -117,33 +124,24 @@ struct Along<'a> {
 }
 
 fn bands(
+    source: &SourceResult,
     model: &ModelFit,
     places: &Dataset,
     along: &Along<'_>,
     held: &[Abscissa],
 ) -> Result<Vec<Curve>, IdentifyError> {
-    let coefficients = model.law_coefficients();
-    let y = model.law.predict(places, coefficients)?;
-    let slopes = model.law.regressors(places, coefficients)?;
-    let n = places.rows;
-    let mut out = Vec::new();
-    for (r, response) in model.law.responses.iter().enumerate() {
-        let scatter_dof = model.scatter_dof(&slopes, r * n..(r + 1) * n);
-        let row = |i: usize| (0..slopes.ncols()).map(|j| slopes[(r * n + i, j)]).collect::<Vec<f64>>();
-        let arms: Vec<[f64; 2]> = (0..n).map(|i| model.arms(&row(i), scatter_dof)).collect();
-        let y = &y[r * n..(r + 1) * n];
-        out.push(Curve {
-            configuration: along.configuration.to_owned(),
-            component: response.clone(),
-            unit: unit_text(places, response),
-            model: model.law.name.clone(),
-            against: along.against.clone(),
-            held: held.to_vec(),
-            x: along.x.to_vec(),
-            y: y.to_vec(),
-            low: y.iter().zip(&arms).map(|(y, [below, _])| y - below).collect(),
-            high: y.iter().zip(&arms).map(|(y, [_, above])| y + above).collect(),
-        });
-    }
-    Ok(out)
+    let bands = envelope::of_source(source, places)?;
+    let curve = |(response, bands): (&String, &[Band])| Curve {
+        configuration: along.configuration.to_owned(),
+        component: response.clone(),
+        unit: unit_text(places, response),
+        model: model.law.name.clone(),
+        against: along.against.clone(),
+        held: held.to_vec(),
+        x: along.x.to_vec(),
+        y: bands.iter().map(|band| band.load).collect(),
+        low: bands.iter().map(|band| band.low).collect(),
+        high: bands.iter().map(|band| band.high).collect(),
+    };
+    Ok(model.law.responses.iter().zip(bands.chunks(places.rows)).map(curve).collect())
 }

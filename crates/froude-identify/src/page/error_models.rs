@@ -6,7 +6,9 @@ use crate::dataset::unit_text;
 use crate::diagnosis::{FEWEST_FOR_SCATTER, unevenness};
 use crate::regression::ModelFit;
 use crate::result::SourceResult;
-use crate::selection::NO_EVIDENCE_BELOW;
+
+/// AICc differences below this are no evidence.
+const NO_EVIDENCE_BELOW: f64 = 2.0;
 
 /// What the fit of logarithms assumes, what the fit in the load's unit assumes, and which the residuals support:
 /// a sentence for every load that was fitted both ways.

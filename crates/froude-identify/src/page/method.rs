@@ -51,10 +51,9 @@ pub fn sentences(campaign: &Campaign, answers: &[Answer], records: &[Estimate]) 
     }
     if sources.iter().any(|s| s.models.len() > 1) {
         out.push(
-            "Recommended is the largest force model that the data determine and do not contradict (AICc at most 10 above the smallest): nothing but the list chose it, so that its \
-             intervals hold whichever of the models within it is true. Of the models whose AICc lies within 2 of the smallest (smaller differences are no evidence) the one with \
-             the fewest coefficients stands beside it as a formula, unless an F test against the best model rejects it at the 1 % level for some load; it is widened to hold the \
-             band of the recommended one."
+            "Recommended is the simplest force law that the data do not contradict: a law is contradicted where the terms of another one, added to it, differ from zero (F test, \
+             0.5 % over all that it is compared with). The 95 % interval of a coefficient holds if its law is true. The range of a coefficient is the envelope of its \
+             intervals in all laws that contain it and are not contradicted, and the band of a load the envelope of their bands: these hold whichever of the laws is true."
                 .to_owned(),
         );
     }

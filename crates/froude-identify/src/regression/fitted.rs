@@ -10,6 +10,7 @@ use froude_records::finding::Finding;
 
 use crate::dataset::{Dataset, GroupedBy};
 use crate::law::{CoefficientSpec, ForceLaw};
+use crate::regression::generalised::Whitened;
 use crate::uncertainty::{SharedError, coverage_factor};
 
 /// Fewest degrees of freedom of an interval by clusters; two equal ones less one would have one.
@@ -89,6 +90,8 @@ pub struct Condensed {
     pub problem: fit::Problem,
     /// Observations of each load.
     pub observations: Vec<usize>,
+    /// Columns of the other laws on the rows of the problem, by name.
+    pub beside: Vec<(String, Mat<f64>)>,
 }
 
 impl<'a> Settings<'a> {
@@ -119,12 +122,14 @@ pub struct ModelFit {
     pub specs: Vec<CoefficientSpec>,
     /// The stacked problem in its final linearisation.
     pub problem: fit::Problem,
+    /// Columns of the other laws on its rows, where these are condensed.
+    pub beside: Vec<(String, Mat<f64>)>,
     /// The options it was fitted with.
     pub options: fit::Options,
     /// The fit.
     pub fit: fit::Fit,
     /// The problem with rows whitened by declared errors that runs or setups share, where it was fitted so.
-    pub whitened: Option<fit::Problem>,
+    pub whitened: Option<Whitened>,
     /// Coefficient values, zero where undetermined, in the order of `specs`.
     pub coefficients: Vec<f64>,
     /// Combined uncertainty per coefficient, where it has one.

@@ -45,7 +45,7 @@ pub(crate) fn generalised(
     settings: Settings<'_>,
     (problem, options): (&fit::Problem, &fit::Options),
     fitted: &mut fit::Fit,
-) -> Result<Option<fit::Problem>, IdentifyError> {
+) -> Result<Option<Whitened>, IdentifyError> {
     let is_meant = settings.kind != SourceKind::Cfd
         && matches!(settings.scatter, Scatter::Classical)
         && settings.condensed.is_none()
@@ -79,7 +79,7 @@ pub(crate) fn generalised(
     let whitened = solved.whitened(problem);
     let Ok(found) = fit::fit(&whitened, options) else { return Ok(None) };
     solved.replace(fitted, found, problem, &sigma);
-    Ok(Some(whitened))
+    Ok(Some(Whitened { problem: whitened, root: solved.root }))
 }
 
 /// The error of each row by each group of each entry that runs or setups share: columns over all rows.
@@ -114,6 +114,33 @@ fn declared(
         }
     }
     Ok(out)
+}
+
+/// A problem whose rows are independent and of one size: L⁻¹X and L⁻¹y, with L the Cholesky factor of Ω.
+#[derive(Debug, Clone)]
+pub struct Whitened {
+    /// The problem.
+    pub problem: fit::Problem,
+    root: Mat<f64>,
+}
+
+impl Whitened {
+    /// Further columns of the same rows, L⁻¹Z.
+    pub(crate) fn whiten(&self, columns: &mut Mat<f64>) {
+        solve_lower_triangular_in_place(self.root.as_ref(), columns.as_mut(), Par::Seq);
+    }
+
+    /// ∂β/∂y from that by the whitened rows.
+    pub(crate) fn of_rows(&self, sensitivity: &Mat<f64>) -> Mat<f64> {
+        of_rows(&self.root, sensitivity)
+    }
+}
+
+/// S = S_w L⁻¹, as Lᵀ Sᵀ = S_wᵀ.
+fn of_rows(root: &Mat<f64>, sensitivity: &Mat<f64>) -> Mat<f64> {
+    let mut transposed = sensitivity.transpose().to_owned();
+    solve_upper_triangular_in_place(root.transpose(), transposed.as_mut(), Par::Seq);
+    transposed.transpose().to_owned()
 }
 
 /// Ω factored, and what follows from it.
@@ -185,10 +212,7 @@ impl Solved {
     fn replace(&self, fitted: &mut fit::Fit, found: fit::Fit, problem: &fit::Problem, sigma: &[f64]) {
         let (n, p) = (problem.n_rows(), problem.n_coefficients());
         let weight = |i: usize| problem.weight.as_ref().map_or(1.0, |w| w[i]);
-        // S = S_w L⁻¹: Lᵀ Sᵀ = S_wᵀ.
-        let mut transposed = found.sensitivity.transpose().to_owned();
-        solve_upper_triangular_in_place(self.root.transpose(), transposed.as_mut(), Par::Seq);
-        let s = transposed.transpose().to_owned();
+        let s = of_rows(&self.root, &found.sensitivity);
         let variance: Vec<f64> = (0..n).map(|i| sigma[problem.component[i]].powi(2) / weight(i)).collect();
         let covariance = Mat::from_fn(p, p, |a, b| (0..n).map(|i| s[(a, i)] * s[(b, i)] * variance[i]).sum::<f64>());
         let of_load: Vec<f64> = (0..sigma.len()).map(|c| self.dof(problem, c, sigma[c])).collect();

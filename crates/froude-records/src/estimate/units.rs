@@ -5,7 +5,7 @@
 //! | field | a unit other than SI |
 //! | --- | --- |
 //! | `coefficients` | converted: value, unconstrained, standard uncertainty and its parts, interval, rows and columns of `type_a`, rows of every `sensitivity` |
-//! | `refers_to`, `law.constants`, `sigma`, `validity`, `derived`, `formula_of.largest_difference`, parameters of `data` steps | converted |
+//! | `refers_to`, `law.constants`, `sigma`, `validity`, `derived`, parameters of `data` steps | converted |
 //! | `law.inputs`, `law.outputs` | rejected: a formula is evaluated in SI |
 //! | `comparison` | rejected: it is a result, not an input |
 //! | `errors`, `diagnostics` | no unit in the file: SI of the quantity |
@@ -133,12 +133,6 @@ fn estimate_to_si(e: &mut Estimate) -> Result<(), BadUnit> {
         differences(&unit, [standard_uncertainty]);
         ends(&unit, interval_95);
     }
-    if let Some(formula) = &mut e.formula_of {
-        for (name, m) in &mut formula.largest_difference {
-            let field = Field { path: &["formula_of", "largest_difference", name], expected: known_dimension(name) };
-            m.value = field.converted(&mut m.unit)?.difference_to_si(m.value);
-        }
-    }
     let law = e.law.name.clone();
     let mut factors = IndexMap::new();
     for (name, c) in &mut e.coefficients {
@@ -181,12 +175,14 @@ fn coefficient(c: &mut Coefficient, field: &Field<'_>) -> Result<f64, BadUnit> {
         type_a,
         type_b,
         interval_95,
+        range_95,
         effective_dof: _,
     } = c;
     let unit = field.converted(unit)?;
     values(&unit, [value, unconstrained]);
     differences(&unit, [standard_uncertainty, type_a, type_b]);
     ends(&unit, interval_95);
+    ends(&unit, range_95);
     Ok(unit.factor)
 }
 

@@ -143,7 +143,7 @@ impl From<EstimateV1> for Estimate {
             diagnostics: e.diagnostics,
             recommended: e.recommended,
             reason: e.reason,
-            formula_of: None,
+            not_contradicted: Vec::new(),
         }
     }
 }

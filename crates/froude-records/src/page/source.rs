@@ -4,7 +4,7 @@
 //! **Missing numbers.** `None` is printed as "—". A NaN or an infinity is treated like `None`; it is never printed as a number.
 
 use super::{Curve, Point};
-use crate::comparison::NestedTest;
+use crate::comparison::AddedTerms;
 use crate::estimate::Estimate;
 
 /// Everything about one source.
@@ -31,7 +31,7 @@ pub struct SourceSection {
     /// Models that were asked for and could not be fitted, each with the reason.
     pub not_fitted: Vec<(String, String)>,
     /// F tests between nested models.
-    pub tests: Vec<NestedTest>,
+    pub tests: Vec<AddedTerms>,
     /// Which model is recommended and why, in a sentence or two.
     pub recommendation: String,
 }

@@ -49,6 +49,7 @@ fn cell(c: &Coefficient, estimate: &Estimate, marks: &mut Marks) -> Markup {
         .map_or_else(|| number::plain(value, 5), |u| number::short_form(value, u));
     let interval = html! {
         @if let Some(ends) = c.interval_95 { span class="interval" { (number::interval(ends)) } }
+        @if let Some(ends) = c.wider_range() { span class="interval" { "range " (number::interval(ends)) } }
     };
     match c.status {
         Status::AtBound => {
@@ -141,7 +142,10 @@ impl Tables {
         let has_interval = group.iter().any(|e| e.coefficients.values().any(|c| c.interval_95.is_some()));
         let mut text = format!("Coefficients from {source} for each force model");
         if has_interval {
-            text.push_str("; standard uncertainty in brackets, 95 % interval below");
+            text.push_str("; standard uncertainty in brackets, below it the 95 % interval if the model is true");
+        }
+        if group.iter().any(|e| e.coefficients.values().any(|c| c.wider_range().is_some())) {
+            text.push_str(", and the range over all models that the data do not contradict");
         }
         text.push('.');
         if recommended && group.len() > 1 {
@@ -254,7 +258,8 @@ impl Tables {
         }
         let caption = self.caption(&format!(
             "Model {} in detail: standard uncertainty from the scatter of the data (type A), from the declared budget (type B), combined, \
-             and with its effective degrees of freedom.",
+             and with its effective degrees of freedom. The interval holds if this model is true; the range, the envelope of the intervals in all models that the data do not \
+             contradict, whichever of them is.",
             e.law.name
         ));
         // Nothing is known about a coefficient that is not determined, whatever its record holds.
@@ -262,6 +267,7 @@ impl Tables {
         let u = |c: &Coefficient, x: Option<f64>| {
             known(c, x).map_or_else(|| MISSING.to_owned(), |x| number::significant(x, 2))
         };
+        let has_range = e.coefficients.values().any(|c| c.range_95.is_some());
         html! {
             div class="table" {
                 table {
@@ -275,6 +281,7 @@ impl Tables {
                             th scope="col" class="num" { "u" sub { "c" } }
                             th scope="col" class="num" { "ν" sub { "eff" } }
                             th scope="col" class="num" { "95 % interval" }
+                            @if has_range { th scope="col" class="num" { "Range" } }
                             th scope="col" { "Unit" }
                         }
                     }
@@ -288,6 +295,7 @@ impl Tables {
                                 td class="num" { (u(c, number::usable(c.standard_uncertainty))) }
                                 td class="num" { (known(c, c.effective_dof).map_or_else(|| MISSING.to_owned(), number::dof)) }
                                 td class="num" { (c.interval_95.filter(|_| c.status != Status::Undetermined).map_or_else(|| MISSING.to_owned(), number::interval)) }
+                                @if has_range { td class="num" { (c.range_95.map_or_else(|| MISSING.to_owned(), number::interval)) } }
                                 td { (unit_text(if c.unit.is_empty() { "1" } else { &c.unit })) }
                             }
                         }

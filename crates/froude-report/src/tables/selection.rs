@@ -15,7 +15,14 @@ impl Tables {
         let has_lack = rows.iter().any(|r| r.lack_of_fit_p.is_some());
         let components = union(rows.iter().map(|r| &r.component));
         let best = crate::figures::drawing::recommended(source).map(|e| e.law.name.as_str());
-        let formula = source.estimates.iter().find(|e| e.formula_of.is_some()).map(|e| e.law.name.as_str());
+        let is_left = |r: &SelectionRow| {
+            let id_of = |e: &&froude_records::estimate::Estimate| e.law.name == r.model;
+            source
+                .estimates
+                .iter()
+                .find(id_of)
+                .is_some_and(|e| e.not_contradicted.len() > 1 && e.not_contradicted.contains(&e.id))
+        };
         let has_scores = rows.iter().any(|r| r.cross_validation.is_ok());
         let scored = |r: &'a SelectionRow| r.cross_validation.as_ref().err().filter(|_| has_scores);
         let reasons = union(rows.iter().flat_map(|r| r.delta_aicc.as_ref().err().into_iter().chain(scored(r))));
@@ -33,7 +40,7 @@ impl Tables {
             html! {
                 tr class=(if Some(r.model.as_str()) == best { "best" } else { "" }) {
                     th scope="row" { (r.model) @if Some(r.model.as_str()) == best { " " span class="mark" { "recommended" } }
-                            @if Some(r.model.as_str()) == formula { " " span class="mark" { "formula" } } }
+                            @else if is_left(r) { " " span class="mark" { "not contradicted" } } }
                     td class="num" { (r.n_coefficients) }
                     td class="num" { (number::significant(r.sigma, 3)) }
                     td class="num" { (number::percent(r.relative_residual)) }
@@ -117,10 +124,10 @@ impl Tables {
         }
     }
 
-    /// F tests along the nesting.
-    pub(crate) fn nested(&mut self, source: &SourceSection) -> Markup {
+    /// Each model beside the terms of the others.
+    pub(crate) fn added_terms(&mut self, source: &SourceSection) -> Markup {
         let caption = self.caption(
-            "F tests of the simpler model inside the more general one. A small p means that the data contradict the restriction.",
+            "F tests of a model beside the terms that another one would add to it. The data contradict a model where its smallest p, times the number of its tests, is below 0.5 %.",
         );
         html! {
             div class="table" {
@@ -128,27 +135,23 @@ impl Tables {
                     (caption)
                     thead {
                         tr {
-                            th scope="col" { "Restriction" }
+                            th scope="col" { "Model" }
+                            th scope="col" { "Terms of" }
                             th scope="col" { "Load" }
                             th scope="col" class="num" { "F" }
                             th scope="col" class="num" { "Degrees of freedom" }
                             th scope="col" class="num" { "p" }
-                            th scope="col" { "At 1 %" }
                         }
                     }
                     tbody {
                         @for t in &source.tests {
                             tr {
-                                th scope="row" { (t.simple) " ⊂ " (t.general) }
+                                th scope="row" { (t.law) }
+                                td { (t.of) }
                                 td { (html_symbol(&t.component)) }
                                 td class="num" { (number::significant(t.f, 3)) }
                                 td class="num" { (number::dof(t.dof[0])) ", " (number::dof(t.dof[1])) }
                                 td class="num" { (number::p_value(t.p)) }
-                                td {
-                                    @if !t.p.is_finite() { (MISSING) }
-                                    @else if t.p < 0.01 { (t.general) " fits better" }
-                                    @else { "no evidence against " (t.simple) }
-                                }
                             }
                         }
                     }

@@ -1,7 +1,7 @@
 //! A whole report with invented forces around published coefficients.
 
 use froude_records::comparison::{
-    CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LoadComparison, NestedTest, Side, Verdict,
+    AddedTerms, CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LoadComparison, Side, Verdict,
 };
 use froude_records::estimate::{
     Coefficient, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, NamedCorrelation, Range, ReferencePoint,
@@ -92,6 +92,7 @@ fn coefficient(value: f64, relative: f64, name: &str) -> Coefficient {
             interval_95: Some([0.0, 0.0117]),
             effective_dof: None,
             unconstrained: None,
+            range_95: None,
         };
     }
     let u = (value.abs() * relative).max(0.0008);
@@ -107,6 +108,7 @@ fn coefficient(value: f64, relative: f64, name: &str) -> Coefficient {
         interval_95: Some([(value - 2.01 * u).max(0.0), value + 2.01 * u]),
         effective_dof: Some(57.3),
         unconstrained: None,
+        range_95: None,
     }
 }
 
@@ -194,7 +196,7 @@ fn estimates(source: &str, kind: &str, table: &[(&str, [f64; 12])], relative: f6
                     ..Diagnostics::default()
                 },
                 recommended: *model == best,
-                formula_of: None,
+                not_contradicted: Vec::new(),
                 ..Estimate::default()
             }
         })
@@ -329,7 +331,7 @@ fn selection(is_scorable: bool) -> Vec<SelectionRow> {
     rows
 }
 
-fn tests() -> Vec<NestedTest> {
+fn tests() -> Vec<AddedTerms> {
     [
         ("f1", "f2", 310.2, 1e-9),
         ("f2", "f3", 96.1, 1e-9),
@@ -338,9 +340,9 @@ fn tests() -> Vec<NestedTest> {
         ("f5", "f4", 1.81, 0.166),
     ]
     .into_iter()
-    .map(|(simple, general, f, p)| NestedTest {
-        simple: simple.to_owned(),
-        general: general.to_owned(),
+    .map(|(law, of, f, p)| AddedTerms {
+        law: law.to_owned(),
+        of: of.to_owned(),
         component: "f_x".to_owned(),
         f,
         dof: [2.0, 263.0],

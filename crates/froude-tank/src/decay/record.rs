@@ -54,7 +54,11 @@ pub fn result(
         tests: Vec::new(),
         scores: vec![leave_one_out(&model, &data)],
         blocks: Vec::new(),
-        recommendation: Some(Recommendation { index: 0, formula: None, reason: fit.method.words().to_owned() }),
+        recommendation: Some(Recommendation {
+            index: 0,
+            not_contradicted: Vec::new(),
+            reason: fit.method.words().to_owned(),
+        }),
         validity: estimate.validity.clone(),
         findings: fit.findings.iter().cloned().chain(as_exact(fit)).collect(),
         files: Vec::new(),
@@ -132,6 +136,7 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
             interval_95: combined.map(|c| c.interval(value)),
             effective_dof: combined.map(|c| c.dof).filter(|d| d.is_finite()),
             unconstrained: None,
+            range_95: None,
         };
         (fit.names[j].clone(), coefficient)
     });
@@ -199,7 +204,7 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
         ]),
         diagnostics: Diagnostics { notes: notes(fit, &budget), ..Diagnostics::default() },
         recommended,
-        formula_of: None,
+        not_contradicted: Vec::new(),
         reason: recommended.then(|| fit.method.words().to_owned()),
     }
 }

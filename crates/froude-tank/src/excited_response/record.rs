@@ -55,6 +55,7 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
             interval_95: is_stated.then(|| combined.interval(at.values[j])),
             effective_dof: of(combined.dof).filter(|d| d.is_finite()),
             unconstrained: None,
+            range_95: None,
         };
         (NAMES[j].to_owned(), coefficient)
     };
@@ -130,7 +131,7 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
         validity: validity(at, runs),
         diagnostics: Diagnostics { largest_correlation, notes: notes(at, stated), ..Diagnostics::default() },
         recommended: is_recommended,
-        formula_of: None,
+        not_contradicted: Vec::new(),
         reason: is_recommended
             .then(|| "the period whose A33 is known best; each period has an estimate of its own".to_owned()),
     }

@@ -24,6 +24,7 @@ pub(crate) fn coefficients(fit: &JointFit, is_nuisance: &dyn Fn(&str) -> bool) -
             interval_95: u.value.zip(u.combined).map(|(value, c)| c.interval(value)),
             effective_dof: u.combined.map(|c| c.dof).filter(|d| d.is_finite()),
             unconstrained: None,
+            range_95: None,
         };
         (u.name.clone(), coefficient)
     };

@@ -107,7 +107,7 @@ pub fn estimate(fit: &OscillationFit, drag: &Drag, context: &Context<'_>, of: Op
         validity: validity(wet(), setup, campaign),
         diagnostics: Diagnostics { notes: record::notes(fit, "N"), ..Diagnostics::default() },
         recommended: of.is_some(),
-        formula_of: None,
+        not_contradicted: Vec::new(),
         reason,
     }
 }

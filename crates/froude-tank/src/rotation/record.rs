@@ -107,7 +107,7 @@ pub fn estimate(fit: &RotationFit, context: &Context<'_>) -> Estimate {
         validity: validity(context),
         diagnostics: Diagnostics { notes, ..Diagnostics::default() },
         recommended: true,
-        formula_of: None,
+        not_contradicted: Vec::new(),
         reason: Some("the only law of the fluid torque".to_owned()),
     }
 }

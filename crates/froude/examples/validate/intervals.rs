@@ -15,7 +15,7 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use froude::identify::regression::ModelFit;
+use froude::identify::envelope::of_source;
 use froude::identify::source::{SourceResult, identify_source};
 use froude::records::campaign::{Campaign, read_campaign};
 use rand_pcg::Pcg64;
@@ -129,11 +129,6 @@ pub fn campaign(rest: &str) -> String {
     )
 }
 
-/// The recommended law of an answer.
-fn recommended(found: &SourceResult) -> Option<&ModelFit> {
-    found.models.get(found.recommendation.as_ref()?.index)
-}
-
 /// The same under a name, or that there is none.
 fn told(found: &SourceResult, name: &str, truth: f64, words: &str) -> (String, Said) {
     interval(found, 0, name, truth).map_or_else(
@@ -148,18 +143,10 @@ fn interval(found: &SourceResult, index: usize, name: &str, truth: f64) -> Optio
     Some(Said { holds: low <= truth && truth <= high, width: high - low })
 }
 
-/// The 95 % band of the first load at each row: the force, and half its width.
-fn bands(model: &ModelFit, data: &froude::identify::dataset::Dataset) -> Option<Vec<[f64; 2]>> {
-    let at = model.law_coefficients();
-    let (force, slopes) = (model.law.predict(data, at).ok()?, model.law.regressors(data, at).ok()?);
-    let n = data.rows;
-    let of = |row: usize| {
-        let r = row / n;
-        let line: Vec<f64> = (0..slopes.ncols()).map(|j| slopes[(row, j)]).collect();
-        let [below, above] = model.arms(&line, model.scatter_dof(&slopes, r * n..(r + 1) * n));
-        [force[row], 0.5 * (below + above)]
-    };
-    Some((0..force.len()).map(of).collect())
+/// Loads of the recommended law at each row, with the ends of their band: the envelope over all laws that the data do not contradict.
+fn band(found: &SourceResult) -> Vec<[f64; 3]> {
+    let bands = of_source(found, &found.data).unwrap_or_default();
+    bands.iter().map(|band| [band.load, band.low, band.high]).collect()
 }
 
 /// Counts beside a floor: an exact row two-sided, another one from below.

@@ -8,7 +8,7 @@ use froude::hydro::{CrossTerm, DragModel};
 use froude::identify::dataset::Dataset;
 use froude::identify::law::ForceLaw;
 use froude::identify::regression::{Settings, regress};
-use froude::identify::selection::{nested_tests, recommend};
+use froude::identify::selection::{added_terms, recommend};
 use froude::identify::source::laws;
 use froude::identify::{dissipation, simulate};
 use froude::pipeline::{Input, Job, identify};
@@ -484,6 +484,6 @@ fn draw(
             Ok(predicted.iter().zip(force).map(|(p, f)| (p - f).powi(2)).sum::<f64>() / force.len() as f64)
         })
         .collect::<Result<_, Box<dyn Error>>>()?;
-    let chosen = recommend(&fits, &data, &nested_tests(&fits, &data)).ok_or("no recommendation")?;
-    Ok(Draw { recommended: chosen.simplest(), reason: chosen.reason, squared_error })
+    let chosen = recommend(&fits, &data, &added_terms(&fits, &data, settings(campaign))).ok_or("no recommendation")?;
+    Ok(Draw { recommended: chosen.index, reason: chosen.reason, squared_error })
 }

@@ -41,8 +41,8 @@ pub struct Found {
     pub shown: Vec<usize>,
     /// For each of these and its next: the probability that it is better in each objective, by draws in which both have an answer; `None` without such.
     pub beats: Vec<Option<[f64; 2]>>,
-    /// What was drawn, and the draws that were no bodies.
-    pub drawn: Option<(Drawing, Beyond)>,
+    /// What was drawn of each law, how many laws there are, and the draws that were no bodies.
+    pub drawn: Option<(Drawing, usize, Beyond)>,
     /// Gaits that were swum.
     pub swum: usize,
     /// The table.
@@ -90,7 +90,7 @@ pub fn optimise(job: &SweepJob, of: [Objective; 2], tell: &(dyn Fn(usize, usize)
         std::fs::create_dir_all(&job.out).map_err(|source| Error::Output { path: job.out.clone(), source })?;
         take_own_place(prepare_table(&table(&front, &written), &written)?)?;
     }
-    let drawn = job.draws.map(|drawing| (drawing, ready.beyond));
+    let drawn = job.draws.map(|drawing| (drawing, (ready.robots.len() - 1) / drawing.n.max(1), ready.beyond));
     let data = ready.reads.data()?;
     Ok(Found { name: ready.name, data, of, front, shown, beats, drawn, swum: search.rows(), written })
 }
@@ -157,7 +157,7 @@ impl Found {
         if self.front.is_empty() {
             out.push("no gait of these ranges repeats itself and is stable: nothing is written".to_owned());
         }
-        out.extend(self.drawn.iter().flat_map(|(drawing, beyond)| bodies(*drawing, *beyond)));
+        out.extend(self.drawn.iter().flat_map(|(drawing, laws, beyond)| bodies(drawing.n * laws, *beyond)));
         let close = self.shown.iter().zip(&self.beats).filter_map(|(place, beats)| {
             let p = (*beats)?;
             let near = (0..2).filter(|k| (0.05..=0.95).contains(&p[*k])).map(|k| self.of[k].name());
@@ -189,7 +189,7 @@ impl Found {
             "front_gaits": self.front.len(),
             "swum_gaits": self.swum,
             "gaits": shown.collect::<Vec<_>>(),
-            "draws": self.drawn.map(|(d, beyond)| json!({"n": d.n, "seed": d.seed, "brought_back": beyond.brought_back, "refused": beyond.refused})),
+            "draws": self.drawn.map(|(d, laws, beyond)| json!({"n": d.n, "laws": laws, "seed": d.seed, "brought_back": beyond.brought_back, "refused": beyond.refused})),
             "front": (!self.front.is_empty()).then_some(&self.written),
             "remarks": self.sentences(),
         })

@@ -86,12 +86,12 @@ pub struct Swept {
     pub name: String,
     /// The files that were read.
     pub data: Vec<DataFile>,
-    /// A row per gait and draw; of a gait, that of the estimate stands first.
+    /// A row per gait and draw; of a gait, that of the estimate stands first, and the draws behind it law by law.
     pub rows: Vec<Row>,
     /// Rows of a gait.
     pub each: usize,
-    /// What was drawn, and the draws that were no bodies.
-    pub drawn: Option<(Drawing, Beyond)>,
+    /// What was drawn of each law, how many laws there are, and the draws that were no bodies.
+    pub drawn: Option<(Drawing, usize, Beyond)>,
     /// Rows that were there from an earlier start.
     pub resumed: usize,
     /// The table.
@@ -177,7 +177,7 @@ pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Swe
     let all = all.concat();
     take_own_place(prepare_table(&table(&all, &written), &written)?)?;
     let others = parts.finish();
-    let drawn = job.draws.map(|drawing| (drawing, ready.beyond));
+    let drawn = job.draws.map(|drawing| (drawing, (ready.robots.len() - 1) / drawing.n.max(1), ready.beyond));
     let swept = Swept {
         name: ready.name,
         data,
@@ -203,7 +203,7 @@ pub(super) struct Ready<'a> {
     pub(super) grid: Grid,
     pub(super) gaits: usize,
     drives: Drives,
-    /// As estimated, and of each draw behind it.
+    /// As estimated, and behind it of each draw, law by law.
     pub(super) robots: Vec<Robot>,
     /// Draws that were no bodies.
     pub(super) beyond: Beyond,
@@ -213,22 +213,22 @@ pub(super) struct Ready<'a> {
 impl<'a> Ready<'a> {
     pub(super) fn new(job: &'a SweepJob) -> Result<Self, Error> {
         let file = super::planar(&job.robot)?;
-        let blueprint = Blueprint::of(&file)?;
+        let laws = Blueprint::of_all_laws(&file)?;
         let drives = super::drives(&file, job.motor.as_deref())?;
         let grid = job.ranges.about(&base(&job.moves, file.modules.len() - 1)?);
         let too_many = |rows: String| SweepError::TooMany { rows, most: MOST_ROWS };
-        let each = job.draws.map_or(0, |drawing| drawing.n) + 1;
+        let each = job.draws.map_or(0, |drawing| drawing.n * laws.len()) + 1;
         let rows = grid.gaits().and_then(|gaits| gaits.checked_mul(each));
         match rows {
             None => return Err(too_many("more than can be counted".to_owned()).into()),
             Some(rows) if rows > MOST_ROWS => return Err(too_many(rows.to_string()).into()),
             Some(_) => {}
         }
-        let (mut robots, mut beyond) = (vec![blueprint.estimated()], Beyond::default());
-        if let Some(drawing) = job.draws {
-            let draws = blueprint.draws(drawing.n, drawing.seed)?;
-            beyond = draws.beyond;
-            robots.extend(draws.values.iter().map(|values| blueprint.robot(values)));
+        let (mut robots, mut beyond) = (vec![laws[0].estimated()], Beyond::default());
+        for (drawing, law) in job.draws.iter().flat_map(|drawing| laws.iter().map(move |law| (drawing, law))) {
+            let draws = law.draws(drawing.n, drawing.seed)?;
+            beyond += draws.beyond;
+            robots.extend(draws.values.iter().map(|values| law.robot(values)));
         }
         let gaits = grid.gaits().unwrap_or_default();
         let reads = Reads::of(&file, &job.robot, &job.moves, job.motor.as_deref());

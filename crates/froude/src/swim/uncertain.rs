@@ -6,7 +6,7 @@ use froude_records::number::{interval, percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
 use froude_records::text::counted;
 use froude_swim::blueprint::Blueprint;
-use froude_swim::draws::{Beyond, interval_95};
+use froude_swim::draws::{Beyond, envelope_95};
 use froude_swim::robot::Robot;
 use froude_swim::sensitivity::{Effect, Sensitivities};
 use rayon::prelude::*;
@@ -30,13 +30,15 @@ pub struct Drawing {
 pub struct Drawn {
     /// What was asked for.
     pub asked: Drawing,
+    /// The laws that they are of, that of the estimate first: the others are those that the data do not contradict either. Each has as many draws.
+    pub laws: Vec<String>,
     /// Draws that were no bodies.
     pub beyond: Beyond,
     /// Draws with which the gait has no answer.
     pub without_answer: usize,
     /// Draws whose figures are those of the motion that an unstable one settles into, and of a motion that stays unstable.
     pub unstable: [usize; 2],
-    /// 95 % of speed, m/s, net and positive power, W, and cost of transport, J/m.
+    /// 95 % of speed, m/s, net and positive power, W, and cost of transport, J/m: the envelope over the laws.
     pub intervals: [[f64; 2]; 4],
 }
 
@@ -77,20 +79,31 @@ pub fn uncertain(
     let drawn = match drawing {
         None => None,
         Some(asked) => {
-            let draws = blueprint.draws(asked.n, asked.seed)?;
-            let done = AtomicUsize::new(0);
-            let one = |values: &Vec<f64>| {
-                let found = swim(&blueprint.robot(values)).ok()?;
-                tell(done.fetch_add(1, Ordering::Relaxed) + 1, asked.n);
-                let p = &found.periodic;
-                let is = [found.unstable.is_some(), p.multipliers[0] > 1.0];
-                Some(([p.speed_m_s, p.net_w, p.positive_w, found.cost_j_m], is))
+            let laws = Blueprint::of_all_laws(&file)?;
+            let (done, all) = (AtomicUsize::new(0), asked.n * laws.len());
+            let mut beyond = Beyond::default();
+            let mut by_law: Vec<Vec<([f64; 4], [bool; 2])>> = Vec::new();
+            for law in &laws {
+                let draws = law.draws(asked.n, asked.seed)?;
+                beyond += draws.beyond;
+                let one = |values: &Vec<f64>| {
+                    let found = swim(&law.robot(values)).ok()?;
+                    tell(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+                    let p = &found.periodic;
+                    let is = [found.unstable.is_some(), p.multipliers[0] > 1.0];
+                    Some(([p.speed_m_s, p.net_w, p.positive_w, found.cost_j_m], is))
+                };
+                by_law.push(draws.values.par_iter().filter_map(one).collect());
+            }
+            let column = |k: usize| -> Vec<Vec<f64>> {
+                by_law.iter().map(|found| found.iter().map(|(row, _)| row[k]).collect()).collect()
             };
-            let found: Vec<([f64; 4], [bool; 2])> = draws.values.par_iter().filter_map(one).collect();
-            let column = |k: usize| found.iter().map(|(row, _)| row[k]).collect::<Vec<f64>>();
-            let intervals = [0, 1, 2, 3].map(|k| interval_95(&column(k)).unwrap_or([f64::NAN; 2]));
-            let unstable = [0, 1].map(|k| found.iter().filter(|(_, is)| is[k]).count());
-            Some(Drawn { asked, beyond: draws.beyond, unstable, without_answer: asked.n - found.len(), intervals })
+            let envelope = |k: usize| envelope_95(column(k).iter().map(Vec::as_slice)).unwrap_or([f64::NAN; 2]);
+            let unstable = [0, 1].map(|k| by_law.iter().flatten().filter(|(_, is)| is[k]).count());
+            let answers: usize = by_law.iter().map(Vec::len).sum();
+            let laws = laws.iter().map(|law| law.id().to_owned()).collect();
+            let intervals = [0, 1, 2, 3].map(envelope);
+            Some(Drawn { asked, laws, beyond, unstable, without_answer: all - answers, intervals })
         }
     };
     let sensitivities = if is_sensitive {
@@ -124,6 +137,7 @@ impl Uncertain {
         json!({
             "draws": self.drawn.as_ref().map(|d| json!({
                 "n": d.asked.n,
+                "laws": d.laws,
                 "seed": d.asked.seed,
                 "brought_back": d.beyond.brought_back,
                 "refused": d.beyond.refused,
@@ -151,16 +165,16 @@ impl Uncertain {
 }
 
 /// What became of draws that are no bodies in water.
-pub(super) fn bodies(asked: Drawing, beyond: Beyond) -> Vec<String> {
+pub(super) fn bodies(n: usize, beyond: Beyond) -> Vec<String> {
     let mut said = Vec::new();
     if beyond.brought_back > 0 {
         said.push(format!(
             "still water would give power to the robot by {} of {}: each was moved to the nearest law that takes power, where an interval may end",
             beyond.brought_back,
-            counted(asked.n, "draw", "draws")
+            counted(n, "draw", "draws")
         ));
     }
-    if 2 * beyond.brought_back > asked.n {
+    if 2 * beyond.brought_back > n {
         said.push("most draws lie outside of what water allows: the interval is that of the boundary, and too narrow; choose a law with fewer terms".to_owned());
     }
     if beyond.refused > 0 {
@@ -174,7 +188,13 @@ pub(super) fn bodies(asked: Drawing, beyond: Beyond) -> Vec<String> {
 
 impl Drawn {
     fn section(&self) -> DocumentSection {
-        let mut paragraphs = bodies(self.asked, self.beyond);
+        let mut paragraphs = bodies(self.asked.n * self.laws.len(), self.beyond);
+        if self.laws.len() > 1 {
+            paragraphs.push(format!(
+                "the intervals are the envelope over all laws that the data do not contradict, each with as many draws: {}",
+                self.laws.join(", ")
+            ));
+        }
         if self.without_answer > 0 {
             let words = counted(self.without_answer, "draw has", "draws have");
             paragraphs.push(format!("{words} no motion that repeats, and are in no interval"));

@@ -64,6 +64,7 @@ pub fn calibrated(source: &str, c: &Calibration, known: &Known) -> Estimate {
         interval_95: Some(c.interval_95),
         effective_dof: finite(k.dof),
         unconstrained: None,
+        range_95: None,
     };
     let efficiency = Derived {
         formula: format!("{FORCE_PER_VOLT}/{:e} N/V", k.value / c.efficiency.value),
@@ -92,7 +93,7 @@ pub fn calibrated(source: &str, c: &Calibration, known: &Known) -> Estimate {
         derived: IndexMap::from([("efficiency".to_owned(), efficiency)]),
         diagnostics: Diagnostics { notes: c.notes.clone(), ..Diagnostics::default() },
         recommended: true,
-        formula_of: None,
+        not_contradicted: Vec::new(),
         reason: Some("from known weights, gear and chain included".to_owned()),
         ..estimate(source, "calibration", "least squares of the command on known weights, both directions", coefficient)
     }
@@ -125,6 +126,7 @@ pub fn declared(source: &str, setup: &DragSetup) -> Estimate {
         interval_95: None,
         effective_dof: None,
         unconstrained: None,
+        range_95: None,
     };
     estimate(&format!("{source}, declared"), "declared", "the constants of the drive as declared", coefficient)
 }

@@ -77,7 +77,7 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
             ..Diagnostics::default()
         },
         recommended,
-        formula_of: None,
+        not_contradicted: Vec::new(),
         reason: recommended.then(|| "it keeps all that is asked for".to_owned()),
         ..of_response
     }

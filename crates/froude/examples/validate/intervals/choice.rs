@@ -1,18 +1,32 @@
-//! Intervals after a law was chosen.
+//! Intervals, ranges and bands after a law was chosen.
 
-use super::{Failed, ROOM, Said, bands, campaign, capped, interval, judged, recommended, rows, run, sixteen};
-use crate::claims::{Claims, Verdict};
+use froude::identify::source::SourceResult;
+
+use super::{Failed, Said, band, campaign, capped, interval, judged, rows, run, sixteen};
+use crate::claims::Claims;
 use crate::coverage::normal;
-
-/// Widths this near to each other are equal.
-const SAME_WIDTH: f64 = 0.005;
 
 pub fn all(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
     selection(claims, seeds)?;
+    conditional(claims, seeds)?;
     powers(claims, seeds)
 }
 
-/// A linear term of no to five standard uncertainties beside 55 U²: intervals after the choice of a law.
+/// Speeds at which a band is looked at.
+const AT: [usize; 4] = [0, 5, 10, 15];
+
+/// Whether the band of the recommended load holds the truth.
+fn bands_hold(found: &SourceResult, speed: &[f64], truth: impl Fn(f64) -> f64) -> Vec<(String, Said)> {
+    let band = band(found);
+    let of = |i: usize| {
+        let [_, low, high] = band.get(i).copied().unwrap_or([f64::NAN; 3]);
+        let holds = (low..=high).contains(&truth(speed[i]));
+        (format!("force band at {:.1} m/s", speed[i]), Said { holds, width: 0.5 * (high - low) })
+    };
+    AT.map(of).to_vec()
+}
+
+/// A linear term of no to five standard uncertainties beside 55 U².
 fn selection(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
     const SIGMA: f64 = 1.2;
     let speed = sixteen();
@@ -22,31 +36,23 @@ fn selection(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
     for size in [0.0, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0] {
         let b = size * u_b;
         let truth = |u: f64| -(b * u + 55.0 * u * u);
+        let of_seed = 100 + (10.0 * size) as u128;
         let tallies = run(
             &campaign(""),
             seeds,
-            100 + (10.0 * size) as u128,
+            of_seed,
             |rng| rows(&speed, |_, u| truth(u) + SIGMA * normal(rng)),
             |found| {
                 let mut out = Vec::new();
                 let Some(r) = &found.recommendation else { return out };
-                let missed = Said { holds: false, width: 0.0 };
-                out.push((
-                    "D_x_II of the recommended law".to_owned(),
-                    interval(found, r.index, "D_x_II", 55.0).unwrap_or(missed),
-                ));
-                let band = recommended(found).and_then(|m| bands(m, &found.data)).unwrap_or_default();
-                for i in [0, 5, 10, 15] {
-                    let [force, half] = band.get(i).copied().unwrap_or([f64::NAN, 0.0]);
-                    let holds = (force - truth(speed[i])).abs() <= half;
-                    out.push((format!("force band at {:.1} m/s", speed[i]), Said { holds, width: half }));
-                }
-                if let Some(f) = r.formula {
-                    let band = found.models.get(f).and_then(|m| bands(m, &found.data)).unwrap_or_default();
-                    let [force, half] = band.first().copied().unwrap_or([f64::NAN, 0.0]);
-                    let holds = (force - truth(speed[0])).abs() <= half;
-                    out.push(("force band of the formula at 0.2 m/s".to_owned(), Said { holds, width: half }));
-                }
+                // A power law has no D_x_II, and states nothing of it.
+                let c = found.estimates[r.index].coefficients.get("D_x_II");
+                out.extend(c.map(|c| {
+                    let [low, high] = c.range_95.unwrap_or([f64::NAN; 2]);
+                    let said = Said { holds: (low..=high).contains(&55.0), width: high - low };
+                    ("range of D_x_II, where the recommended law has it".to_owned(), said)
+                }));
+                out.extend(bands_hold(found, &speed, truth));
                 out
             },
         )?;
@@ -58,46 +64,69 @@ fn selection(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
         let alone = run(
             &campaign("models = [\"linear_quadratic\"]\n"),
             seeds,
-            100 + (10.0 * size) as u128,
+            of_seed,
             |rng| rows(&speed, |_, u| truth(u) + SIGMA * normal(rng)),
             |found| interval(found, 0, "D_x_II", 55.0).map(|said| (String::new(), said)).into_iter().collect(),
         )?;
         if let ([chosen, ..], [alone]) = (&tallies[..], &alone[..]) {
-            let of = (Some(1.0 + SAME_WIDTH), "that of the larger law alone");
-            capped(claims, &format!("{what}: D_x_II"), [chosen.width(), alone.width()], of);
+            let of = (None, "that of the larger law alone");
+            capped(claims, &format!("{what}: range of D_x_II"), [chosen.width(), alone.width()], of);
         }
     }
     Ok(())
 }
 
-/// Truths that no law of the others contains: a power law beside polynomials.
+/// Intervals of each law where it is the true one, beside two others: conditional on it, whatever is recommended.
+fn conditional(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
+    let speed = sixteen();
+    let truths: [(&str, fn(f64) -> f64, &[(&str, f64)]); 3] = [
+        ("quadratic", |u| -12.0 * u * u, &[("D_x_II", 12.0)]),
+        ("linear_quadratic", |u| -(3.0 * u + 9.0 * u * u), &[("D_x_I", 3.0), ("D_x_II", 9.0)]),
+        ("power_law", |u| -12.0 * u.powf(1.8), &[("k", 12.0), ("n", 1.8)]),
+    ];
+    for (i, (law, truth, coefficients)) in truths.into_iter().enumerate() {
+        let tallies = run(
+            &campaign(""),
+            seeds,
+            130 + i as u128,
+            |rng| rows(&speed, |_, u| truth(u) + 0.4 * normal(rng)),
+            |found| {
+                let index = found.models.iter().position(|m| m.law.name == law).unwrap_or_default();
+                let of = |(name, truth): &(&str, f64)| {
+                    let said = interval(found, index, name, *truth).unwrap_or(Said { holds: false, width: 0.0 });
+                    (format!("interval of {name} if {law} is true"), said)
+                };
+                let mut out: Vec<(String, Said)> = coefficients.iter().map(of).collect();
+                out.extend(bands_hold(found, &speed, truth));
+                out
+            },
+        )?;
+        for tally in &tallies {
+            let is_interval = tally.name.starts_with("interval");
+            let floor = if is_interval { 95.0 } else { 94.0 };
+            judged(claims, &format!("{law} is true, three laws"), tally, floor, is_interval, "");
+        }
+    }
+    Ok(())
+}
+
+/// Truths that no polynomial contains.
 fn powers(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
     let speed = sixteen();
-    for (exponent, sigma) in [(1.6, 0.4), (1.8, 0.2), (1.8, 0.8)] {
-        let truth = |u: f64| -12.0 * u.powf(exponent);
+    for (factor, exponent, sigma) in
+        [(12.0, 1.6, 0.4), (12.0, 1.8, 0.2), (12.0, 1.8, 0.8), (55.0, 1.6, 1.2), (55.0, 1.8, 1.2)]
+    {
+        let truth = move |u: f64| -factor * u.powf(exponent);
         let tallies = run(
             &campaign(""),
             seeds,
             140 + (10.0 * exponent + 10.0 * sigma) as u128,
             |rng| rows(&speed, |_, u| truth(u) + sigma * normal(rng)),
-            |found| {
-                let band = recommended(found).and_then(|m| bands(m, &found.data)).unwrap_or_default();
-                let of = |i: usize| {
-                    let [force, half] = band.get(i).copied().unwrap_or([f64::NAN, 0.0]);
-                    let holds = (force - truth(speed[i])).abs() <= half;
-                    (format!("force band at {:.1} m/s", speed[i]), Said { holds, width: half })
-                };
-                [0, 5, 10, 15].map(of).to_vec()
-            },
+            |found| bands_hold(found, &speed, truth),
         )?;
         for tally in &tallies {
-            claims.add(
-                ROOM,
-                &format!("12 U^{exponent} at {sigma} N, three laws: {}", tally.name),
-                "laws that contain nothing of each other: the polynomial is taken unless it is clearly less likely",
-                format!("{:.2} % of {}, mean half width {:.3}", tally.percent(), tally.count, tally.width()),
-                Verdict::Measured,
-            );
+            let what = format!("{factor} U^{exponent} at {sigma} N, three laws");
+            judged(claims, &what, tally, 94.0, false, &format!(", mean half width {:.3}", tally.width()));
         }
     }
     Ok(())

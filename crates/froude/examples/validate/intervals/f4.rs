@@ -11,7 +11,7 @@ use froude::records::units::Dimension;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-use super::{Failed, Said, Tally, bands, judged, rare, recommended};
+use super::{Failed, Said, Tally, band, judged, rare};
 use crate::claims::Claims;
 use crate::coverage::normal;
 use crate::snake::{TABLE_3, configurations, planned, published};
@@ -94,9 +94,11 @@ fn chosen(claims: &mut Claims, root: &Path, seeds: u64) -> Result<(), Failed> {
     let tank = Tank::of(root, None, "models = [\"f1\", \"f2\", \"f3\", \"f4\", \"f5\", \"f6\"]")?;
     let n = tank.data.rows;
     let found = tank.ask((seeds, 150), (|_| 0.3, 0.0), |found| {
-        let band = recommended(found).and_then(|m| bands(m, &found.data)).unwrap_or_default();
-        let said =
-            |(truth, [force, half]): (&f64, &[f64; 2])| Said { holds: (force - truth).abs() <= *half, width: *half };
+        let band = band(found);
+        let said = |(truth, [_, low, high]): (&f64, &[f64; 3])| Said {
+            holds: (low..=high).contains(&truth),
+            width: 0.5 * (high - low),
+        };
         tank.truth.iter().zip(&band).map(said).collect()
     })?;
     for (r, load) in tank.law.responses.iter().enumerate() {

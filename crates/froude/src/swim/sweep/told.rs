@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use froude_records::number::{count, fixed, interval, significant};
 use froude_records::page::{DocumentSection, TextTable};
 use froude_records::text::counted;
-use froude_swim::draws::interval_95;
+use froude_swim::draws::envelope_95;
 use froude_swim::sweep::{COLUMNS, Row, Status};
 use serde_json::{Map, Value, json};
 
@@ -47,10 +47,15 @@ impl Swept {
         found.into_iter().filter_map(|(name, found)| Some((name, found?.0))).collect()
     }
 
-    /// 95 % of a column over the draws of a gait; `None` without draws.
+    /// 95 % of a column over the draws of a gait, the envelope over the laws; `None` without draws.
     fn interval(&self, at: usize, column: &str) -> Option<[f64; 2]> {
-        let draws = self.rows[at + 1..at + self.each].iter().filter(|row| row.status == Status::Periodic);
-        interval_95(&draws.map(|row| row.get(column)).collect::<Vec<f64>>())
+        let (drawing, ..) = self.drawn?;
+        let numbers = |rows: &[Row]| {
+            let swim = rows.iter().filter(|row| row.status == Status::Periodic);
+            swim.map(|row| row.get(column)).collect::<Vec<f64>>()
+        };
+        let by_law: Vec<Vec<f64>> = self.rows[at + 1..at + self.each].chunks(drawing.n.max(1)).map(numbers).collect();
+        envelope_95(by_law.iter().map(Vec::as_slice))
     }
 
     fn statuses(&self) -> BTreeMap<Status, usize> {
@@ -123,7 +128,7 @@ impl Swept {
                 counted(unstable, "gait is", "gaits are")
             ));
         }
-        out.extend(self.drawn.iter().flat_map(|(drawing, beyond)| bodies(*drawing, *beyond)));
+        out.extend(self.drawn.iter().flat_map(|(drawing, laws, beyond)| bodies(drawing.n * laws, *beyond)));
         if self.resumed > 0 {
             out.push(format!("{} were there from an earlier start", counted(self.resumed, "row", "rows")));
         }
@@ -148,7 +153,7 @@ impl Swept {
             "data": self.data,
             "rows": self.rows.len(),
             "gaits": self.rows.len() / self.each,
-            "draws": self.drawn.map(|(d, beyond)| json!({"n": d.n, "seed": d.seed, "brought_back": beyond.brought_back, "refused": beyond.refused})),
+            "draws": self.drawn.map(|(d, laws, beyond)| json!({"n": d.n, "laws": laws, "seed": d.seed, "brought_back": beyond.brought_back, "refused": beyond.refused})),
             "statuses": statuses,
             "best": best,
             "resumed_rows": self.resumed,

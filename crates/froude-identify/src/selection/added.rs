@@ -1,0 +1,312 @@
+//! Whether the data contradict a law: what the terms of another law would add to it.
+//!
+//! To the columns X of a law those Z of another one are added, cleared of what X has already; of m independent ones the coefficients γ are zero where the first law is
+//! true. F = γᵀC⁻¹γ/m is compared with F(m, ν): C is the covariance of γ from the scatter of the larger fit and from every declared error, ν the fewest degrees of freedom of γ.
+//! Of a law inside of another one this is the F test of its restrictions; of two laws of which none contains the other each is tested by itself. At rows of one σ, without
+//! declared errors, F is exact for linear laws; a power law is taken by its slopes at the fitted coefficients.
+//!
+//! A law without a load says that the load is zero, which the terms of another one test in the same way.
+//!
+//! # Source
+//!
+//! Mizon & Richard (1986), Econometrica 54, 657 (encompassing); Davidson & MacKinnon (2004), Econometric Theory and Methods, 15.3; Wald (1943).
+
+use froude_fit as fit;
+use froude_fit::budget::Part;
+use froude_fit::faer::Mat;
+use froude_fit::faer::linalg::solvers::Solve as _;
+use froude_records::campaign::{BudgetEntry, Shared, SourceKind};
+use froude_records::comparison::AddedTerms;
+
+use crate::dataset::Dataset;
+use crate::regression::known;
+use crate::regression::{ModelFit, Settings};
+use crate::uncertainty::{Linearised, contributions};
+
+/// Of a column of length 1, what less of is none beside the law's own columns.
+const NOTHING: f64 = 1e-6;
+/// A law that leaves less of a load is exact: what is left is rounding.
+const EXACT: f64 = 1e-9;
+
+/// Every law beside the terms of every other one, load by load.
+#[must_use]
+pub fn added_terms(models: &[ModelFit], data: &Dataset, settings: Settings<'_>) -> Vec<AddedTerms> {
+    let mut out = Vec::new();
+    for law in models {
+        for other in models.iter().filter(|other| other.law.name != law.law.name) {
+            for load in &other.law.responses {
+                out.extend(added(law, other, load, data, settings));
+            }
+        }
+    }
+    out
+}
+
+/// The terms of `other` in one load, beside those of `law`; `None` where it has no further ones, or they leave no degrees of freedom.
+fn added(law: &ModelFit, other: &ModelFit, load: &str, data: &Dataset, settings: Settings<'_>) -> Option<AddedTerms> {
+    let (problem, of_other) = beside(law, other, load, data)?;
+    let free = new_directions(&problem, &of_other, &law.options)?;
+    let (p, m) = (problem.n_coefficients(), free.ncols());
+    let mut names = problem.names.clone();
+    names.extend((0..m).map(|k| format!("added {k}")));
+    let design =
+        Mat::from_fn(problem.n_rows(), p + m, |i, j| if j < p { problem.design[(i, j)] } else { free[(i, j - p)] });
+    let larger = fit::Problem { design, names, ..problem };
+    let mut options = law.options.unconstrained();
+    if p == 0 {
+        let observations = other.law.responses.iter().position(|own| own == load);
+        let observations = observations.and_then(|r| other.options.observations.get(r).copied()).into_iter().collect();
+        options = fit::Options {
+            covariance: options.covariance,
+            loss: options.loss,
+            observations,
+            ..fit::Options::default()
+        };
+    }
+    options.equalities.iter_mut().for_each(|equality| equality.row.resize(p + m, 0.0));
+    let fitted = fit::fit(&larger, &options).ok()?;
+    let gamma: Vec<f64> = fitted.coefficients[p..].iter().map(|c| c.value).collect::<Option<_>>()?;
+    let dof =
+        fitted.coefficients[p..].iter().map(|c| c.dof).try_fold(f64::INFINITY, |least, dof| Some(least.min(dof?)))?;
+    let mut covariance = Mat::from_fn(m, m, |a, b| fitted.covariance[(p + a, p + b)]);
+    for part in declared([law, other], load, data, settings, (&larger, &fitted))? {
+        covariance += Mat::from_fn(m, m, |a, b| part.covariance[(p + a, p + b)]);
+    }
+    tested(law, other, load, &gamma, &covariance, dof)
+}
+
+/// What declared errors do to the coefficients of the larger problem.
+fn declared(
+    [law, other]: [&ModelFit; 2],
+    load: &str,
+    data: &Dataset,
+    settings: Settings<'_>,
+    (larger, fitted): (&fit::Problem, &fit::Fit),
+) -> Option<Vec<Part>> {
+    // What is read in chunks has no declared errors.
+    if data.sample.is_some() {
+        return Some(Vec::new());
+    }
+    let is_measured = settings.kind != SourceKind::Cfd;
+    let parts = |of: &ModelFit, sensitivity: &Mat<f64>, budget: &[BudgetEntry]| {
+        let at = Linearised { law: &of.law, data, coefficients: of.law_coefficients(), sensitivity };
+        contributions(at, budget, settings.campaign, settings.shared_errors, is_measured).ok()
+    };
+    let mut out = if !law.law.responses.iter().any(|own| own == load) {
+        let first = other.law.responses.iter().position(|own| own == load)? * data.rows;
+        let sensitivity = Mat::from_fn(fitted.sensitivity.nrows(), other.law.responses.len() * data.rows, |j, i| {
+            if (first..first + data.rows).contains(&i) { fitted.sensitivity[(j, i - first)] } else { 0.0 }
+        });
+        parts(other, &sensitivity, settings.budget)?
+    } else if let Some(whitened) = &law.whitened {
+        // Those of runs and setups are in the covariance of the rows.
+        let is_of_all = |entry: &&BudgetEntry| entry.shared == Shared::Campaign;
+        let budget: Vec<BudgetEntry> = settings.budget.iter().filter(is_of_all).cloned().collect();
+        parts(law, &whitened.of_rows(&fitted.sensitivity), &budget)?
+    } else {
+        let known = known::parts(&law.law, settings, larger, fitted);
+        [parts(law, &fitted.sensitivity, settings.budget)?, known].concat()
+    };
+    out.retain(|part| !part.in_scatter);
+    Some(out)
+}
+
+/// F of numbers that are zero where a law is true.
+fn tested(
+    law: &ModelFit,
+    other: &ModelFit,
+    load: &str,
+    gamma: &[f64],
+    covariance: &Mat<f64>,
+    dof: f64,
+) -> Option<AddedTerms> {
+    let m = gamma.len();
+    let at = Mat::from_fn(m, 1, |i, _| gamma[i]);
+    let solved = covariance.llt(fit::faer::Side::Lower).ok()?.solve(&at);
+    let f = (0..m).map(|i| gamma[i] * solved[(i, 0)]).sum::<f64>() / m as f64;
+    (dof >= 1.0 && f.is_finite()).then(|| AddedTerms {
+        law: law.law.name.clone(),
+        of: other.law.name.clone(),
+        component: load.to_owned(),
+        f,
+        dof: [m as f64, dof],
+        p: fit::distribution::f_upper(f, m as f64, dof),
+    })
+}
+
+/// The problem of a law, and the columns of another one for a load on its rows. A law without that load says that it is zero: its problem is that load alone. `None` where nothing is left of the
+/// load.
+fn beside(law: &ModelFit, other: &ModelFit, load: &str, data: &Dataset) -> Option<(fit::Problem, Mat<f64>)> {
+    let n = data.rows;
+    let of_other = other.law.responses.iter().position(|own| own == load)?;
+    let Some(of_law) = law.law.responses.iter().position(|own| own == load) else {
+        let rows: Vec<usize> =
+            (0..other.problem.n_rows()).filter(|i| other.problem.component[*i] == of_other).collect();
+        let of = other.problem.rows(&rows);
+        let response = if data.sample.is_some() { of.response } else { data.values(load)?.to_vec() };
+        let columns = if data.sample.is_some() {
+            of.design
+        } else {
+            let slopes = other.law.regressors(data, other.law_coefficients()).ok()?;
+            Mat::from_fn(n, slopes.ncols(), |i, j| slopes[(of_other * n + i, j)])
+        };
+        let (component, components) = (vec![0; rows.len()], vec![load.to_owned()]);
+        let design = Mat::zeros(rows.len(), 0);
+        let (weight, cluster) = (of.weight, of.cluster);
+        return Some((
+            fit::Problem { design, response, weight, component, components, cluster, names: Vec::new() },
+            columns,
+        ));
+    };
+    let component = law.fit.components.iter().find(|component| component.name == load)?;
+    if component.relative_residual < EXACT {
+        return None;
+    }
+    let is_of_load = |row: usize| law.problem.component[row] == of_law;
+    if data.sample.is_some() {
+        let (_, columns) = law.beside.iter().find(|(name, _)| *name == other.law.name)?;
+        let of = |i: usize, j: usize| if is_of_load(i) { columns[(i, j)] } else { 0.0 };
+        return Some((law.problem.clone(), Mat::from_fn(columns.nrows(), columns.ncols(), of)));
+    }
+    let slopes = other.law.regressors(data, other.law_coefficients()).ok()?;
+    // d ln|F| = dF/F.
+    let force = if law.law.in_logarithms() { law.law.predict(data, law.law_coefficients()).ok()? } else { Vec::new() };
+    let of = |i: usize, j: usize| {
+        let slope = slopes[(of_other * n + i % n, j)];
+        if is_of_load(i) { slope / force.get(i).copied().unwrap_or(1.0) } else { 0.0 }
+    };
+    let mut columns = Mat::from_fn(law.problem.n_rows(), slopes.ncols(), of);
+    let problem = match &law.whitened {
+        Some(whitened) => {
+            whitened.whiten(&mut columns);
+            whitened.problem.clone()
+        }
+        None => law.problem.clone(),
+    };
+    Some((problem, columns))
+}
+
+/// Independent directions of columns, cleared of those of a problem.
+fn new_directions(problem: &fit::Problem, columns: &Mat<f64>, options: &fit::Options) -> Option<Mat<f64>> {
+    let n = problem.n_rows();
+    let is_held = |j: &usize| options.excluded.contains(j) || options.fixed.iter().any(|(k, _)| k == j);
+    let own: Vec<usize> = (0..problem.n_coefficients()).filter(|j| !is_held(j)).collect();
+    let root = |i: usize| problem.weight.as_ref().map_or(1.0, |w| w[i].sqrt());
+    let of = |from: &Mat<f64>, j: usize| -> Vec<f64> { (0..n).map(|i| from[(i, j)] * root(i)).collect() };
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for j in own {
+        basis.extend(cleared(of(&problem.design, j), &basis));
+    }
+    let first = basis.len();
+    for j in 0..columns.ncols() {
+        basis.extend(cleared(of(columns, j), &basis));
+    }
+    let new = basis.split_off(first);
+    (!new.is_empty()).then(|| Mat::from_fn(n, new.len(), |i, k| new[k][i] / root(i)))
+}
+
+/// What a column has beside an orthonormal basis, of length 1; `None` where that is rounding.
+fn cleared(column: Vec<f64>, basis: &[Vec<f64>]) -> Option<Vec<f64>> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let unit = |v: Vec<f64>| {
+        let length = dot(&v, &v).sqrt();
+        (length, v.into_iter().map(|x| x / length).collect::<Vec<f64>>())
+    };
+    let (length, mut rest) = unit(column);
+    if length == 0.0 {
+        return None;
+    }
+    // Twice is enough (Kahan).
+    for _ in 0..2 {
+        for q in basis {
+            let along = dot(q, &rest);
+            rest.iter_mut().zip(q).for_each(|(r, q)| *r -= along * q);
+        }
+    }
+    let (left, rest) = unit(rest);
+    (left > NOTHING).then_some(rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use froude_records::campaign::read_campaign;
+    use froude_records::comparison::AddedTerms;
+    use rand_distr::{Distribution, StandardNormal};
+    use rand_pcg::Pcg64;
+
+    use crate::result::SourceResult;
+    use crate::source::identify_source;
+
+    /// The default laws of a table of so many speeds, with more keys of the campaign.
+    fn found(n: u32, truth: impl Fn(f64) -> f64, sigma: f64, seed: u128, keys: &str) -> SourceResult {
+        let folder = tempfile::tempdir().unwrap();
+        let mut rng = Pcg64::new(seed, 0);
+        let mut text = "speed [m/s],f_x [N]\n".to_owned();
+        for i in 0..n {
+            let u = 0.2 + 1.4 * f64::from(i) / f64::from(n - 1);
+            let z: f64 = StandardNormal.sample(&mut rng);
+            let _ = writeln!(text, "{u},{}", -truth(u) + sigma * z);
+        }
+        std::fs::write(folder.path().join("t.csv"), text).unwrap();
+        let campaign =
+            format!("schema = 1\nname = \"a\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n{keys}");
+        std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
+        let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
+        identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap()
+    }
+
+    fn test<'a>(of: &'a SourceResult, law: &str, other: &str) -> &'a AddedTerms {
+        of.tests.iter().find(|t| t.law == law && t.of == other).unwrap()
+    }
+
+    /// Of one term F is the square of its t in the larger law, and the larger law has none that the smaller lacks.
+    #[test]
+    fn f_of_one_term_is_t_squared() {
+        let found = found(12, |u| 2.0 * u + 9.0 * u * u, 0.3, 1, "");
+        let larger = found.estimates.iter().find(|e| e.law.name == "linear_quadratic").unwrap();
+        let linear = &larger.coefficients["D_x_I"];
+        let t = linear.value.unwrap() / linear.standard_uncertainty.unwrap();
+        let of = test(&found, "quadratic", "linear_quadratic");
+        assert!((of.f / (t * t) - 1.0).abs() < 1e-9 && of.dof == [1.0, 10.0], "{of:?} {t}");
+        assert!((of.p / froude_fit::distribution::t_two_sided(t, 10.0) - 1.0).abs() < 1e-9, "{of:?}");
+        assert!(!found.tests.iter().any(|t| t.law == "linear_quadratic" && t.of == "quadratic"));
+        // A power law and a polynomial each have two terms that the other lacks.
+        assert_eq!(test(&found, "power_law", "linear_quadratic").dof, [2.0, 8.0]);
+        assert_eq!(test(&found, "linear_quadratic", "power_law").dof, [2.0, 8.0]);
+    }
+
+    /// A zero error contradicts the quadratic law, and does not where it is declared.
+    #[test]
+    fn a_declared_error_contradicts_no_law() {
+        let zero =
+            "[[source.uncertainty]]\nname = \"zero\"\nquantity = \"f_x\"\nstandard = \"1 N\"\nshared = \"campaign\"\n";
+        let p = |keys: &str| {
+            let found = found(16, |u| 9.0 * u * u + 1.0, 0.1, 2, keys);
+            test(&found, "quadratic", "linear_quadratic").p
+        };
+        assert!(p("") < 1e-6 && p(zero) > 0.05, "{} {}", p(""), p(zero));
+    }
+
+    /// The true law is contradicted in 0.5 % of tables at most, of few rows and of many: 600 each, and three standard deviations of the count.
+    #[test]
+    fn a_true_law_is_rarely_contradicted() {
+        let truths: [(&str, fn(f64) -> f64); 3] = [
+            ("quadratic", |u| 12.0 * u * u),
+            ("linear_quadratic", |u| 3.0 * u + 9.0 * u * u),
+            ("power_law", |u| 12.0 * u.powf(1.8)),
+        ];
+        for n in [5, 16] {
+            for (law, truth) in truths {
+                let is_left = |seed: u128| {
+                    let found = found(n, truth, 0.4, 100 + seed, "");
+                    let left = found.recommendation.unwrap().not_contradicted;
+                    left.iter().any(|i| found.models[*i].law.name == law)
+                };
+                let contradicted = (0..600).filter(|seed| !is_left(*seed)).count();
+                assert!(contradicted <= 8, "{law}, {n} rows: {contradicted} of 600");
+            }
+        }
+    }
+}
