@@ -233,7 +233,7 @@ fn reduced(
     one_unit(table, sample, &fitted_loads(campaign, source, ends))?;
     let (validity, found) = validity::ranges(ends, campaign);
     findings.extend(found);
-    findings.extend(lint::of_ends(ends, campaign));
+    findings.extend(lint::of_ends(ends, campaign, &laws));
     findings.extend(no_budget(campaign, source, &[]));
     findings.extend(seconds.findings(facts, ends, &laws));
     check_budget(source, ends)?;

@@ -17,6 +17,7 @@ use crate::law::ForceLaw;
 use crate::lint::motion::{force_along_motion, largest, moving};
 use crate::lint::repeats::{AHEAD, repeats};
 use crate::lint::volumes::{volume_channel, volumes};
+use crate::source::models::Drift;
 
 /// Share of rows at one extreme value that looks like a saturated sensor.
 const SATURATED_SHARE: f64 = 0.02;
@@ -54,17 +55,18 @@ pub fn observations(data: &Dataset, campaign: &Campaign, laws: &[ForceLaw]) -> V
     findings.extend(saturation(data));
     findings.extend(angle_in_radians(data));
     findings.extend(distinct_speeds(data, laws));
+    findings.extend(one_drift(data, laws));
     findings.extend(repeats(data));
-    findings.extend(of_ends(data, campaign));
+    findings.extend(of_ends(data, campaign, laws));
     findings
 }
 
 /// Those that the rows at the ends of the ranges decide.
-pub(crate) fn of_ends(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
+pub(crate) fn of_ends(data: &Dataset, campaign: &Campaign, laws: &[ForceLaw]) -> Vec<Finding> {
     let mut findings = Vec::new();
     findings.extend(implausible_speed(data));
     findings.extend(drag_area(data, campaign.body.as_ref().and_then(|b| b.reference_area_m2)));
-    findings.extend(one_sign_of_angle(data));
+    findings.extend(one_sign_of_angle(data).filter(|_| laws.iter().any(has_cross_term)));
     if let Some(body) = &campaign.body {
         findings.extend(volumes(body));
     }
@@ -208,6 +210,45 @@ fn distinct_speeds(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
     few_speeds(of_speeds(laws).flat_map(ForceLaw::channels).filter(|name| is_speed(name)).filter_map(distinct).max()?)
 }
 
+/// Rows that move askew at one speed, or at one magnitude of the angle: terms of the built-in laws that have nearly one shape there.
+fn one_drift(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
+    let built_in = laws.iter().find(|law| law.name == "linear_quadratic")?;
+    let stands = |across: &str, letter: &str| {
+        let drift = Drift::of(data, "v_x", across);
+        let axis = across.trim_start_matches("v_");
+        let v = if axis == "y" { "v" } else { "w" };
+        let uv = format!("{letter}_u{v}");
+        // Of a force across the body the other terms are those of its drag.
+        let is_force = matches!(letter, "Y" | "Z");
+        let [linear, square] = if is_force {
+            ["I", "II"].map(|of| format!("D_{axis}_{of}"))
+        } else {
+            [v.to_owned(), format!("{v}{v}")].map(|of| format!("{letter}_{of}"))
+        };
+        let is_there = drift.is_askew && built_in.position(&uv).is_some();
+        let mut also = Vec::new();
+        if drift.is_of_one_speed {
+            also.push(linear);
+        }
+        if drift.is_at_one_angle {
+            also.push(square);
+        }
+        (is_there && !also.is_empty()).then(|| format!("{uv} stands for {} too", also.join(" and ")))
+    };
+    let all: Vec<String> = [("v_y", "Y"), ("v_y", "N"), ("v_z", "Z"), ("v_z", "M")]
+        .into_iter()
+        .filter_map(|(across, letter)| stands(across, letter))
+        .collect();
+    (!all.is_empty()).then(|| {
+        let text = format!(
+            "the rows with drift have one speed or one magnitude of the angle, at which some terms have nearly one shape: {}, and holds at that speed or angle alone; run \
+             others to tell them apart",
+            all.join("; ")
+        );
+        Finding::new(Severity::Note, "one-drift", text)
+    })
+}
+
 fn is_speed(name: &str) -> bool {
     name == "speed" || name.starts_with("v_") && !name.ends_with("_dot")
 }
@@ -230,6 +271,11 @@ pub(crate) fn few_speeds(n: usize) -> Option<Finding> {
             ),
         )
     })
+}
+
+/// Whether a law has the cross term of f1 to f6 that an offset of the angle looks like.
+fn has_cross_term(law: &ForceLaw) -> bool {
+    law.coefficients.iter().any(|c| c.name.starts_with("C_XY"))
 }
 
 /// Only one sign of the angle: an angle offset looks exactly like C_XY_II.

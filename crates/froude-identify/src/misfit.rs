@@ -2,8 +2,15 @@
 //!
 //! **Against repeats of a setting:** F of what the law leaves of their means over their scatter; it sees any error of the law, and few of any one.
 //!
-//! **Against a bend:** one degree of freedom of Tukey's kind, r·v/(|v| s) of Student's t, v being what the law leaves of f √|f|, and f the fitted load. Where the load is the square of a
-//! speed, f √|f| is its cube: the next term. It needs no repeats, and sees an error that is smooth in the load.
+//! **Against a shape:** one degree of freedom of Tukey's kind, r·v/(|v| s) of Student's t, v being what the law leaves of a shape z. It needs no repeats, and sees an error of that
+//! shape. Each shape of a load has its part of the level:
+//!
+//! | z | where | what it finds |
+//! | --- | --- | --- |
+//! | f √\|f\|, f the fitted load | always | a bend: where the load is the square of a speed, its cube, the next term |
+//! | \|f\| | loads of both signs | a part that is even where the law is odd, or odd where it is even |
+//! | v_x v_y, v_x v_z | a body that moves askew | lift, the moment of an ideal fluid |
+//! | v_y², v_z² | the same | a part that is even in the drift |
 //!
 //! Given the fitted loads the residuals are independent of them, so that t is exact for independent normal errors of one size. It is not asked where these are not: of rows in time, of
 //! setups with offsets, of scatter that is uneven, of a row that lies apart, beside a prior, or beside a declared error that is no gain. Where successive rows are alike the finding says that
@@ -23,11 +30,12 @@ use crate::dataset::{Dataset, LOADS};
 use crate::motions;
 use crate::regression::{ModelFit, Scatter};
 use crate::scatter_tests::{ALARM, declares_groups};
+use crate::source::models::Drift;
 use crate::uncertainty::in_words;
 
-/// Fewest rows that a bend is looked for in.
+/// Fewest rows that a shape is looked for in.
 const FEWEST_ROWS: usize = 8;
-/// What the law leaves of a bend that it has itself is rounding.
+/// What the law leaves of a shape that it has itself is rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// The loads that a law does not describe. `scatter` has what was found of the scatter of each load, `outlying` the loads with a row that lies apart.
@@ -42,23 +50,23 @@ pub(crate) fn findings(
     if declares_groups(model) {
         return Vec::new();
     }
-    let bends = bends(model, data, &gains(campaign));
+    let shapes = shapes(model, data, &gains(campaign));
     let loads = model.law.responses.len() as f64;
     let mut out = Vec::new();
     for load in &model.law.responses {
         let has = |code: &str| scatter.iter().any(|(of, finding)| of == load && finding.code == code);
         let is_sound = !has("uneven-scatter") && !has("setup-offset") && !outlying.iter().any(|(of, _)| of == load);
         let of_repeats = diagnostics.lack_of_fit_p.get(load).copied();
-        let of_bend = bends.iter().find(|(of, _)| of == load && is_sound).map(|(_, p)| *p);
-        let level = ALARM / loads / if of_repeats.is_some() && of_bend.is_some() { 2.0 } else { 1.0 };
+        let of_shape = shapes.iter().find(|of| of.load == *load && is_sound);
+        let level = ALARM / loads / if of_repeats.is_some() && of_shape.is_some() { 2.0 } else { 1.0 };
         let repeats = of_repeats.filter(|p| *p < level).map(|p| {
             format!("the lack of fit is larger than the scatter of repeats of the same setting ({})", p_equation(p))
         });
-        let bend = of_bend.filter(|p| *p < level).map(|p| {
+        let shape = of_shape.filter(|of| of.p < level).map(|of| {
             let or = if has("serial-correlation") { ", unless that is what makes successive rows alike" } else { "" };
-            format!("the residuals bend with the fitted load ({}){or}", p_equation(p))
+            format!("the residuals {} ({}){or}", of.words, p_equation(of.p))
         });
-        let said: Vec<String> = repeats.into_iter().chain(bend).collect();
+        let said: Vec<String> = repeats.into_iter().chain(shape).collect();
         if said.is_empty() {
             continue;
         }
@@ -73,8 +81,16 @@ pub(crate) fn findings(
     out
 }
 
-/// The loads in which a bend can be looked for, each with p of its t.
-fn bends(model: &ModelFit, data: &Dataset, gains: &[String]) -> Vec<(String, f64)> {
+/// The shape that the residuals of a load go with most.
+struct Shape {
+    load: String,
+    words: String,
+    /// Times the number of shapes that were looked for.
+    p: f64,
+}
+
+/// The loads in which a shape can be looked for.
+fn shapes(model: &ModelFit, data: &Dataset, gains: &[String]) -> Vec<Shape> {
     let is_plain = matches!(model.scatter, Scatter::Classical)
         && model.whitened.is_none()
         && !model.in_variables
@@ -90,12 +106,38 @@ fn bends(model: &ModelFit, data: &Dataset, gains: &[String]) -> Vec<(String, f64
     }
     let residuals = Residuals::of(&model.problem, &model.options, &model.fit);
     let named = model.law.responses.iter().zip(&model.fit.components).enumerate();
+    let has_scatter = |c: &fit::ComponentSummary| c.sigma.is_some_and(|s| s > 0.0) && c.relative_residual > ROUNDING;
     named
-        .filter(|(_, (_, component))| {
-            component.sigma.is_some_and(|s| s > 0.0) && component.relative_residual > ROUNDING
+        .filter(|(_, (_, component))| has_scatter(component))
+        .filter_map(|(r, (load, _))| {
+            let of_load = &fitted[r * data.rows..(r + 1) * data.rows];
+            let found: Vec<(String, f64)> = candidates(data, load, of_load)
+                .into_iter()
+                .filter_map(|(words, z)| Some((words, along(model, &residuals, r, &z)?)))
+                .collect();
+            let n = found.len() as f64;
+            let (words, p) = found.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some(Shape { load: load.clone(), words, p: (n * p).min(1.0) })
         })
-        .filter_map(|(r, (load, _))| Some((load.clone(), bend(model, &residuals, r, &fitted)?)))
         .collect()
+}
+
+/// Shapes that a law may lack in a load, a number for each row.
+fn candidates(data: &Dataset, load: &str, fitted: &[f64]) -> Vec<(String, Vec<f64>)> {
+    let bend = fitted.iter().map(|f| f * f.abs().sqrt()).collect();
+    let mut out = vec![("bend with the fitted load".to_owned(), bend)];
+    if fitted.iter().any(|f| *f > 0.0) && fitted.iter().any(|f| *f < 0.0) {
+        let words = format!("go with |{load}|: a part of the load does not change its sign with the motion");
+        out.push((words, fitted.iter().map(|f| f.abs()).collect()));
+    }
+    for across in ["v_y", "v_z"] {
+        let (Some(u), Some(v)) = (data.values("v_x"), data.values(across)) else { continue };
+        if Drift::of(data, "v_x", across).is_askew {
+            out.push((format!("go with v_x*{across}"), u.iter().zip(v).map(|(u, v)| u * v).collect()));
+            out.push((format!("go with {across}^2"), v.iter().map(|v| v * v).collect()));
+        }
+    }
+    out
 }
 
 /// Errors of a campaign that scale loads or speeds: a law of powers takes these, and no shape is left.
@@ -105,14 +147,15 @@ fn gains(campaign: &Campaign) -> Vec<String> {
     entries.filter(|entry| entry.relative && is_scaled(&entry.quantity)).map(in_words).collect()
 }
 
-/// p of the bend of one load; where loads share coefficients, what it leaves in the others counts too.
-fn bend(model: &ModelFit, residuals: &[Residuals], load: usize, fitted: &[f64]) -> Option<f64> {
+/// p of a shape of one load; where loads share coefficients, what it leaves in the others counts too.
+fn along(model: &ModelFit, residuals: &[Residuals], load: usize, shape: &[f64]) -> Option<f64> {
     let of = residuals.get(load)?;
     if of.rows.len() < FEWEST_ROWS {
         return None;
     }
     let weight = |row: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[row]);
-    let z: Vec<f64> = of.rows.iter().map(|&row| fitted[row] * fitted[row].abs().sqrt() * weight(row).sqrt()).collect();
+    let n = shape.len();
+    let z: Vec<f64> = of.rows.iter().map(|&row| shape[row % n] * weight(row).sqrt()).collect();
     let onto: Vec<f64> = (0..of.q.ncols()).map(|k| z.iter().enumerate().map(|(i, z)| of.q[(i, k)] * z).sum()).collect();
     let squares = |of: &[f64]| of.iter().map(|x| x * x).sum::<f64>();
     let size = squares(&z);

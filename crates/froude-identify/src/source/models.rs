@@ -199,44 +199,100 @@ pub(crate) fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> Ident
     IdentifyError::NoLoad { path: source.input.path().to_owned(), lacks, columns }
 }
 
-/// f = −D_I·v − D_II·v|v| per axis, or the quadratic term alone; with it the moments of motion across the body,
+/// f = −D_I·v − D_II·v|v| per axis, or the quadratic term alone; of motion across the body with lift, Y_uv·v_x·v_y, and with the moments
 /// m_z = N_v·v_y + N_uv·v_x·v_y + N_vv·v_y|v_y|, the first again only in the linear law.
 ///
-/// N_uv holds the moment of an ideal fluid (Munk) and what lift takes off it, N_vv that of cross-flow. At one magnitude of
-/// drift both have the same shape: N_uv stands for their sum, N_vv is left out.
+/// Y_uv holds the lift, N_uv the moment of an ideal fluid (Munk) and what lift takes off it, D_y_II and N_vv cross-flow. At one magnitude of
+/// drift u·v and v|v| have the same shape: Y_uv and N_uv stand for the sum, and the others are left out. So do they for v at one speed of the rows that move askew.
+///
+/// # Source
+///
+/// SNAME (1952), Technical and Research Bulletin 1-5 (symbols); Clarke, Gedling & Hine (1983), Trans. RINA 125, 45 (linear terms of a hull grow with U).
 pub(crate) fn polynomial(name: &str, data: &Dataset, source: &Source, linear: bool) -> Result<ForceLaw, IdentifyError> {
     let askew = moments(data);
     let axes = if askew.is_empty() { moving_axes(data, source)? } else { axes(data) };
-    let mut texts: IndexMap<String, String> = axes
-        .into_iter()
-        .map(|(load, v)| {
-            let axis = load.replace("f_", "").replace("m_", "r");
-            let quadratic = format!("-D_{axis}_II*{v}*abs({v})");
-            let text = if linear { format!("-D_{axis}_I*{v} {quadratic}") } else { quadratic };
-            (load.to_owned(), text)
-        })
-        .collect();
+    let mut texts: IndexMap<String, String> = IndexMap::new();
+    for (load, v) in axes {
+        let axis = load.replace("f_", "").replace("m_", "r");
+        let drift = LIFTS
+            .iter()
+            .find(|(of, ..)| *of == load)
+            .map(|(_, across, letter)| (Drift::of(data, "v_x", across), *letter));
+        let has_lift = drift.as_ref().is_some_and(|(drift, _)| drift.is_askew);
+        let mut text = String::new();
+        if linear && !(has_lift && drift.as_ref().is_some_and(|(drift, _)| drift.is_of_one_speed)) {
+            text += &format!("-D_{axis}_I*{v} ");
+        }
+        if !(has_lift && drift.as_ref().is_some_and(|(drift, _)| drift.is_at_one_angle)) {
+            text += &format!("-D_{axis}_II*{v}*abs({v}) ");
+        }
+        if let Some((_, letter)) = drift.filter(|_| has_lift) {
+            text += &format!("+ {letter}_u{}*v_x*{v}", sname(v));
+        }
+        texts.insert(load.to_owned(), text.trim().trim_start_matches("+ ").to_owned());
+    }
     for (moment, along, across, letter) in askew {
-        let [u, v] = [along, across].map(|channel| channel.trim_start_matches("v_")).map(|axis| match axis {
-            "x" => "u",
-            "y" => "v",
-            _ => "w",
-        });
+        let (u, v) = (sname(along), sname(across));
+        let drift = Drift::of(data, along, across);
         let mut terms = Vec::new();
-        if linear {
+        if linear && !(drift.is_askew && drift.is_of_one_speed) {
             terms.push(format!("{letter}_{v}*{across}"));
         }
         let moves_along = moves(data, along);
         if moves_along {
             terms.push(format!("{letter}_{u}{v}*{along}*{across}"));
         }
-        if !moves_along || has_two_angles(data, along, across) {
+        if !moves_along || !drift.is_at_one_angle {
             terms.push(format!("{letter}_{v}{v}*{across}*abs({across})"));
         }
         let text = terms.join(" + ");
         texts.entry(moment.to_owned()).and_modify(|about| *about = format!("{about} + {text}")).or_insert(text);
     }
     ForceLaw::formulas(name, &texts, data)
+}
+
+/// Loads across a body that moves askew: the load, the velocity along it, and its letter.
+const LIFTS: [(&str, &str, &str); 2] = [("f_y", "v_y", "Y"), ("f_z", "v_z", "Z")];
+
+/// A velocity as SNAME writes it.
+fn sname(channel: &str) -> &'static str {
+    match channel {
+        "v_x" => "u",
+        "v_y" => "v",
+        _ => "w",
+    }
+}
+
+/// Speeds of rows that move askew that differ by less than this part are one.
+const ONE_SPEED: f64 = 0.02;
+
+/// What the rows that move askew can tell apart.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Drift {
+    /// Whether there are any.
+    pub(crate) is_askew: bool,
+    /// Whether all have one magnitude of the angle.
+    pub(crate) is_at_one_angle: bool,
+    /// Whether all have one speed.
+    pub(crate) is_of_one_speed: bool,
+}
+
+impl Drift {
+    /// Of a velocity along the body and one across it.
+    pub(crate) fn of(data: &Dataset, along: &str, across: &str) -> Self {
+        let (Some(u), Some(v)) = (data.values(along), data.values(across)) else {
+            return Self { is_askew: false, is_at_one_angle: true, is_of_one_speed: true };
+        };
+        let largest = u.iter().zip(v).map(|(u, v)| u.hypot(*v)).fold(0.0, f64::max);
+        let is_there = |x: &f64| x.abs() > 1e-9 * largest;
+        let askew = u.iter().zip(v).filter(|(u, v)| is_there(u) && is_there(v)).map(|(u, v)| u.hypot(*v));
+        let (low, high) = askew.fold((f64::INFINITY, 0.0_f64), |(low, high), speed| (low.min(speed), high.max(speed)));
+        Self {
+            is_askew: high > 0.0,
+            is_at_one_angle: !has_two_angles(data, along, across),
+            is_of_one_speed: high - low <= ONE_SPEED * high,
+        }
+    }
 }
 
 /// Whether the rows that move askew do so at two angles to the axis at least; ahead and astern are two.
