@@ -274,9 +274,13 @@ impl Comb<'_> {
     }
 }
 
-/// A number with the digits that tell it from its neighbours in a plan: a thousandth of a unit.
+/// A number with the digits that tell it from its neighbours in a plan: a thousandth of a unit, of smaller numbers four digits.
 fn shortest(x: f64) -> String {
-    let rounded = (x * 1e3).round() / 1e3;
+    // A ten-millionth is nothing: what conversion leaves of zero degrees.
+    let step =
+        if x.abs() < 1.0 && x.abs() > 1e-7 { 10_f64.powf(x.abs().log10().floor() - 3.0).min(1e-3) } else { 1e-3 };
+    let per = (1.0 / step).round();
+    let rounded = (x * per).round() / per;
     // Zero has no sign.
     format!("{}", rounded + 0.0)
 }
@@ -398,6 +402,14 @@ mod tests {
         assert_eq!(at("H1LT-u0.4-a45").start_from, None);
         assert_eq!(at("H1LT-u0.3-a45").start_from.as_deref(), Some("H1LT-u0.4-a45"));
         assert_eq!(at("H1LT-u0.3-a45").mesh, meshed[1].mesh);
+    }
+
+    #[test]
+    fn slow_cases_have_names_of_their_own() {
+        let plan = "[[source.plan]]\nconfigurations = [\"H1LT\"]\nspeed = [\"0.2 mm/s\", \"0.24 mm/s\", \"0.3 m/s\"]\n";
+        let ids: Vec<String> = of(plan, "cold = 0").into_iter().map(|c| c.id).collect();
+        assert_eq!(ids, ["H1LT-u0.3-a0", "H1LT-u0.00024-a0", "H1LT-u0.0002-a0"]);
+        assert_eq!([1e-12, -1e-9, 0.30000000004, 11.702_059, 0.02].map(shortest), ["0", "0", "0.3", "11.702", "0.02"]);
     }
 
     /// Re = U W/ν: 2000 at 0.02975 m/s.

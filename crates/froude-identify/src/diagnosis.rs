@@ -8,7 +8,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number::{p_equation, percent, plain, significant};
 use froude_records::text::counted;
 
-use crate::dataset::{Dataset, GroupedBy, distinct};
+use crate::dataset::{Dataset, GroupedBy, distinct, unit_text};
 use crate::error::IdentifyError;
 use crate::law::Kind;
 use crate::outlying::outlying_rows;
@@ -133,9 +133,59 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
             ));
         }
     }
+    out.extend(moved_out(model));
+    out.extend(dominating_row(model, data));
     out.extend(negative_drag(model));
     out.extend(drag_coefficients(model, data, campaign));
     out
+}
+
+/// Coefficients that have no interval, as bounds of others move them.
+fn moved_out(model: &ModelFit) -> Option<Finding> {
+    let names: Vec<&str> =
+        (0..model.specs.len()).filter(|j| model.is_moved_out(*j)).map(|j| model.specs[j].name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        let text = format!(
+            "{}: the bounds of other coefficients move {} out of the interval that the data give without bounds: no interval is given; \
+             a bound or the law is wrong",
+            model.law.name,
+            names.join(", ")
+        );
+        Finding::new(Severity::Warning, "moved-by-bounds", text)
+    })
+}
+
+/// Leverage from which on one row decides a fit.
+const DECIDES: f64 = 0.9;
+/// Weight over the median one from which on it is the weight that does it.
+const WEIGHS_MORE: f64 = 10.0;
+
+/// A row whose weight alone decides a load.
+fn dominating_row(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
+    let Some(weight) = model.problem.weight.as_ref().filter(|_| data.sample.is_none()) else { return Vec::new() };
+    let n = data.rows;
+    let of_load = |(r, load): (usize, &String)| {
+        let rows = r * n..(r + 1) * n;
+        let mut sorted = weight[rows.clone()].to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let median = sorted[n / 2];
+        let i = rows.max_by(|a, b| model.fit.leverage[*a].total_cmp(&model.fit.leverage[*b]))?;
+        let (leverage, times) = (model.fit.leverage[i], weight[i] / median);
+        (leverage > DECIDES && times > WEIGHS_MORE).then(|| {
+            let std = data.values(&format!("std_{load}")).map_or_else(String::new, |std| {
+                format!(" (std_{load} {} {})", significant(std[i % n], 3), unit_text(data, load))
+            });
+            let text = format!(
+                "{}, {load}: {}{std} weighs {} times the median row and alone decides the fit (leverage {}): check its standard deviation",
+                model.law.name,
+                data.row_name(i % n),
+                significant(times, 2),
+                percent(leverage)
+            );
+            Finding::new(Severity::Warning, "one-row-dominates", text)
+        })
+    };
+    model.law.responses.iter().enumerate().filter_map(of_load).collect()
 }
 
 /// A load of which the law leaves more than there is.

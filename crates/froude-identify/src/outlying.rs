@@ -14,7 +14,7 @@ use froude_fit::distribution::t_two_sided;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::{plain, significant};
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, unit_text};
 use crate::diagnosis::{FEWEST_FOR_SCATTER, Unevenness};
 use crate::regression::ModelFit;
 
@@ -49,13 +49,7 @@ pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> (Vec<(String, u
         }
         let Outlying { row, residual, t } = found;
         loads.push((component.clone(), row));
-        let unit = if model.law.in_logarithms() {
-            ""
-        } else if component.starts_with('m') {
-            " N m"
-        } else {
-            " N"
-        };
+        let unit = if model.law.in_logarithms() { String::new() } else { format!(" {}", unit_text(data, component)) };
         let at = data.values("speed").map_or_else(String::new, |v| format!(" ({} m/s)", plain(v[row].abs(), 4)));
         out.push(Finding::new(
             Severity::Warning,

@@ -55,7 +55,7 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         method: MethodUsed {
             name: stated.method.clone(),
             version: 1,
-            words: stated.words.clone().unwrap_or_else(|| method(model)),
+            words: stated.words.clone().unwrap_or_else(|| method(model, data)),
         },
         frame: stated.frame.clone(),
         point: stated.point.clone(),
@@ -147,15 +147,20 @@ fn scatter_by_load(
     // Loads share the coefficients of a law evenly, as far as is known here.
     let of_each = model.law.coefficients.len() as f64 / loads.len().max(1) as f64;
     let of_residuals = (data.rows as f64 - of_each).max(1.0);
-    let of_rows = |c: &fit::ComponentSummary| {
-        if model.in_variables { Some((c.rss / of_residuals).sqrt()).filter(|s| s.is_finite()) } else { c.sigma }
+    let of_rows = |r: usize, c: &fit::ComponentSummary| {
+        if model.in_variables {
+            Some((c.rss / of_residuals).sqrt()).filter(|s| s.is_finite())
+        } else {
+            model.sigma_of_rows(r)
+        }
     };
     let dof = |c: &fit::ComponentSummary| if model.in_variables { of_residuals } else { c.dof };
-    let sigma = |c: &fit::ComponentSummary| {
+    let sigma = |(r, c): (usize, &fit::ComponentSummary)| {
         let unit = if in_logarithms { "1".to_owned() } else { unit_text(data, &c.name) };
-        of_rows(c).map(|value| (c.name.clone(), Measured { value, unit }))
+        of_rows(r, c).map(|value| (c.name.clone(), Measured { value, unit }))
     };
-    (loads.iter().map(|c| (c.name.clone(), Some(dof(c)))).collect(), loads.iter().filter_map(sigma).collect())
+    let dof = loads.iter().map(|c| (c.name.clone(), Some(dof(c)))).collect();
+    (dof, loads.iter().enumerate().filter_map(sigma).collect())
 }
 
 /// A coefficient times an exact factor.
@@ -171,7 +176,7 @@ fn derived(d: &reduced::Derived, coefficients: &IndexMap<String, Coefficient>) -
     Some((d.name.clone(), number))
 }
 
-fn method(model: &ModelFit) -> String {
+fn method(model: &ModelFit, data: &Dataset) -> String {
     let is_weighted = model.problem.weight.is_some();
     let base = if model.law.in_logarithms() {
         if is_weighted { "least squares of logarithms" } else { "least squares of logarithms (equal relative errors)" }
@@ -202,7 +207,8 @@ fn method(model: &ModelFit) -> String {
         out += &format!(", Huber loss with k = {k}");
     }
     if model.problem.weight.is_some() {
-        out += ", weighted by the table's standard deviations";
+        let has_std = model.law.responses.iter().any(|load| data.values(&format!("std_{load}")).is_some());
+        out += if has_std { ", weighted by the table's standard deviations" } else { ", weighted by the fitted loads" };
     }
     if model.specs.len() > model.law.coefficients.len() {
         out += ", with an angle offset per setup";
@@ -241,7 +247,7 @@ fn coefficients(model: &ModelFit, labels: &IndexMap<String, String>) -> IndexMap
             };
             let is_contradicted = model.contradicted_bound(j).is_some();
             let status = if is_contradicted { Status::BoundContradicted } else { status };
-            let interval_95 = interval_95.filter(|_| !is_contradicted && !is_refused);
+            let interval_95 = interval_95.filter(|_| !is_contradicted && !is_refused && !model.is_moved_out(j));
             let coefficient = Coefficient {
                 label: labels.get(&spec.name).cloned(),
                 nuisance: j >= model.law.coefficients.len(),

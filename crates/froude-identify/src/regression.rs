@@ -7,7 +7,7 @@ mod held;
 mod job;
 pub(crate) mod known;
 mod problem;
-mod uncertain;
+pub(crate) mod uncertain;
 
 use froude_fit as fit;
 use froude_records::campaign::{BoundKind, Identify, PriorSpec};
@@ -71,8 +71,9 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             .push(job.not_converged(&format!("the solver stopped early ({end:?}); its values are not the best ones")));
     }
     let coefficients = step(&fitted);
-    if law.is_nonlinear() {
-        relative_residual(law, data, &coefficients, &job.newtons, &problem, &mut fitted)?;
+    let has_offsets = job.specs.len() > law.coefficients.len();
+    if law.is_nonlinear() || (problem.weight.is_some() && !has_offsets) {
+        relative_residual(law, data, &coefficients, &job.newtons, &mut fitted)?;
     }
     findings.extend(beside_priors(law, data, settings, &problem, &options, &job.specs)?);
     let uncertainty = Uncertainty::of(law, data, settings, (&problem, &fitted), [in_variables, whitened.is_some()])?;
@@ -102,25 +103,18 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     })
 }
 
-/// √(Σ w r²/Σ w f²) of the loads themselves: the fit knows only the response of its last linear step.
+/// √(Σ r²/Σ f²) of the loads themselves: the fit knows only the response of its last linear step, and weighs rows.
 fn relative_residual(
     law: &ForceLaw,
     data: &Dataset,
     coefficients: &[f64],
     newtons: &[f64],
-    problem: &fit::Problem,
     fitted: &mut fit::Fit,
 ) -> Result<(), IdentifyError> {
     let predicted = law.predict(data, &coefficients[..law.coefficients.len()])?;
     let n = data.rows;
     for (r, summary) in fitted.components.iter_mut().enumerate() {
-        // The weights of logarithms are relative ones.
-        let weight = |i: usize| match &problem.weight {
-            Some(w) if law.in_logarithms() => w[i] / newtons[i].powi(2),
-            Some(w) => w[i],
-            None => 1.0,
-        };
-        let sum = |of: &dyn Fn(usize) -> f64| (r * n..(r + 1) * n).map(|i| weight(i) * of(i).powi(2)).sum::<f64>();
+        let sum = |of: &dyn Fn(usize) -> f64| (r * n..(r + 1) * n).map(|i| of(i).powi(2)).sum::<f64>();
         summary.relative_residual = (sum(&|i| newtons[i] - predicted[i]) / sum(&|i| newtons[i])).sqrt();
     }
     Ok(())

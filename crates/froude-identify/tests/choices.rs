@@ -338,3 +338,25 @@ fn a_side_force_is_not_held_against_the_frontal_area() {
     let r = identify(&table, &format!("{body}{SOURCE}models = [\"quadratic\"]\n"));
     assert!(!r.findings.iter().any(|f| f.code == "unphysical-drag-coefficient"), "{:?}", r.findings);
 }
+
+/// −5 v of drag that pushes is held at zero, and takes D_x_II out of the interval that it has beside −5 v: that interval is not printed with the other value.
+#[test]
+fn a_value_that_bounds_move_has_no_interval_of_another_value() {
+    let mut rows = "speed [m/s],f_x [N]\n".to_owned();
+    for (k, sign) in [1, -1, 0, 1, -1, -1, 1, 0, -1, 1].into_iter().enumerate() {
+        let v = 0.1 * (k + 1) as f64;
+        writeln!(rows, "{v},{}", 5.0 * v - 20.0 * v * v + 0.05 * f64::from(sign)).unwrap();
+    }
+    let campaign =
+        format!("{SOURCE}models = [\"linear_quadratic\"]\n[identify]\nbounds = {{ D_x_I = \"non-negative\" }}\n");
+    let found = identify(&rows, &campaign);
+    let [linear, square] = ["D_x_I", "D_x_II"].map(|name| found.estimates[0].coefficients[name].clone());
+    assert_eq!((linear.value, linear.status, linear.interval_95), (Some(0.0), Status::BoundContradicted, None));
+    assert!(square.value.unwrap() < 15.0 && square.interval_95.is_none(), "{square:?}");
+    let said = found.findings.iter().find(|f| f.code == "moved-by-bounds").unwrap();
+    assert!(said.message.contains("move D_x_II out of the interval"), "{}", said.message);
+    // Without bounds there is one.
+    let free = identify(&rows, &format!("{SOURCE}models = [\"linear_quadratic\"]\n"));
+    let [low, high] = free.estimates[0].coefficients["D_x_II"].interval_95.unwrap();
+    assert!(low < 20.0 && 20.0 < high && !free.findings.iter().any(|f| f.code == "moved-by-bounds"));
+}

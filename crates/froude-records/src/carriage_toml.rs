@@ -312,7 +312,12 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
         jerk_m_s3: s.positive("jerk", JERK)?,
         settling_dry_s,
         settling_wet_s,
-        still_s: duration(s, "still")?.unwrap_or(0.0),
+        // None is the default, and may be written.
+        still_s: if s.quantity("still", Dimension::TIME)? == Some(0.0) {
+            0.0
+        } else {
+            duration(s, "still")?.unwrap_or(0.0)
+        },
         warm_up: s.section("warm_up")?.map(|s| warm_up(&s)).transpose()?,
         friction: s.section("friction_sweep")?.map(|s| friction_sweep(&s)).transpose()?,
         calibration: s.section("calibration")?.map(|s| calibration(&s)).transpose()?,

@@ -22,13 +22,13 @@ pub(super) fn rows(source: &SourceResult) -> Vec<SelectionRow> {
     let mut out = Vec::new();
     for (i, model) in source.models.iter().enumerate() {
         let diagnostics = &source.estimates[i].diagnostics;
-        for component in &model.fit.components {
+        for (r, component) in model.fit.components.iter().enumerate() {
             let rmse = diagnostics.cross_validation_rmse.get(&component.name).copied();
             out.push(SelectionRow {
                 model: model.law.name.clone(),
                 component: component.name.clone(),
                 n_coefficients: component.rank,
-                sigma: component.sigma.unwrap_or(f64::NAN),
+                sigma: model.sigma_of_rows(r).unwrap_or(f64::NAN),
                 unit: if model.law.in_logarithms() { "1".to_owned() } else { unit_text(&source.data, &component.name) },
                 relative_residual: component.relative_residual,
                 delta_aicc: behind(model, &component.name),

@@ -15,6 +15,8 @@ use crate::uncertainty::{SharedError, coverage_factor};
 
 /// Fewest degrees of freedom of an interval by clusters; two equal ones less one would have one.
 const FEWEST_CLUSTER_DOF: f64 = 2.0 - 1e-6;
+/// Standard uncertainties by which a value lies outside of an interval by rounding.
+const ROUNDING: f64 = 1e-9;
 /// Chance of calling a bound contradicted that holds, over all bounds of a law.
 const BOUND_ALARM: f64 = 0.01;
 
@@ -173,6 +175,30 @@ impl ModelFit {
         let is_outside = free < bound.lower || free > bound.upper;
         let p = 0.5 * t_two_sided((free - beyond).abs() / combined.standard, combined.dof);
         (is_outside && p < BOUND_ALARM / count.max(1) as f64).then_some(beyond)
+    }
+
+    /// Whether the bounds of others move a coefficient out of its own interval, which is that of the fit without bounds: the interval does not belong to the value.
+    #[must_use]
+    pub fn is_moved_out(&self, j: usize) -> bool {
+        let fitted = &self.fit.coefficients[j];
+        let (Some(c), Some(free), Some(value)) = (self.combined[j], fitted.unconstrained, fitted.value) else {
+            return false;
+        };
+        let [low, high] = c.interval(free);
+        let rounding = ROUNDING * c.standard;
+        fitted.status == fit::Status::Free && (value < low - rounding || value > high + rounding)
+    }
+
+    /// Standard deviation of a row of each load about the law, in the unit of the load (of a fit in logarithms, a part of it).
+    ///
+    /// Of weighted rows the root of their mean variance, σ √(Σ (1/w)/n): σ itself is that of a row of weight 1, and there may be no such row.
+    #[must_use]
+    pub fn sigma_of_rows(&self, load: usize) -> Option<f64> {
+        let sigma = self.fit.components[load].sigma?;
+        let Some(weight) = &self.problem.weight else { return Some(sigma) };
+        let rows = (0..weight.len()).filter(|i| self.problem.component[*i] == load);
+        let (sum, n) = rows.fold((0.0, 0.0), |(sum, n), i| (sum + 1.0 / weight[i], n + 1.0));
+        Some(sigma * (sum / n).sqrt())
     }
 
     /// Whether its rows follow each other in time, and its scatter knows.
