@@ -133,7 +133,7 @@ fn observations(n: usize) -> String {
 fn coefficients(estimate: &Estimate) -> Table {
     let has_others = estimate.not_contradicted.len() > 1;
     let intervals =
-        if has_others { &["95 % interval if it is true", "range over all"][..] } else { &["95 % interval"] };
+        if has_others { &["95 % interval if law is true", "range over laws"][..] } else { &["95 % interval"] };
     let mut out = table(&[&["coefficient", "value", "unit"], intervals, &["type A", "type B", "status"]].concat());
     let ends = |ends: Option<[f64; 2]>| right(ends.map_or("—".to_owned(), number::interval));
     for (name, c) in &estimate.coefficients {
@@ -272,7 +272,7 @@ fn estimate_facts(e: &Estimate) {
         sentence(reason);
     }
     if e.not_contradicted.len() > 1 {
-        sentence(&format!("not contradicted by the data: {}", e.not_contradicted.join(", ")));
+        sentence(&format!("laws of this source that the data do not contradict: {}", e.not_contradicted.join(", ")));
     }
     let mut about = vec![observations(e.n_observations)];
     about.extend(

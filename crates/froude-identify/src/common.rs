@@ -11,7 +11,7 @@
 use std::collections::BTreeSet;
 
 use froude_fit::budget::{Kind, OUTSIDE_95, Part, combine};
-use froude_records::estimate::{Coefficient, Estimate, OWN, SharedError, TypeA};
+use froude_records::estimate::{Coefficient, Estimate, OWN, SharedError, Status, TypeA};
 use froude_records::finding::{Finding, Severity};
 
 use crate::compare::Stated;
@@ -34,13 +34,15 @@ pub(crate) struct Number<'a> {
 impl<'a> Number<'a> {
     /// A coefficient, with the uncertainty that the record states.
     pub fn of_coefficient(estimate: &'a Estimate, name: &str) -> Self {
-        let Coefficient { value, standard_uncertainty, effective_dof, interval_95, range_95, .. } =
+        let Coefficient { value, standard_uncertainty, effective_dof, interval_95, range_95, status, .. } =
             &estimate.coefficients[name];
         let names = estimate.type_a.as_ref().map_or(&[][..], |a| &a.names);
         let is_there = names.iter().any(|n| n == name);
         let slopes =
             if is_there { names.iter().map(|n| if n == name { 1.0 } else { 0.0 }).collect() } else { Vec::new() };
-        let is_refused = estimate.without_interval().contains(&name);
+        // Several laws are left, and one of them gives the coefficient no interval.
+        let has_no_range = estimate.not_contradicted.len() > 1 && interval_95.is_some() && range_95.is_none();
+        let is_refused = estimate.without_interval().contains(&name) || (has_no_range && *status != Status::Fixed);
         let stated =
             Stated { value: *value, standard: *standard_uncertainty, dof: *effective_dof, is_refused, beyond: 0.0 };
         let ends = interval_95.zip(*range_95);
@@ -48,24 +50,28 @@ impl<'a> Number<'a> {
         Self { estimate, slopes, beyond: [0.0; 2], stated }.reaching(beyond)
     }
 
-    /// The same with laws beside its own, which reach further.
+    /// Sets how far the envelope reaches beyond the interval, below and above.
     fn reaching(mut self, beyond: [f64; 2]) -> Self {
         self.beyond = beyond.map(|x| x.max(0.0));
         self.stated.beyond = self.beyond[0].max(self.beyond[1]);
         self
     }
 
-    /// The same number with others of the same quantity, of laws that the data of its record do not contradict either: its interval holds theirs.
+    /// This number with its interval widened to hold those of `others`, the same quantity by the other laws that are not contradicted.
     pub fn around(self, others: &[Self]) -> Self {
-        let ends = |of: &Self| {
-            of.stated.value.map(|value| {
-                let [below, above] = of.arms(&|_| true);
-                [value - below, value + above]
-            })
+        // With all errors, and by the scatter alone: what a comparison removes as common must not hide a law.
+        let reach = |is_meant: &dyn Fn(&str) -> bool| {
+            let ends = |of: &Self| {
+                let [below, above] = of.own_arms(is_meant);
+                of.stated.value.map(|value| [value - below, value + above])
+            };
+            let [low, high] = ends(&self)?;
+            let hull = others.iter().filter_map(ends).fold([low, high], |[a, b], [c, d]| [a.min(c), b.max(d)]);
+            Some([low - hull[0], hull[1] - high])
         };
-        let Some([low, high]) = ends(&self) else { return self };
-        let hull = others.iter().filter_map(ends).fold([low, high], |[a, b], [c, d]| [a.min(c), b.max(d)]);
-        self.reaching([low - hull[0], hull[1] - high])
+        let (Some(all), Some(scatter)) = (reach(&|_| true), reach(&|_| false)) else { return self };
+        let beyond = [0, 1].map(|k| all[k].max(scatter[k]).max(self.beyond[k]));
+        self.reaching(beyond)
     }
 
     /// A number made from the coefficients; `slope` is its derivative by each.
@@ -117,9 +123,8 @@ impl<'a> Number<'a> {
     }
 
     /// Its interval's arm towards smaller numbers and towards larger ones, from its own parts.
-    fn arms(&self, is_meant: &dyn Fn(&str) -> bool) -> [f64; 2] {
-        let [below, above] = combine(&self.parts(is_meant), 0, self.outside()).arms;
-        [below + self.beyond[0], above + self.beyond[1]]
+    fn own_arms(&self, is_meant: &dyn Fn(&str) -> bool) -> [f64; 2] {
+        combine(&self.parts(is_meant), 0, self.outside()).arms
     }
 
     fn outside(&self) -> f64 {
@@ -220,7 +225,7 @@ impl<'a> Common<'a> {
 
     /// Expanded (95 %) uncertainty of a difference, towards zero.
     ///
-    /// U² = U_a² + U_b² + U_c², each the arm of its 95 % interval that points to the other value; in the unit of the numbers. `difference` is a − b, of which
+    /// U = √(U_a² + U_b² + U_c²) and what the envelopes of laws add to both arms, each the arm of its 95 % interval that points to the other value; in the unit of the numbers. `difference` is a − b, of which
     /// only the sign is read.
     ///
     /// # Source
@@ -240,7 +245,9 @@ impl<'a> Common<'a> {
             .collect();
         let outside = a.outside().min(b.outside());
         let together = if common.is_empty() { 0.0 } else { combine(&common, 0, outside).arms[of_a] };
-        a.arms(&alone)[of_a].hypot(b.arms(&alone)[of_b]).hypot(together)
+        // Which law is true is no chance: what other laws add is added as it is.
+        let beyond = a.beyond[of_a] + b.beyond[of_b];
+        a.own_arms(&alone)[of_a].hypot(b.own_arms(&alone)[of_b]).hypot(together) + beyond
     }
 
     /// Covariance between a coefficient of the first and one of the second.

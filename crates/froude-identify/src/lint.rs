@@ -212,7 +212,7 @@ fn distinct_speeds(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
 
 /// Rows that move askew at one speed, or at one magnitude of the angle: terms of the built-in laws that have nearly one shape there.
 fn one_drift(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
-    let built_in = laws.iter().find(|law| law.name == "linear_quadratic")?;
+    let built_in = laws.iter().find(|law| matches!(law.name.as_str(), "quadratic" | "linear_quadratic"))?;
     let stands = |across: &str, letter: &str| {
         let drift = Drift::of(data, "v_x", across);
         let axis = across.trim_start_matches("v_");
@@ -233,7 +233,7 @@ fn one_drift(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
         if drift.is_at_one_angle {
             also.push(square);
         }
-        (is_there && !also.is_empty()).then(|| format!("{uv} stands for {} too", also.join(" and ")))
+        (is_there && !also.is_empty()).then(|| format!("{uv} includes {}", also.join(" and ")))
     };
     let all: Vec<String> = [("v_y", "Y"), ("v_y", "N"), ("v_z", "Z"), ("v_z", "M")]
         .into_iter()
@@ -241,8 +241,8 @@ fn one_drift(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
         .collect();
     (!all.is_empty()).then(|| {
         let text = format!(
-            "the rows with drift have one speed or one magnitude of the angle, at which some terms have nearly one shape: {}, and holds at that speed or angle alone; run \
-             others to tell them apart",
+            "all rows with drift have the same speed or the same magnitude of the angle, so some terms cannot be separated: {}; these values hold only there; run other speeds or \
+             angles to separate the terms",
             all.join("; ")
         );
         Finding::new(Severity::Note, "one-drift", text)

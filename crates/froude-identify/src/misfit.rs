@@ -8,7 +8,7 @@
 //! | z | where | what it finds |
 //! | --- | --- | --- |
 //! | f √\|f\|, f the fitted load | always | a bend: where the load is the square of a speed, its cube, the next term |
-//! | \|f\| | loads of both signs | a part that is even where the law is odd, or odd where it is even |
+//! | v², v\|v\| of the own axis | motion of both signs | an even part that an odd law lacks, an odd one that an even law lacks |
 //! | v_x v_y, v_x v_z | a body that moves askew | lift, the moment of an ideal fluid |
 //! | v_y², v_z² | the same | a part that is even in the drift |
 //!
@@ -30,7 +30,7 @@ use crate::dataset::{Dataset, LOADS};
 use crate::motions;
 use crate::regression::{ModelFit, Scatter};
 use crate::scatter_tests::{ALARM, declares_groups};
-use crate::source::models::Drift;
+use crate::source::models::{Drift, PAIRS};
 use crate::uncertainty::in_words;
 
 /// Fewest rows that a shape is looked for in.
@@ -81,7 +81,7 @@ pub(crate) fn findings(
     out
 }
 
-/// The shape that the residuals of a load go with most.
+/// The shape that the residuals of a load correlate with most.
 struct Shape {
     load: String,
     words: String,
@@ -126,15 +126,17 @@ fn shapes(model: &ModelFit, data: &Dataset, gains: &[String]) -> Vec<Shape> {
 fn candidates(data: &Dataset, load: &str, fitted: &[f64]) -> Vec<(String, Vec<f64>)> {
     let bend = fitted.iter().map(|f| f * f.abs().sqrt()).collect();
     let mut out = vec![("bend with the fitted load".to_owned(), bend)];
-    if fitted.iter().any(|f| *f > 0.0) && fitted.iter().any(|f| *f < 0.0) {
-        let words = format!("go with |{load}|: a part of the load does not change its sign with the motion");
-        out.push((words, fitted.iter().map(|f| f.abs()).collect()));
+    let own = PAIRS.iter().find(|(of, _)| *of == load).and_then(|(_, motion)| data.values(motion));
+    if let Some(v) = own.filter(|v| v.iter().any(|x| *x > 0.0) && v.iter().any(|x| *x < 0.0)) {
+        let words = |is: &str| format!("correlate with a part of the load that {is} its sign when the motion reverses");
+        out.push((words("keeps"), v.iter().map(|v| v * v).collect()));
+        out.push((words("changes"), v.iter().map(|v| v * v.abs()).collect()));
     }
     for across in ["v_y", "v_z"] {
         let (Some(u), Some(v)) = (data.values("v_x"), data.values(across)) else { continue };
         if Drift::of(data, "v_x", across).is_askew {
-            out.push((format!("go with v_x*{across}"), u.iter().zip(v).map(|(u, v)| u * v).collect()));
-            out.push((format!("go with {across}^2"), v.iter().map(|v| v * v).collect()));
+            out.push((format!("correlate with v_x*{across}"), u.iter().zip(v).map(|(u, v)| u * v).collect()));
+            out.push((format!("correlate with {across}^2"), v.iter().map(|v| v * v).collect()));
         }
     }
     out

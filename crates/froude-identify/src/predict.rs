@@ -2,9 +2,9 @@
 //!
 //! In a row the law gives F = F(x; β) with Cov(F) = X·Cov(β)·Xᵀ, X = ∂F/∂β: scatter and every declared error of the record. A single measurement scatters about it by s: its own standard uncertainty where the table states one (`std_f_x`), and else the residual standard deviation of the record, which holds what the law itself misses. The band of one law is F ± k u_law; a measurement errs by e = measured − F with u² = u_law² + s². k is Student's at the degrees of freedom of Welch and Satterthwaite.
 //!
-//! The band of a record is the envelope of the bands of all laws that its data do not contradict, the chosen one among them. E_n = e/U, with U as far as the envelope of their F ± k u reaches from F towards the measured load: beyond ±1 in at most one row of twenty by chance, whichever of the laws is true.
+//! The band of a record is the envelope of the bands of all laws that its data do not contradict, the chosen one among them. E_n = e/U, U being the distance from F to the end of the envelope of F ± k u on the side of the measured load: |E_n| exceeds 1 by chance in at most 5.5 % of rows, whichever compared law is true.
 //!
-//! Rows of one record err together: a coefficient that is too large is so in all of them. So one number judges all rows, χ² = eᵀ(X Cov(β) Xᵀ + diag s²)⁻¹e, which has a mean of as many as there are rows. Where s was estimated, χ²/n is compared with F(n, ν) and not with χ². A record whose scatter is that of clusters has no such p. Of several laws χ² is that of the one which agrees best.
+//! Rows of one record err together: a coefficient that is too large is so in all of them. So one number judges all rows, χ² = eᵀ(X Cov(β) Xᵀ + diag s²)⁻¹e, which has a mean of as many as there are rows. Where s was estimated, χ²/n is compared with F(n, ν) and not with χ². A record whose scatter is that of clusters has no such p. Of several laws with the same loads χ² is that of the one that agrees best.
 //!
 //! An error that the table has too (the same balance, the same tank) is counted as if it had none: the record cannot know it.
 //!
@@ -35,6 +35,8 @@ pub struct Predicted {
     pub law: String,
     /// Ids of the laws whose envelope the bands are, the estimate first.
     pub laws: Vec<String>,
+    /// Ids of laws that belong to the envelope and read what the rows lack.
+    pub left_out: Vec<String>,
     /// Loads, row by row.
     pub rows: Vec<Row>,
     /// All rows with a measurement inside of what the record covers; `None` where there is none, or no scatter is known.
@@ -93,11 +95,17 @@ pub struct Joint {
 ///
 /// # Errors
 ///
-/// A law that is none of forces; a channel that one of them reads and the data lack; a coefficient without a value.
+/// A law that is none of forces; a channel that it reads and the data lack; a coefficient without a value. Of the others such a law is left out, by name.
 pub fn predict(estimate: &Estimate, others: &[&Estimate], data: &Dataset) -> Result<Predicted, IdentifyError> {
     let mut out = by_law(estimate, data)?;
     for other in others {
-        let beside = by_law(other, data)?;
+        let beside = match by_law(other, data) {
+            Ok(beside) => beside,
+            Err(_) => {
+                out.left_out.push(other.id.clone());
+                continue;
+            }
+        };
         let mut first: IndexMap<&String, usize> = IndexMap::new();
         for (place, row) in beside.rows.iter().enumerate() {
             first.entry(&row.load).or_insert(place);
@@ -112,7 +120,9 @@ pub fn predict(estimate: &Estimate, others: &[&Estimate], data: &Dataset) -> Res
             row.spread_95 = row.spread_95.zip(of_other.spread_95).map(|(own, other)| around(own, other));
         }
         let p = |joint: &Option<Joint>| joint.and_then(|joint| joint.p);
-        if p(&beside.joint).zip(p(&out.joint)).is_some_and(|(other, own)| other > own) {
+        // χ² of fewer loads is another question.
+        let gives_all = out.rows.iter().all(|row| first.contains_key(&row.load));
+        if gives_all && p(&beside.joint).zip(p(&out.joint)).is_some_and(|(other, own)| other > own) {
             out.joint = beside.joint;
         }
         out.laws.extend(beside.laws);
@@ -189,7 +199,7 @@ fn by_law(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyErro
         Joint { chi_squared, n, dof, p }
     });
     let id = estimate.id.clone();
-    Ok(Predicted { laws: vec![id.clone()], id, law: estimate.law.name.clone(), rows, joint })
+    Ok(Predicted { laws: vec![id.clone()], left_out: Vec::new(), id, law: estimate.law.name.clone(), rows, joint })
 }
 
 /// The data with a channel for each load of the law: formulas need its unit, and what was not measured is no number.

@@ -3,8 +3,8 @@
 //! Recommended is the simplest law that the data do not contradict: the one with the fewest coefficients, of equals that with the smallest AICc. Candidates are the laws whose
 //! coefficients are all determined.
 //!
-//! A law is contradicted where the terms of another candidate, added to it, are not zero ([`added_terms`]): the smallest p over all other laws and loads, times their number, is below
-//! 0.5 %. A true law is contradicted in at most 0.5 % of tables, whatever the others are.
+//! A law is contradicted where the terms of another law, added to it, are not zero ([`added_terms`]): the smallest p, times the number of tests, is below
+//! 0.5 %. Loads that the law gives and loads that it lacks are counted separately. A true law is contradicted in at most 0.5 % of tables, whatever the others are.
 //!
 //! So the true law, where it is among the candidates, is among those that are not contradicted: the envelope of their bands holds the load, and the envelope of their intervals of a
 //! coefficient (its range) the coefficient, in no less than 94.5 % of tables, whichever of them is recommended. The interval of one law holds if that law is true, and depends on no other.
@@ -25,6 +25,7 @@ use froude_records::number::p_equation;
 use froude_records::text::counted;
 
 use crate::dataset::Dataset;
+use crate::law::Kind;
 use crate::regression::ModelFit;
 
 pub use added::added_terms;
@@ -79,14 +80,20 @@ pub fn aicc_of(model: &ModelFit, data: &Dataset, load: &str) -> Option<f64> {
 #[must_use]
 pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[AddedTerms]) -> Option<Recommendation> {
     if let [only] = models {
-        let reason = format!("{} is the only law asked for", only.law.name);
+        let reason = format!("{} is the only law fitted", only.law.name);
         return Some(Recommendation { index: 0, not_contradicted: vec![0], reason });
     }
     let is_determined = |i: &usize| models[*i].fit.coefficients.iter().all(|c| c.status != fit::Status::Undetermined);
     let (candidates, undetermined): (Vec<usize>, Vec<usize>) = (0..models.len()).partition(is_determined);
     let aicc: Vec<Option<f64>> = models.iter().map(|m| aicc(m, data)).collect();
     let loads = |i: usize| models[i].law.responses.len();
-    let size = |i: usize| models[i].law.coefficients.len();
+    let is_held = |c: &&fit::FitCoefficient| matches!(c.status, fit::Status::Fixed | fit::Status::Excluded);
+    let size = |i: usize| {
+        let of_law = &models[i].fit.coefficients[..models[i].law.coefficients.len()];
+        of_law.len() - of_law.iter().filter(is_held).count()
+    };
+    // The tests are of the fit without bounds: a law that its bounds contradict is none that the data leave.
+    let is_out_of_bounds = |i: usize| (0..models[i].specs.len()).any(|j| models[i].contradicted_bound(j).is_some());
     let of_aicc = |i: usize| aicc[i].unwrap_or(f64::INFINITY);
     let most = candidates.iter().map(|i| loads(*i)).max().unwrap_or(0);
     let whole: Vec<usize> = candidates.iter().copied().filter(|i| loads(*i) == most).collect();
@@ -97,32 +104,35 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[AddedTerms]) -> O
             [true, false].map(|given| contradiction(tests.iter().filter(own).filter(|t| gives(i, t) == given)))
         })
         .collect();
-    let left: Vec<usize> = candidates.iter().copied().filter(|i| against[*i][0].is_none()).collect();
+    let left: Vec<usize> =
+        candidates.iter().copied().filter(|i| against[*i][0].is_none() && !is_out_of_bounds(*i)).collect();
     let key = |i: usize| (size(i), std::cmp::Reverse(loads(i)), of_aicc(i));
     let by_key = |a: &usize, b: &usize| key(*a).partial_cmp(&key(*b)).unwrap_or(std::cmp::Ordering::Equal);
-    let right: Vec<usize> = left.iter().copied().filter(|i| against[*i][1].is_none()).collect();
+    // A power law is one of a load by its kind, and says nothing of the others.
+    let says_zero = |i: usize| loads(i) < most && matches!(models[i].law.kind, Kind::PowerLaw { .. });
+    let right: Vec<usize> = left.iter().copied().filter(|i| against[*i][1].is_none() && !says_zero(*i)).collect();
     let simplest = right.iter().copied().min_by(by_key);
     let best = || whole.iter().copied().min_by(|a, b| of_aicc(*a).total_cmp(&of_aicc(*b)));
     let chosen = simplest.or_else(best).unwrap_or(0);
     let name = &models[chosen].law.name;
     let named = |of: &[usize]| of.iter().map(|i| models[*i].law.name.as_str()).collect::<Vec<_>>().join(", ");
     let mut reason = if candidates.is_empty() {
-        format!("{name} is the first of the laws, of which the data determine none")
+        format!("the data determine none of the laws; {name} is the first of them")
     } else if simplest.is_none() {
-        let what = if whole.len() < candidates.len() { " of all loads" } else { "" };
-        format!("the data contradict every law{what} that was asked for; {name} has the smallest AICc")
+        let what = if whole.len() < candidates.len() { " that gives all loads" } else { "" };
+        format!("the data contradict every law compared{what}; {name} has the smallest AICc")
     } else {
         let is_equal = |i: &&usize| (size(**i), loads(**i)) == (size(chosen), loads(chosen));
         let equals = right.iter().filter(is_equal).count();
         let of = counted(size(chosen), "coefficient", "coefficients");
-        let of_equals = format!(", and of those with {of} has the smallest AICc");
+        let of_equals = format!(" (smallest AICc of those with {of})");
         let of_equals = if equals > 1 { of_equals.as_str() } else { "" };
         format!("{name} is the simplest law that the data do not contradict{of_equals}")
     };
     let (others, partly): (Vec<usize>, Vec<usize>) =
         left.iter().copied().filter(|i| *i != chosen).partition(|i| right.contains(i));
     if !others.is_empty() {
-        reason += &format!("; not contradicted either: {}", named(&others));
+        reason += &format!("; also not contradicted: {}", named(&others));
     }
     if !partly.is_empty() {
         reason += &format!("; not contradicted in the loads that they give: {}", named(&partly));
@@ -131,14 +141,15 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[AddedTerms]) -> O
         .filter_map(|i| {
             let of =
                 |t: &AddedTerms| format!("{} by the terms of {} in {} ({})", t.law, t.of, t.component, p_equation(t.p));
-            against[*i][0].map(of)
+            let by_bound = || format!("{} by its bounds", models[*i].law.name);
+            against[*i][0].map(of).or_else(|| is_out_of_bounds(*i).then(by_bound))
         })
         .collect();
     if !contradicted.is_empty() {
         reason += &format!("; contradicted: {}", contradicted.join(", "));
     }
     if !undetermined.is_empty() && !candidates.is_empty() {
-        reason += &format!("; not compared, as the data do not determine each coefficient: {}", named(&undetermined));
+        reason += &format!("; not compared because some coefficients are not determined: {}", named(&undetermined));
     }
     if models.iter().any(|m| m.in_variables) {
         reason += "; judged by ordinary least squares, before errors of the regressors are fitted";

@@ -180,7 +180,7 @@ fn coefficients(computed: &Estimate, data: &Estimate) -> Vec<Validation> {
             parts.add(error.kind, error.between(row, row));
         }
         let u_fit = scatter.matrix.get(j)?.get(j)?.max(0.0).sqrt();
-        // What other laws of the measured source leave open is uncertainty of the measurement too.
+        // The spread over the other laws of the measured source counts as measurement uncertainty.
         let ends = other.interval_95.zip(other.range_95);
         let open = ends.map_or(0.0, |(own, all)| (own[0] - all[0]).max(all[1] - own[1]).max(0.0) / COVERAGE);
         let u_data = other.standard_uncertainty.map(|u| u + open);
@@ -234,7 +234,7 @@ fn loads(simulation: Simulation<'_>, model: &ModelFit, named: &Named<'_>) -> Res
             let (d, u_data) = prediction.at(of_data * data.rows + row);
             let of_others = others.iter().filter_map(|other| Some((other, other.response(load)?)));
             let of_others = of_others.map(|(other, r)| other.at(r * data.rows + row));
-            // What other laws of the measured source leave open is uncertainty of the measurement too.
+            // The spread over the other laws of the measured source counts as measurement uncertainty.
             let u_data = u_data
                 .map(|own| of_others.map(|(x, u)| (x - d).abs() / COVERAGE + u.unwrap_or(0.0)).fold(own, f64::max));
             ComparedFlow {

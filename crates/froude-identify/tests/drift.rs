@@ -1,4 +1,4 @@
-//! Tables of a hull at drift: lift and the moment of an ideal fluid are in the laws that nobody asks for, and are missed where a law lacks them.
+//! Tables of a hull at drift: the default laws include lift and the Munk moment, and lack of fit is reported if a law omits them.
 #![allow(clippy::unwrap_used)]
 
 use std::fmt::Write as _;
@@ -55,7 +55,7 @@ const SPEEDS: [f64; 6] = [0.5, 0.8, 1.1, 1.4, 1.7, 2.0];
 const ANGLES: [f64; 5] = [-12.0, -6.0, 0.0, 6.0, 12.0];
 
 #[test]
-fn laws_that_nobody_asked_for_have_lift() {
+fn default_laws_include_lift() {
     let found = found(&SPEEDS, &ANGLES, "");
     let truths = [("D_x_II", -X_UU), ("D_y_I", -Y_V), ("D_y_II", -Y_VV), ("Y_uv", Y_UV), ("N_v", N_V), ("N_uv", N_UV)];
     for (name, truth) in truths {
@@ -65,16 +65,16 @@ fn laws_that_nobody_asked_for_have_lift() {
     assert!(!codes(&found).iter().any(|code| matches!(*code, "lack-of-fit" | "one-drift")), "{:?}", codes(&found));
 }
 
-/// A law without lift, and one without the drag across, have residuals that go with what they lack; no setting was run twice.
+/// No setting is repeated; the residuals of a law without lift correlate with u·v.
 #[test]
-fn a_law_without_lift_is_contradicted_by_single_rows() {
+fn lack_of_fit_finds_missing_lift_without_repeats() {
     let without = |law: &str| {
         let keys = format!("[[identify.model]]\nname = \"own\"\nf_y = \"{law}\"\n");
         let found = found(&SPEEDS, &ANGLES, &keys);
         found.findings.iter().filter(|f| f.code == "lack-of-fit").map(|f| f.message.clone()).collect::<Vec<_>>()
     };
     let said = without("Y_v*v + Y_vv*v*abs(v)");
-    assert!(said.len() == 1 && said[0].contains("the residuals go with v_x*v_y (p < 0.001)"), "{said:?}");
+    assert!(said.len() == 1 && said[0].contains("the residuals correlate with v_x*v_y (p < 0.001)"), "{said:?}");
     assert_eq!(without("Y_v*v + Y_uv*u*v + Y_vv*v*abs(v)"), Vec::<String>::new());
 }
 
@@ -86,7 +86,7 @@ fn at_one_speed_one_term_stands_for_two() {
     let names: Vec<&str> = larger.coefficients.keys().map(String::as_str).collect();
     assert!(names.contains(&"Y_uv") && !names.contains(&"D_y_I") && !names.contains(&"N_v"), "{names:?}");
     let note = found.findings.iter().find(|f| f.code == "one-drift").unwrap();
-    assert!(note.message.contains("Y_uv stands for D_y_I too; N_uv stands for N_v too"), "{}", note.message);
+    assert!(note.message.contains("Y_uv includes D_y_I; N_uv includes N_v"), "{}", note.message);
     let y_uv = recommended(&found, "Y_uv").value.unwrap();
     assert!((y_uv / (Y_V + Y_UV) - 1.0).abs() < 0.05, "{y_uv}");
 }

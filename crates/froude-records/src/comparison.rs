@@ -236,7 +236,7 @@ pub struct AddedTerms {
     pub f: f64,
     /// Degrees of freedom of numerator and denominator: terms, residual.
     pub dof: [f64; 2],
-    /// Chance of a larger statistic if the law is true.
+    /// Probability of a larger statistic if the law is true.
     pub p: f64,
 }
 

@@ -134,7 +134,7 @@ pub struct Coefficient {
     /// 95 % interval if the law is true, cut by the bounds.
     #[serde(default)]
     pub interval_95: Option<[f64; 2]>,
-    /// Envelope of its 95 % intervals in all laws of the source that contain it and that the data do not contradict; null where no laws were compared, or the data contradict this one.
+    /// Envelope of its 95 % intervals over all laws of the source that contain it and that the data do not contradict; absent if no laws were compared, this law is contradicted, the value is held, or one of the intervals is missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range_95: Option<[f64; 2]>,
     /// Effective degrees of freedom of the combined uncertainty; null when infinite or none.

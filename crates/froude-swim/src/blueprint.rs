@@ -134,18 +134,24 @@ impl Blueprint {
         Self::by(file, Fitted::new(&file.drag)?)
     }
 
-    /// That of the estimate, and one for each other law of its source that the data do not contradict and a robot can have.
+    /// That of the estimate, and one for each other law of its source that the data do not contradict and this robot can have; beside them the ids of those that it cannot, or that cannot be drawn.
     ///
     /// # Errors
     ///
     /// As [`Self::of`], of the estimate itself.
-    pub fn of_all_laws(file: &RobotFile) -> Result<Vec<Self>, RobotError> {
+    pub fn of_all_laws(file: &RobotFile) -> Result<(Vec<Self>, Vec<String>), RobotError> {
         let own = Self::of(file)?;
         let (record, at) = selected(&file.drag)?;
         let others = beside(&record.estimates, &record.estimates[at]).into_iter();
-        let others = others.map(|estimate| Fitted::at(&file.drag.path, estimate.clone()));
-        let others: Vec<Self> = others.filter_map(|drag| Self::by(file, drag).ok()).collect();
-        Ok(std::iter::once(own).chain(others).collect())
+        let (mut all, mut left_out) = (vec![own], Vec::new());
+        for estimate in others {
+            let law = Self::by(file, Fitted::at(&file.drag.path, estimate.clone()));
+            match law.ok().filter(|law| law.draws(2, 1).is_ok()) {
+                Some(law) => all.push(law),
+                None => left_out.push(estimate.id.clone()),
+            }
+        }
+        Ok((all, left_out))
     }
 
     fn by(file: &RobotFile, drag: Fitted) -> Result<Self, RobotError> {

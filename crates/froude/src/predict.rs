@@ -327,8 +327,14 @@ impl Prediction {
         let mut paragraphs: Vec<String> = predicted.joint.iter().map(joint).collect();
         if predicted.laws.len() > 1 {
             paragraphs.push(format!(
-                "The bands and E_n are those of the envelope of all laws that the data of the record do not contradict ({}), and χ² that of the law which agrees best.",
+                "Bands and E_n come from the envelope of this law and all others that the data of the record do not contradict ({}). χ² is that of the law that agrees best.",
                 predicted.laws.join(", ")
+            ));
+        }
+        if !predicted.left_out.is_empty() {
+            paragraphs.push(format!(
+                "Not in the envelope, as these rows lack what they read: {}; the bands may be too narrow.",
+                predicted.left_out.join(", ")
             ));
         }
         if let Some(why) = self.seen.get(&predicted.id) {
@@ -423,6 +429,7 @@ impl Prediction {
                 "estimate": predicted.id,
                 "law": predicted.law,
                 "laws": predicted.laws,
+                "left_out": predicted.left_out,
                 "fitted_to_these_rows": self.seen.get(&predicted.id),
                 "joint": joint,
                 "rows": predicted.rows.iter().map(row).collect::<Vec<_>>(),

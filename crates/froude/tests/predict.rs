@@ -214,3 +214,72 @@ fn a_source_may_be_held_back_for_validation() {
     let error = identify(&Job::new(place("alone.toml")), &|_| {}).unwrap_err().to_string();
     assert!(error.contains("no other source of the campaign gave an estimate"), "{error}");
 }
+
+/// One row states a standard deviation a hundred times too small: it decides the fit, which a finding says, and new rows still scatter as the others do.
+#[test]
+fn a_row_that_dominates_is_named_and_new_rows_scatter_as_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(7);
+    let mut rows = |speeds: &[f64], first_std: Option<f64>| {
+        let head = if first_std.is_some() { "speed [m/s],f_x [N],std_f_x [N]\n" } else { "speed [m/s],f_x [N]\n" };
+        let mut text = head.to_owned();
+        for (i, u) in speeds.iter().enumerate() {
+            let z: f64 = rng.sample(StandardNormal);
+            write!(text, "{u},{}", -3.0 * u * u + 0.6 * z).unwrap();
+            if let Some(first) = first_std {
+                write!(text, ",{}", if i == 0 { first } else { 0.6 }).unwrap();
+            }
+            text.push('\n');
+        }
+        text
+    };
+    let of = |n: u32| (0..n).map(|i| 0.6 + 0.9 * f64::from(i) / f64::from(n - 1)).collect::<Vec<f64>>();
+    let [fit, new] = [("fit.csv", rows(&of(12), Some(0.006))), ("new.csv", rows(&of(30), None))].map(|(name, text)| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    });
+    let out = folder.path().join("results");
+    let models = vec!["quadratic".to_owned()];
+    let found = identify(&Job { out: Some(out.clone()), models, ..Job::new(&fit) }, &|_| {}).unwrap();
+    let said = found.file.findings.iter().find(|f| f.code == "one-row-dominates").unwrap();
+    assert!(said.message.contains("(std_f_x 0.006") && said.message.contains("leverage 99"), "{}", said.message);
+    let estimate = &found.file.estimates[0];
+    let sigma = estimate.sigma["f_x"].value;
+    assert!((0.3..1.2).contains(&sigma), "a row scatters by 0.6 N: {sigma}");
+    assert!(estimate.diagnostics.relative_residual["f_x"] > 0.05, "{:?}", estimate.diagnostics.relative_residual);
+    let found = predict(&asked(out.join("estimate.json"), new)).unwrap();
+    let beyond = found.estimates[0].rows.iter().filter(|row| row.e_n.unwrap().abs() > 1.0).count();
+    assert!(beyond <= 5, "{beyond} of 30");
+}
+
+/// A power law of f_x alone is left beside the law of three loads; its χ² says nothing of the side force, and does not stand for it.
+#[test]
+fn a_law_of_fewer_loads_hides_no_wrong_load() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(9);
+    let mut rows = |shift_n: f64| {
+        let mut text = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+        for speed in [0.5_f64, 0.8, 1.1, 1.4] {
+            for angle in [-12.0_f64, -6.0, 0.0, 6.0, 12.0] {
+                let (sin, cos) = angle.to_radians().sin_cos();
+                let (u, v) = (speed * cos, -speed * sin);
+                let [a, b]: [f64; 2] = [rng.sample(StandardNormal), rng.sample(StandardNormal)];
+                let side = -28.0 * u * v - 115.0 * v * v.abs() + shift_n + 0.1 * b;
+                writeln!(text, "{speed},{angle},{},{side}", -4.2 * u * u + 0.05 * a).unwrap();
+            }
+        }
+        text
+    };
+    let [fit, new] = [("fit.csv", rows(0.0)), ("new.csv", rows(1.0))].map(|(name, text)| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    });
+    let out = folder.path().join("results");
+    let found = identify(&Job { out: Some(out.clone()), ..Job::new(&fit) }, &|_| {}).unwrap();
+    let left = &found.file.estimates.iter().find(|e| e.recommended).unwrap().not_contradicted;
+    assert!(left.iter().any(|id| id.ends_with("power_law_x")), "{left:?}");
+    let found = predict(&asked(out.join("estimate.json"), new)).unwrap();
+    assert!(found.estimates[0].joint.unwrap().p.unwrap() < 1e-6, "{:?}", found.estimates[0].joint);
+}

@@ -1,7 +1,7 @@
 //! Coefficients that two estimates share, and E_n of two numbers.
 
 use froude_records::comparison::CoefficientComparison;
-use froude_records::estimate::{Coefficient, Status};
+use froude_records::estimate::{Coefficient, Estimate, Status, beside};
 use froude_records::units::parse_unit;
 
 use crate::common::{Common, Number};
@@ -31,7 +31,16 @@ pub(super) fn coefficient_rows(
         .iter()
         .filter_map(|(name, x)| b.estimate.coefficients.get(name).map(|y| (name, x, y)))
         .map(|(name, x, y)| {
-            let sides = [Number::of_coefficient(a.estimate, name), Number::of_coefficient(b.estimate, name)];
+            let sides = [a, b].map(|n| {
+                let own = &n.estimate.coefficients[name];
+                // One range is of one coefficient.
+                let is_same = |e: &&Estimate| {
+                    own.range_95.is_some() && e.coefficients.get(name).is_some_and(|c| c.range_95 == own.range_95)
+                };
+                let others = beside(&n.record.estimates, n.estimate).into_iter().filter(is_same);
+                let others: Vec<Number<'_>> = others.map(|e| Number::of_coefficient(e, name)).collect();
+                Number::of_coefficient(n.estimate, name).around(&others)
+            });
             // Records are in SI: units of one dimension are one unit, however it is written.
             let [of_x, of_y] = [x, y].map(|c| parse_unit(&c.unit).ok().map(|unit| unit.dimension));
             let e_n = if x.unit == y.unit || (of_x.is_some() && of_x == of_y) {
@@ -76,7 +85,7 @@ pub(super) fn not_free(c: &Coefficient, id: &str) -> Option<String> {
 
 /// Why a number has no interval, and with it no E_n.
 pub(super) fn no_interval(id: &str) -> String {
-    format!("{id} gives no interval: one cluster decides it")
+    format!("{id} gives no interval, or one of the laws that its data do not contradict gives none")
 }
 
 /// E_n of two numbers, or why there is none.

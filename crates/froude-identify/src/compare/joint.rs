@@ -20,12 +20,14 @@ pub(super) fn joint(
     let mut out = of_law([a, b], ids, common, is_same_data);
     for first in beside(&a.record.estimates, a.estimate) {
         let others = beside(&b.record.estimates, b.estimate);
-        let Some(second) = others.into_iter().find(|e| e.law.name == first.law.name) else { continue };
+        let is_alike = |e: &&Estimate| e.law.name == first.law.name;
+        // χ² of fewer loads is another question.
+        let gives_all = a.estimate.law.outputs.keys().all(|load| first.law.outputs.contains_key(load));
+        let Some(second) = others.into_iter().find(is_alike).filter(|_| gives_all) else { continue };
         let (of_a, of_b) = (Named { estimate: first, ..*a }, Named { estimate: second, ..*b });
         let other = of_law([&of_a, &of_b], ids, &Common::of(first, second), is_same_data);
         if other.p.zip(out.p).is_some_and(|(other, own)| other > own) {
-            let note =
-                format!("by {}, of the laws that the data do not contradict the one that agrees best", other.model);
+            let note = format!("by {}, the law that agrees best of those that the data do not contradict", other.model);
             out = JointComparison { model: out.model, note, ..other };
         }
     }

@@ -14,7 +14,7 @@ pub(crate) struct Stated {
     pub dof: Option<f64>,
     /// Whether the record gives no interval, as one cluster decides the number.
     pub is_refused: bool,
-    /// How far other laws that the data do not contradict reach beyond its interval, at most.
+    /// Largest distance by which the envelope of the laws that are not contradicted exceeds the interval.
     pub beyond: f64,
 }
 

@@ -266,7 +266,10 @@ fn what_has_no_interval_has_no_expanded_uncertainty() {
     let row = &c.coefficients[0];
     assert_eq!((row.first.expanded_uncertainty, row.first.coverage_factor, row.e_n), (None, None, None));
     assert_eq!(row.first.standard_uncertainty, Some(1.0));
-    assert_eq!(row.note, "a/quadratic gives no interval: one cluster decides it");
+    assert_eq!(
+        row.note,
+        "a/quadratic gives no interval, or one of the laws that its data do not contradict gives none"
+    );
     assert_eq!(c.joint[0].note, row.note);
     assert!(!c.loads.is_empty() && c.loads.iter().all(|l| l.e_n.is_none() && l.first.expanded_uncertainty.is_none()));
     assert_eq!(c.coverage[0], "a/quadratic: no interval stated");

@@ -10,10 +10,10 @@ use crate::large::limits::MOST_CLUSTERS;
 use crate::law::{ForceLaw, Kind};
 use crate::regression::{Condensed, ModelFit};
 
-/// Larger regressors have no square.
+/// Squares of larger regressors would overflow.
 const LARGEST: f64 = 1e150;
 
-/// Triangles of `[X | y]` so far, a load each, where X has the columns of all laws: of two laws each is asked for the terms of the other.
+/// Triangles of `[X | y]` so far, one per load. X has the columns of all laws, because each law is tested against the terms of the others.
 pub(super) struct Fold<'a> {
     source: &'a str,
     laws: Vec<&'a ForceLaw>,
@@ -88,7 +88,7 @@ impl<'a> Fold<'a> {
         self.n += n;
     }
 
-    /// Regressors of a law; zero from where it is left out on.
+    /// Regressors of a law; zero once the law has failed.
     fn design(&mut self, l: usize, data: &Dataset) -> Mat<f64> {
         let law = self.laws[l];
         let p = law.coefficients.len();

@@ -51,9 +51,9 @@ pub fn sentences(campaign: &Campaign, answers: &[Answer], records: &[Estimate]) 
     }
     if sources.iter().any(|s| s.models.len() > 1) {
         out.push(
-            "Recommended is the simplest force law that the data do not contradict: a law is contradicted where the terms of another one, added to it, differ from zero (F test, \
-             0.5 % over all that it is compared with). The 95 % interval of a coefficient holds if its law is true. The range of a coefficient is the envelope of its \
-             intervals in all laws that contain it and are not contradicted, and the band of a load the envelope of their bands: these hold whichever of the laws is true."
+            "The recommended force law is the simplest that the data do not contradict. A law is contradicted if the terms of another one, added to it, differ from zero (F tests, \
+             0.5 % in total). The 95 % interval of a coefficient is valid if its law is true. The range of a coefficient is the envelope of its \
+             intervals in all laws that contain it and are not contradicted, and the band of a load is the envelope of their bands; both are valid whichever of the compared laws is true."
                 .to_owned(),
         );
     }

@@ -101,7 +101,12 @@ impl Uncertainty {
 }
 
 /// The scatter of rows that are correlated in time within each run; `None` where they are too few to tell.
-fn serial(data: &Dataset, problem: &fit::Problem, fitted: &fit::Fit, errors: &fit::serial::RowErrors) -> Option<Part> {
+pub(crate) fn serial(
+    data: &Dataset,
+    problem: &fit::Problem,
+    fitted: &fit::Fit,
+    errors: &fit::serial::RowErrors,
+) -> Option<Part> {
     let at = step(fitted);
     let (x, p) = (&problem.design, fitted.coefficients.len());
     let left = |i: usize| problem.response[i] - (0..p).map(|j| x[(i, j)] * at[j]).sum::<f64>();

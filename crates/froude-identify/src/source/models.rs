@@ -203,7 +203,7 @@ pub(crate) fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> Ident
 /// m_z = N_v·v_y + N_uv·v_x·v_y + N_vv·v_y|v_y|, the first again only in the linear law.
 ///
 /// Y_uv holds the lift, N_uv the moment of an ideal fluid (Munk) and what lift takes off it, D_y_II and N_vv cross-flow. At one magnitude of
-/// drift u·v and v|v| have the same shape: Y_uv and N_uv stand for the sum, and the others are left out. So do they for v at one speed of the rows that move askew.
+/// drift u·v and v|v| have the same shape: Y_uv and N_uv stand for the sum, and the others are left out. At one speed of the rows with drift they also include the linear term, which is then left out.
 ///
 /// # Source
 ///
@@ -263,10 +263,10 @@ fn sname(channel: &str) -> &'static str {
     }
 }
 
-/// Speeds of rows that move askew that differ by less than this part are one.
+/// Relative spread of speed below which rows with drift count as one speed.
 const ONE_SPEED: f64 = 0.02;
 
-/// What the rows that move askew can tell apart.
+/// What the rows with drift can tell apart.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Drift {
     /// Whether there are any.
@@ -279,18 +279,23 @@ pub(crate) struct Drift {
 
 impl Drift {
     /// Of a velocity along the body and one across it.
-    pub(crate) fn of(data: &Dataset, along: &str, across: &str) -> Self {
-        let (Some(u), Some(v)) = (data.values(along), data.values(across)) else {
+    pub(crate) fn of(data: &Dataset, along: &str, across_name: &str) -> Self {
+        let (Some(u), Some(v)) = (data.values(along), data.values(across_name)) else {
             return Self { is_askew: false, is_at_one_angle: true, is_of_one_speed: true };
         };
         let largest = u.iter().zip(v).map(|(u, v)| u.hypot(*v)).fold(0.0, f64::max);
         let is_there = |x: &f64| x.abs() > 1e-9 * largest;
-        let askew = u.iter().zip(v).filter(|(u, v)| is_there(u) && is_there(v)).map(|(u, v)| u.hypot(*v));
-        let (low, high) = askew.fold((f64::INFINITY, 0.0_f64), |(low, high), speed| (low.min(speed), high.max(speed)));
+        let is_askew = u.iter().zip(v).any(|(u, v)| is_there(u) && is_there(v));
+        // Ahead, astern and straight across the sign of u v and v differ.
+        let across = u.iter().zip(v).filter(|(_, v)| is_there(v));
+        let of_sign = across.clone().map(|(u, _)| if is_there(u) { u.signum() } else { 0.0 });
+        let is_one_way = of_sign.clone().all(|sign| Some(sign) == of_sign.clone().next());
+        let speeds = across.map(|(u, v)| u.hypot(*v));
+        let (low, high) = speeds.fold((f64::INFINITY, 0.0_f64), |(low, high), speed| (low.min(speed), high.max(speed)));
         Self {
-            is_askew: high > 0.0,
-            is_at_one_angle: !has_two_angles(data, along, across),
-            is_of_one_speed: high - low <= ONE_SPEED * high,
+            is_askew,
+            is_at_one_angle: !has_two_angles(data, along, across_name),
+            is_of_one_speed: is_one_way && high - low <= ONE_SPEED * high,
         }
     }
 }

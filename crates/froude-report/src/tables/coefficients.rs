@@ -258,8 +258,8 @@ impl Tables {
         }
         let caption = self.caption(&format!(
             "Model {} in detail: standard uncertainty from the scatter of the data (type A), from the declared budget (type B), combined, \
-             and with its effective degrees of freedom. The interval holds if this model is true; the range, the envelope of the intervals in all models that the data do not \
-             contradict, whichever of them is.",
+             and with its effective degrees of freedom. The interval is valid if this model is true. The range is the envelope of the intervals over all models that the data do not \
+             contradict.",
             e.law.name
         ));
         // Nothing is known about a coefficient that is not determined, whatever its record holds.

@@ -127,7 +127,7 @@ impl Tables {
     /// Each model beside the terms of the others.
     pub(crate) fn added_terms(&mut self, source: &SourceSection) -> Markup {
         let caption = self.caption(
-            "F tests of a model beside the terms that another one would add to it. The data contradict a model where its smallest p, times the number of its tests, is below 0.5 %.",
+            "F tests of each model against the terms that another model would add. The data contradict a model if its smallest p, times the number of its tests, is below 0.5 %; loads that it gives and loads that it lacks are counted separately.",
         );
         html! {
             div class="table" {

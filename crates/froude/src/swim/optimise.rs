@@ -41,7 +41,7 @@ pub struct Found {
     pub shown: Vec<usize>,
     /// For each of these and its next: the probability that it is better in each objective, by draws in which both have an answer; `None` without such.
     pub beats: Vec<Option<[f64; 2]>>,
-    /// What was drawn of each law, how many laws there are, and the draws that were no bodies.
+    /// Draws per law, number of laws, and draws that were no bodies.
     pub drawn: Option<(Drawing, usize, Beyond)>,
     /// Gaits that were swum.
     pub swum: usize,

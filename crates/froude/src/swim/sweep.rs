@@ -86,11 +86,11 @@ pub struct Swept {
     pub name: String,
     /// The files that were read.
     pub data: Vec<DataFile>,
-    /// A row per gait and draw; of a gait, that of the estimate stands first, and the draws behind it law by law.
+    /// A row per gait and draw; of each gait the estimate comes first, then the draws law by law.
     pub rows: Vec<Row>,
     /// Rows of a gait.
     pub each: usize,
-    /// What was drawn of each law, how many laws there are, and the draws that were no bodies.
+    /// Draws per law, number of laws, and draws that were no bodies.
     pub drawn: Option<(Drawing, usize, Beyond)>,
     /// Rows that were there from an earlier start.
     pub resumed: usize,
@@ -203,7 +203,7 @@ pub(super) struct Ready<'a> {
     pub(super) grid: Grid,
     pub(super) gaits: usize,
     drives: Drives,
-    /// As estimated, and behind it of each draw, law by law.
+    /// The estimated robot first, then one per draw, law by law.
     pub(super) robots: Vec<Robot>,
     /// Draws that were no bodies.
     pub(super) beyond: Beyond,
@@ -213,7 +213,7 @@ pub(super) struct Ready<'a> {
 impl<'a> Ready<'a> {
     pub(super) fn new(job: &'a SweepJob) -> Result<Self, Error> {
         let file = super::planar(&job.robot)?;
-        let laws = Blueprint::of_all_laws(&file)?;
+        let (laws, _) = Blueprint::of_all_laws(&file)?;
         let drives = super::drives(&file, job.motor.as_deref())?;
         let grid = job.ranges.about(&base(&job.moves, file.modules.len() - 1)?);
         let too_many = |rows: String| SweepError::TooMany { rows, most: MOST_ROWS };

@@ -32,6 +32,8 @@ pub struct Drawn {
     pub asked: Drawing,
     /// The laws that they are of, that of the estimate first: the others are those that the data do not contradict either. Each has as many draws.
     pub laws: Vec<String>,
+    /// Laws that the data do not contradict either, and that this robot cannot have, or that cannot be drawn.
+    pub left_out: Vec<String>,
     /// Draws that were no bodies.
     pub beyond: Beyond,
     /// Draws with which the gait has no answer.
@@ -79,7 +81,7 @@ pub fn uncertain(
     let drawn = match drawing {
         None => None,
         Some(asked) => {
-            let laws = Blueprint::of_all_laws(&file)?;
+            let (laws, left_out) = Blueprint::of_all_laws(&file)?;
             let (done, all) = (AtomicUsize::new(0), asked.n * laws.len());
             let mut beyond = Beyond::default();
             let mut by_law: Vec<Vec<([f64; 4], [bool; 2])>> = Vec::new();
@@ -103,7 +105,7 @@ pub fn uncertain(
             let answers: usize = by_law.iter().map(Vec::len).sum();
             let laws = laws.iter().map(|law| law.id().to_owned()).collect();
             let intervals = [0, 1, 2, 3].map(envelope);
-            Some(Drawn { asked, laws, beyond, unstable, without_answer: all - answers, intervals })
+            Some(Drawn { asked, laws, left_out, beyond, unstable, without_answer: all - answers, intervals })
         }
     };
     let sensitivities = if is_sensitive {
@@ -138,6 +140,7 @@ impl Uncertain {
             "draws": self.drawn.as_ref().map(|d| json!({
                 "n": d.asked.n,
                 "laws": d.laws,
+                "left_out": d.left_out,
                 "seed": d.asked.seed,
                 "brought_back": d.beyond.brought_back,
                 "refused": d.beyond.refused,
@@ -191,8 +194,14 @@ impl Drawn {
         let mut paragraphs = bodies(self.asked.n * self.laws.len(), self.beyond);
         if self.laws.len() > 1 {
             paragraphs.push(format!(
-                "the intervals are the envelope over all laws that the data do not contradict, each with as many draws: {}",
+                "each interval is the envelope over the laws that the data do not contradict and this robot can use, with as many draws of each: {}",
                 self.laws.join(", ")
+            ));
+        }
+        if !self.left_out.is_empty() {
+            paragraphs.push(format!(
+                "not in the intervals, as this robot cannot have them or they cannot be drawn: {}; the intervals may be too narrow",
+                self.left_out.join(", ")
             ));
         }
         if self.without_answer > 0 {

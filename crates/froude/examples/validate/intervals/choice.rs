@@ -12,7 +12,7 @@ pub fn all(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
     powers(claims, seeds)
 }
 
-/// Speeds at which a band is looked at.
+/// Indices of the speeds at which bands are checked.
 const AT: [usize; 4] = [0, 5, 10, 15];
 
 /// Whether the band of the recommended load holds the truth.
@@ -46,10 +46,11 @@ fn selection(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
                 let mut out = Vec::new();
                 let Some(r) = &found.recommendation else { return out };
                 // A power law has no D_x_II, and where the data contradict every law no range is stated.
-                let range = found.estimates[r.index].coefficients.get("D_x_II").and_then(|c| c.range_95);
+                let of_law = |i: &usize| found.estimates[*i].coefficients.get("D_x_II").and_then(|c| c.range_95);
+                let range = r.not_contradicted.iter().find_map(of_law);
                 out.extend(range.map(|[low, high]| {
                     let said = Said { holds: (low..=high).contains(&55.0), width: high - low };
-                    ("range of D_x_II, where the recommended law has one".to_owned(), said)
+                    ("range of D_x_II, where a law that is left has one".to_owned(), said)
                 }));
                 out.extend(bands_hold(found, &speed, truth));
                 out
