@@ -46,6 +46,7 @@ pub mod autocorrelation;
 mod block;
 pub mod bounded;
 pub mod budget;
+mod complement;
 mod constrained;
 mod covariance;
 pub mod coverage;
@@ -79,6 +80,7 @@ mod shape;
 pub mod stream;
 pub mod wild;
 
+pub use complement::complement;
 pub use covariance::FEWEST_CLUSTERS;
 pub use error::FitError;
 pub use factored::{Factored, Solution};

@@ -27,8 +27,6 @@ use crate::regression::uncertain::serial;
 use crate::regression::{ModelFit, Scatter, Settings};
 use crate::uncertainty::{Linearised, contributions};
 
-/// A unit column whose remainder after projection onto the law's columns is shorter than this is dependent.
-const NOTHING: f64 = 1e-6;
 /// Relative residual below which a fit is exact up to rounding.
 const EXACT: f64 = 1e-9;
 
@@ -48,8 +46,12 @@ pub fn added_terms(models: &[ModelFit], data: &Dataset, settings: Settings<'_>) 
 
 /// The terms of `other` in one load, beside those of `law`; `None` where it has no further ones, or they leave no degrees of freedom.
 fn added(law: &ModelFit, other: &ModelFit, load: &str, data: &Dataset, settings: Settings<'_>) -> Option<AddedTerms> {
-    let (problem, of_other) = beside(law, other, load, data)?;
-    let free = new_directions(&problem, &of_other, &law.options)?;
+    let (problem, mut of_other) = beside(law, other, load, data)?;
+    // What the campaign excludes is no term of either law.
+    for &j in &other.options.excluded {
+        of_other.col_as_slice_mut(j).fill(0.0);
+    }
+    let free = fit::complement(&problem, &law.options, &of_other)?;
     let (p, m) = (problem.n_coefficients(), free.ncols());
     let mut names = problem.names.clone();
     names.extend((0..m).map(|k| format!("added {k}")));
@@ -135,7 +137,7 @@ fn tested(
     dof: f64,
 ) -> Option<AddedTerms> {
     let m = gamma.len();
-    // A matrix that is estimated as a whole, and not but for one σ: Hotelling's T².
+    // A covariance estimated as a whole matrix, and not only a σ: Hotelling's T².
     let is_whole = matches!(law.scatter, Scatter::Cluster | Scatter::Serial(_));
     let (factor, dof) = if is_whole { ((dof - m as f64 + 1.0) / dof, dof - m as f64 + 1.0) } else { (1.0, dof) };
     if dof < 1.0 {
@@ -206,47 +208,6 @@ fn beside(law: &ModelFit, other: &ModelFit, load: &str, data: &Dataset) -> Optio
     Some((problem, columns))
 }
 
-/// Independent directions of columns, cleared of those of a problem.
-fn new_directions(problem: &fit::Problem, columns: &Mat<f64>, options: &fit::Options) -> Option<Mat<f64>> {
-    let n = problem.n_rows();
-    let is_held = |j: &usize| options.excluded.contains(j) || options.fixed.iter().any(|(k, _)| k == j);
-    let own: Vec<usize> = (0..problem.n_coefficients()).filter(|j| !is_held(j)).collect();
-    let root = |i: usize| problem.weight.as_ref().map_or(1.0, |w| w[i].sqrt());
-    let of = |from: &Mat<f64>, j: usize| -> Vec<f64> { (0..n).map(|i| from[(i, j)] * root(i)).collect() };
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    for j in own {
-        basis.extend(cleared(of(&problem.design, j), &basis));
-    }
-    let first = basis.len();
-    for j in 0..columns.ncols() {
-        basis.extend(cleared(of(columns, j), &basis));
-    }
-    let new = basis.split_off(first);
-    (!new.is_empty()).then(|| Mat::from_fn(n, new.len(), |i, k| new[k][i] / root(i)))
-}
-
-/// What a column has beside an orthonormal basis, of length 1; `None` where that is rounding.
-fn cleared(column: Vec<f64>, basis: &[Vec<f64>]) -> Option<Vec<f64>> {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let unit = |v: Vec<f64>| {
-        let length = dot(&v, &v).sqrt();
-        (length, v.into_iter().map(|x| x / length).collect::<Vec<f64>>())
-    };
-    let (length, mut rest) = unit(column);
-    if length == 0.0 {
-        return None;
-    }
-    // Twice is enough (Kahan).
-    for _ in 0..2 {
-        for q in basis {
-            let along = dot(q, &rest);
-            rest.iter_mut().zip(q).for_each(|(r, q)| *r -= along * q);
-        }
-    }
-    let (left, rest) = unit(rest);
-    (left > NOTHING).then_some(rest)
-}
-
 #[cfg(test)]
 mod tests {
     use std::fmt::Write as _;
@@ -295,6 +256,16 @@ mod tests {
         // A power law and a polynomial each have two terms that the other lacks.
         assert_eq!(test(&found, "power_law", "linear_quadratic").dof, [2.0, 8.0]);
         assert_eq!(test(&found, "linear_quadratic", "power_law").dof, [2.0, 8.0]);
+    }
+
+    /// An excluded coefficient is no term that could contradict a law without it.
+    #[test]
+    fn an_excluded_term_contradicts_nothing() {
+        let models = "[identify]\nmodels = [\"quadratic\", \"linear_quadratic\"]\n";
+        let truth = |u: f64| 2.0 * u + 9.0 * u * u;
+        assert!(test(&found(12, truth, 0.1, 3, models), "quadratic", "linear_quadratic").p < 1e-6);
+        let excluded = found(12, truth, 0.1, 3, &format!("{models}exclude = [\"D_x_I\"]\n"));
+        assert!(excluded.tests.is_empty(), "{:?}", excluded.tests);
     }
 
     /// A zero error contradicts the quadratic law, and does not where it is declared.
