@@ -92,8 +92,6 @@ pub struct Drawn {
     pub clusters: usize,
     /// Distinct configurations, in order of first appearance.
     pub configurations: Vec<String>,
-    /// Sum of squares of each load, SI.
-    pub squares: IndexMap<String, f64>,
 }
 
 /// Unit text of a channel; `1` where the table has none of that name.

@@ -206,7 +206,6 @@ impl Few {
             rows: facts.n_used,
             clusters: if source.group.is_some() { facts.clusters() } else { 0 },
             configurations: facts.configurations.iter().cloned().collect(),
-            squares: facts.squares.clone(),
         };
         let ends = Dataset { sample: Some(drawn), ..all.subset(&keep) };
         let lines: std::collections::BTreeSet<usize> = facts.sample().iter().map(|row| row.line()).collect();

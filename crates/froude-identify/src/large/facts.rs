@@ -80,7 +80,6 @@ pub(super) struct Facts {
     groups: IndexSet<String>,
     /// The cluster of each group, where that is not itself.
     merged: IndexMap<String, String>,
-    pub(super) squares: IndexMap<String, f64>,
     density: f64,
 }
 
@@ -97,7 +96,6 @@ impl Facts {
             configurations: IndexSet::new(),
             groups: IndexSet::new(),
             merged: IndexMap::new(),
-            squares: IndexMap::new(),
             density: 0.0,
         }
     }
@@ -132,10 +130,6 @@ impl Facts {
             if let [Some(before), Some(after)] = zeros_of(data, load) {
                 let drift: Vec<f64> = before.iter().zip(after).map(|(b, a)| a - b).collect();
                 self.ends.entry(format!("drift of {load}")).or_default().take(chunk.placed(&drift), table);
-            }
-            if let Some(values) = data.values(load) {
-                let sum = self.squares.entry(load.to_owned()).or_insert(0.0);
-                *sum = values.iter().fold(*sum, |sum, f| sum + f * f);
             }
         }
         if data.channels.contains_key("v_z") {
