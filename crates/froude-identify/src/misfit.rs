@@ -9,7 +9,8 @@
 //! | --- | --- | --- |
 //! | f √\|f\|, f the fitted load | always | a bend: where the load is the square of a speed, its cube, the next term |
 //! | v², v\|v\| of the own axis | motion of both signs | an even part that an odd law lacks, an odd one that an even law lacks |
-//! | v_x v_y, v_x v_z | a body that moves askew | lift, the moment of an ideal fluid |
+//! | v_x v_y, v_x v_z | rows with drift | lift, the moment of an ideal fluid |
+//! | \|v_x\| v_y, \|v_x\| v_z | the same, ahead and astern | lift that turns round with the flow |
 //! | v_y², v_z² | the same | a part that is even in the drift |
 //!
 //! Given the fitted loads the residuals are independent of them, so that t is exact for independent normal errors of one size. It is not asked where these are not: of rows in time, of
@@ -126,17 +127,28 @@ fn shapes(model: &ModelFit, data: &Dataset, gains: &[String]) -> Vec<Shape> {
 fn candidates(data: &Dataset, load: &str, fitted: &[f64]) -> Vec<(String, Vec<f64>)> {
     let bend = fitted.iter().map(|f| f * f.abs().sqrt()).collect();
     let mut out = vec![("bend with the fitted load".to_owned(), bend)];
-    let own = PAIRS.iter().find(|(of, _)| *of == load).and_then(|(_, motion)| data.values(motion));
-    if let Some(v) = own.filter(|v| v.iter().any(|x| *x > 0.0) && v.iter().any(|x| *x < 0.0)) {
+    let both_ways = |v: &[f64]| v.iter().any(|x| *x > 0.0) && v.iter().any(|x| *x < 0.0);
+    let is_own = |motion: &str| PAIRS.contains(&(load, motion));
+    let own = PAIRS.iter().find(|(_, motion)| is_own(motion)).and_then(|(_, motion)| data.values(motion));
+    if let Some(v) = own.filter(|v| both_ways(v)) {
         let words = |is: &str| format!("correlate with a part of the load that {is} its sign when the motion reverses");
         out.push((words("keeps"), v.iter().map(|v| v * v).collect()));
         out.push((words("changes"), v.iter().map(|v| v * v.abs()).collect()));
     }
     for across in ["v_y", "v_z"] {
         let (Some(u), Some(v)) = (data.values("v_x"), data.values(across)) else { continue };
-        if Drift::of(data, "v_x", across).is_askew {
-            out.push((format!("correlate with v_x*{across}"), u.iter().zip(v).map(|(u, v)| u * v).collect()));
-            out.push((format!("correlate with {across}^2"), v.iter().map(|v| v * v).collect()));
+        if !Drift::of(data, "v_x", across).is_askew {
+            continue;
+        }
+        let of = |shape: fn(f64, f64) -> f64| u.iter().zip(v).map(|(u, v)| shape(*u, *v)).collect();
+        out.push((format!("correlate with v_x*{across}"), of(|u, v| u * v)));
+        // Astern the lift of a body that is alike at both ends turns round.
+        if both_ways(u) {
+            out.push((format!("correlate with abs(v_x)*{across}"), of(|u, v| u.abs() * v)));
+        }
+        // Of the own axis it is asked above.
+        if !is_own(across) || !both_ways(v) {
+            out.push((format!("correlate with {across}^2"), of(|_, v| v * v)));
         }
     }
     out

@@ -205,6 +205,8 @@ pub(crate) fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> Ident
 /// Y_uv holds the lift, N_uv the moment of an ideal fluid (Munk) and what lift takes off it, D_y_II and N_vv cross-flow. At one magnitude of
 /// drift u·v and v|v| have the same shape: Y_uv and N_uv stand for the sum, and the others are left out. At one speed of the rows with drift they also include the linear term, which is then left out.
 ///
+/// Range: lift is of motion ahead. Astern Y_uv·v_x·v_y has the sign of v_y, and would push the body: a body alike at both ends has |v_x|·v_y, another one a coefficient of its own for each way.
+///
 /// # Source
 ///
 /// SNAME (1952), Technical and Research Bulletin 1-5 (symbols); Clarke, Gedling & Hine (1983), Trans. RINA 125, 45 (linear terms of a hull grow with U).
