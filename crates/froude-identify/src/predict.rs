@@ -95,7 +95,7 @@ pub struct Joint {
 ///
 /// # Errors
 ///
-/// A law that is none of forces; a channel that it reads and the data lack; a coefficient without a value. Of the others such a law is left out, by name.
+/// The law gives no forces, reads a channel that the data lack, or has a coefficient without a value. Other laws with such a fault are listed in `left_out`.
 pub fn predict(estimate: &Estimate, others: &[&Estimate], data: &Dataset) -> Result<Predicted, IdentifyError> {
     let mut out = by_law(estimate, data)?;
     for other in others {

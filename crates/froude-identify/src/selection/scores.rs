@@ -11,7 +11,7 @@ use crate::regression::ModelFit;
 pub struct Score {
     /// RMSE by load component, in the load's unit.
     pub rmse: Vec<(String, f64)>,
-    /// Why there is none.
+    /// Why there is no score.
     pub note: Option<String>,
 }
 
