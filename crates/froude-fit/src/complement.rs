@@ -40,14 +40,13 @@ fn cleared(mut column: Vec<f64>, basis: &[Vec<f64>]) -> Option<Vec<f64>> {
     if length == 0.0 {
         return None;
     }
-    column.iter_mut().for_each(|x| *x /= length);
+    column = column.iter().map(|x| x / length).collect();
     for q in basis.iter().chain(basis) {
         let along = dot(q, &column);
         column.iter_mut().zip(q).for_each(|(x, q)| *x -= along * q);
     }
     let left = norm(&column);
-    column.iter_mut().for_each(|x| *x /= left);
-    (left > DEPENDENT).then_some(column)
+    (left > DEPENDENT).then(|| column.iter().map(|x| x / left).collect())
 }
 
 #[cfg(test)]
