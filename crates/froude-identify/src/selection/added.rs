@@ -22,6 +22,7 @@ use froude_records::campaign::{BudgetEntry, Shared, SourceKind};
 use froude_records::comparison::AddedTerms;
 
 use crate::dataset::Dataset;
+use crate::law::{ForceLaw, Kind};
 use crate::regression::known;
 use crate::regression::uncertain::serial;
 use crate::regression::{ModelFit, Scatter, Settings};
@@ -35,13 +36,24 @@ const EXACT: f64 = 1e-9;
 pub fn added_terms(models: &[ModelFit], data: &Dataset, settings: Settings<'_>) -> Vec<AddedTerms> {
     let mut out = Vec::new();
     for law in models {
-        for other in models.iter().filter(|other| other.law.name != law.law.name) {
+        for other in models.iter().filter(|other| other.law.name != law.law.name && !is_one_mean(&law.law, &other.law))
+        {
             for load in &other.law.responses {
                 out.extend(added(law, other, load, data, settings));
             }
         }
     }
     out
+}
+
+/// Whether two laws differ in the errors that they assume and not in the load: a power law in the load's unit and in logarithms.
+fn is_one_mean(a: &ForceLaw, b: &ForceLaw) -> bool {
+    match (&a.kind, &b.kind) {
+        (Kind::PowerLaw { channel, .. }, Kind::PowerLaw { channel: other, .. }) => {
+            channel == other && a.responses == b.responses
+        }
+        _ => false,
+    }
 }
 
 /// The terms of `other` in one load, beside those of `law`; `None` where it has no further ones, or they leave no degrees of freedom.
@@ -256,6 +268,16 @@ mod tests {
         // A power law and a polynomial each have two terms that the other lacks.
         assert_eq!(test(&found, "power_law", "linear_quadratic").dof, [2.0, 8.0]);
         assert_eq!(test(&found, "linear_quadratic", "power_law").dof, [2.0, 8.0]);
+    }
+
+    /// A power law by loads and by logarithms has one mean: neither has a term that the other lacks.
+    #[test]
+    fn error_models_of_one_law_do_not_contradict_each_other() {
+        let models = "[identify]\nmodels = [\"quadratic\", \"power_law\", \"power_law_log\"]\n";
+        let found = found(12, |u| 12.0 * u.powf(1.8), 0.4, 5, models);
+        let is_power = |name: &str| name.starts_with("power_law");
+        assert!(found.tests.iter().any(|t| t.law == "power_law_log" && t.of == "quadratic"), "{:?}", found.tests);
+        assert!(!found.tests.iter().any(|t| is_power(&t.law) && is_power(&t.of)), "{:?}", found.tests);
     }
 
     /// An excluded coefficient is no term that could contradict a law without it.
