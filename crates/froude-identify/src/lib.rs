@@ -55,5 +55,6 @@ pub mod uncertainty;
 pub mod validation;
 pub mod validity;
 mod verdict;
+mod zero;
 
 pub use error::IdentifyError;

@@ -16,7 +16,7 @@ use crate::law::ForceLaw;
 use crate::regression::{ModelFit, Settings, regress};
 use crate::result::{NotFitted, SourceResult};
 use crate::selection::{Recommendation, Score, added_terms, leave_one_out, range_block, recommend};
-use crate::{bootstrap, diagnosis, record, uncertainty};
+use crate::{bootstrap, diagnosis, record, uncertainty, zero};
 
 pub use crate::seam::reduced::{Choice, Derived, Reduced, Stated};
 
@@ -67,6 +67,7 @@ pub(crate) fn conclude(
     }));
     let by_data = reduced.choice == Choice::Selection;
     let tests = if by_data { added_terms(&models, data, settings) } else { Vec::new() };
+    findings.extend(zero::findings(&models, &reduced.beside_zero, data, settings));
     let scores: Vec<Score> = models.iter().map(|m| leave_one_out(m, data)).collect();
     let blocks = identify
         .cross_validation

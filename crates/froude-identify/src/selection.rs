@@ -30,6 +30,7 @@ use crate::law::Kind;
 use crate::regression::ModelFit;
 
 pub use added::added_terms;
+pub(crate) use added::widened;
 pub use scores::{BlockScore, Score, leave_one_out, range_block};
 
 /// Chance of contradicting a law that is true, over all laws and loads that it is compared with.

@@ -13,7 +13,7 @@ use crate::reduce::{Observations, reduce};
 use crate::regression::Scatter;
 use crate::seam::{Choice, Reduced, fit};
 use crate::source::handed::{in_blocks, merges_motions, no_budget, of_table, scatter};
-use crate::{columns, diagnosis, lint, motions, validity};
+use crate::{columns, diagnosis, lint, motions, validity, zero};
 
 pub use crate::result::{NotFitted, ReadFile, SourceResult};
 pub use crate::source::models::{asked_models, check_budget, laws};
@@ -126,8 +126,9 @@ fn reduced(
     findings.extend(no_budget(campaign, source, &shared_errors).filter(|_| !has_budget));
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));
+    let beside_zero = if method == "table" { zero::laws(source, &data) } else { Vec::new() };
     let out = of_table(campaign, source, method, data, laws);
-    Ok(Reduced { n_read, scatter, choice, errors: shared_errors, validity, findings, files, ..out })
+    Ok(Reduced { beside_zero, n_read, scatter, choice, errors: shared_errors, validity, findings, files, ..out })
 }
 
 /// A finding that a published source carries no data.

@@ -24,6 +24,8 @@ pub struct Reduced {
     pub n_read: usize,
     /// The laws, each fitted to all of them.
     pub laws: Vec<ForceLaw>,
+    /// Laws that a zero of the load cell is looked for beside, further to these; empty where it is not looked for.
+    pub beside_zero: Vec<ForceLaw>,
     /// Which of the laws is recommended.
     pub choice: Choice,
     /// What the observations weigh.
@@ -59,6 +61,7 @@ impl Reduced {
             n_read: data.rows,
             data,
             laws,
+            beside_zero: Vec::new(),
             choice: Choice::Selection,
             weight: Weight::Std,
             scatter: Scatter::Classical,

@@ -58,6 +58,33 @@ fn is_one_mean(a: &ForceLaw, b: &ForceLaw) -> bool {
 
 /// The terms of `other` in one load, beside those of `law`; `None` where it has no further ones, or they leave no degrees of freedom.
 fn added(law: &ModelFit, other: &ModelFit, load: &str, data: &Dataset, settings: Settings<'_>) -> Option<AddedTerms> {
+    let Widened { gamma, covariance, dof, .. } = widened(law, other, load, data, settings)?;
+    tested(law, other, load, &gamma, &covariance, dof)
+}
+
+/// A law with the terms of another one in a load.
+#[derive(Debug)]
+pub(crate) struct Widened {
+    /// The fit of both.
+    pub(crate) fitted: fit::Fit,
+    /// Parts of the other law's columns along the new directions, which are orthonormal by the weights: directions × columns.
+    pub(crate) along: Mat<f64>,
+    /// Coefficients of the new directions.
+    pub(crate) gamma: Vec<f64>,
+    /// Their covariance.
+    pub(crate) covariance: Mat<f64>,
+    /// Their fewest degrees of freedom.
+    pub(crate) dof: f64,
+}
+
+/// `law` with the terms of `other` in one load; `None` as for [`added`].
+pub(crate) fn widened(
+    law: &ModelFit,
+    other: &ModelFit,
+    load: &str,
+    data: &Dataset,
+    settings: Settings<'_>,
+) -> Option<Widened> {
     let (problem, mut of_other) = beside(law, other, load, data)?;
     // What the campaign excludes is no term of either law.
     for &j in &other.options.excluded {
@@ -100,7 +127,11 @@ fn added(law: &ModelFit, other: &ModelFit, load: &str, data: &Dataset, settings:
     for part in declared([law, other], load, data, settings, (&larger, &fitted))? {
         covariance += Mat::from_fn(m, m, |a, b| part.covariance[(p + a, p + b)]);
     }
-    tested(law, other, load, &gamma, &covariance, dof)
+    let weight = |i: usize| larger.weight.as_ref().map_or(1.0, |w| w[i]);
+    let along = Mat::from_fn(m, of_other.ncols(), |k, j| {
+        (0..free.nrows()).map(|i| free[(i, k)] * weight(i) * of_other[(i, j)]).sum()
+    });
+    Some(Widened { fitted, along, gamma, covariance, dof })
 }
 
 /// What declared errors do to the coefficients of the larger problem.

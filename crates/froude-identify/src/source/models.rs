@@ -112,20 +112,24 @@ pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<
                 // A moment over drift has no power law; where nobody asked for one, it gets the others.
                 "power_law" if nobody_asked && axes(data).is_empty() && !moments(data).is_empty() => {}
                 "power_law" | "power_law_log" => {
-                    let axes = moving_axes(data, source)?;
-                    for (load, channel) in &axes {
-                        let mut law = ForceLaw::power_law(load, channel, name == "power_law_log");
-                        if axes.len() > 1 {
-                            law.name = format!("{name}_{}", load.replace("f_", "").replace("m_", "r"));
-                        }
-                        out.push(law);
-                    }
+                    out.extend(power_laws(name, &moving_axes(data, source)?));
                 }
                 _ => {}
             }
         }
     }
     Ok(out)
+}
+
+/// A power law of each load, called after it where there are several.
+pub(crate) fn power_laws(name: &str, axes: &[(&str, &str)]) -> impl Iterator<Item = ForceLaw> {
+    axes.iter().map(move |(load, channel)| {
+        let mut law = ForceLaw::power_law(load, channel, name == "power_law_log");
+        if axes.len() > 1 {
+            law.name = format!("{name}_{}", load.replace("f_", "").replace("m_", "r"));
+        }
+        law
+    })
 }
 
 /// Loads with the velocity along or about the same axis.

@@ -1,0 +1,249 @@
+//! A load cell that was not zeroed: a load that is the same in every row, whatever the law.
+//!
+//! To each law a constant is added. Where the law is true, t of that constant is exact; where it is another one, it need not be, and a table of a linear and a quadratic term looks to the quadratic law
+//! as if it had an offset. An offset is therefore reported where it is significant beside every law: those that are fitted and the default ones, less those that the load contradicts with the
+//! constant too. If one of them is true, a sound table is reported in 1 % of cases at most, over all loads. Declared errors count: a declared zero is none that was forgotten.
+//!
+//! A row at rest is one more row here, and the one that tells most.
+
+use froude_fit::distribution::{f_upper, t_two_sided};
+use froude_records::campaign::{Source, SourceKind};
+use froude_records::finding::{Finding, Severity};
+use froude_records::number::{p_equation, significant};
+use froude_records::text::counted;
+use indexmap::IndexMap;
+
+use crate::dataset::{Dataset, unit_text};
+use crate::law::ForceLaw;
+use crate::lint::motion::{AT_REST, moving};
+use crate::regression::{ModelFit, Settings, regress};
+use crate::selection::widened;
+use crate::source::models::{Drift, axes, polynomial, power_laws};
+
+/// Chance of reporting an offset that is not there, over all loads.
+const LEVEL: f64 = 0.005;
+/// Chance at which a law scatters more than the best one does, and is not asked.
+const CONTRADICTED: f64 = 0.001;
+/// Rows up to which a reading at rest is asked for where an offset and another law look alike.
+const FEW_ROWS: usize = 12;
+
+/// The default laws of a measured load, which a zero is looked for beside.
+pub(crate) fn laws(source: &Source, data: &Dataset) -> Vec<ForceLaw> {
+    if source.kind == SourceKind::Cfd || data.sample.is_some() {
+        return Vec::new();
+    }
+    let polynomials = [("quadratic", false), ("linear_quadratic", true)];
+    let polynomials = polynomials.into_iter().filter_map(|(name, linear)| polynomial(name, data, source, linear).ok());
+    // A load of drift is no power of a speed.
+    let is_askew = ["v_y", "v_z"].iter().any(|across| Drift::of(data, "v_x", across).is_askew);
+    polynomials.chain(power_laws("power_law", &axes(data)).filter(|_| !is_askew)).collect()
+}
+
+/// A constant beside one law.
+struct Constant {
+    law: String,
+    p: f64,
+    value: f64,
+    sigma: f64,
+    dof: f64,
+}
+
+/// The loads of which every law leaves a constant; `further` are laws to be asked beside those that were fitted.
+pub(crate) fn findings(
+    models: &[ModelFit],
+    further: &[ForceLaw],
+    data: &Dataset,
+    settings: Settings<'_>,
+) -> Vec<Finding> {
+    if further.is_empty() {
+        return Vec::new();
+    }
+    let is_same = |law: &ForceLaw, of: &ForceLaw| law.name == of.name && law.responses == of.responses;
+    let further: Vec<ModelFit> = further
+        .iter()
+        .filter(|law| !models.iter().any(|model| is_same(law, &model.law)))
+        .filter_map(|law| regress(law, data, settings).ok())
+        .collect();
+    let mut loads: Vec<&String> = models.iter().flat_map(|model| &model.law.responses).collect();
+    loads.sort();
+    loads.dedup();
+    let level = LEVEL / loads.len().max(1) as f64;
+    let of_load = |load: &String| {
+        let asked = models.iter().chain(&further);
+        let asked = asked.filter(|m| m.law.responses.contains(load) && !m.law.in_logarithms());
+        let of_all = constants(asked, load, data, settings)?;
+        of_constants(&of_all, load, level, data)
+    };
+    loads.into_iter().filter_map(of_load).collect()
+}
+
+/// The constant beside each law; `None` where a law has one, or leaves too few rows to tell.
+fn constants<'a>(
+    laws: impl Iterator<Item = &'a ModelFit>,
+    load: &str,
+    data: &Dataset,
+    settings: Settings<'_>,
+) -> Option<Vec<Constant>> {
+    let text = IndexMap::from([(load.to_owned(), "zero_of_the_load".to_owned())]);
+    let constant = regress(&ForceLaw::formulas("constant", &text, data).ok()?, data, settings).ok()?;
+    let mut out = laws
+        .map(|law| {
+            let wide = widened(law, &constant, load, data, settings)?;
+            let (along, u) = (wide.along[(0, 0)], wide.covariance[(0, 0)].sqrt());
+            let component = wide.fitted.components.iter().find(|c| c.name == load)?;
+            let sigma = component.sigma.filter(|sigma| *sigma > 0.0)?;
+            let p = t_two_sided(wide.gamma[0] / u, wide.dof);
+            let value = wide.gamma[0] / along;
+            Some(Constant { law: law.law.name.clone(), p, value, sigma, dof: component.dof })
+        })
+        .collect::<Option<Vec<Constant>>>()?;
+    let best = out.iter().min_by(|a, b| a.sigma.total_cmp(&b.sigma)).map(|c| (c.sigma, c.dof))?;
+    let is_left = |c: &Constant| f_upper((c.sigma / best.0).powi(2), c.dof, best.1) > CONTRADICTED;
+    out.retain(is_left);
+    Some(out)
+}
+
+fn of_constants(of_all: &[Constant], load: &str, level: f64, data: &Dataset) -> Option<Finding> {
+    let unit = unit_text(data, load);
+    let rest = at_rest(data, load);
+    let is_significant = |c: &&Constant| c.p < level;
+    let least = of_all.iter().min_by(|a, b| a.p.total_cmp(&b.p))?;
+    let largest = of_all.iter().max_by(|a, b| a.p.total_cmp(&b.p))?;
+    if is_significant(&largest) {
+        let (low, high) = of_all
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(c.value), high.max(c.value)));
+        let text = format!(
+            "{load}: beside every law ({}) there is a constant of {} ({}){}: the load cell was not zeroed, or the rig has friction{}, and intervals do not \
+             cover that. Subtract the reading at rest, declare its error ([[source.uncertainty]], quantity = \"{load}\", shared = \"campaign\"), or fit it (a law with a constant, [[identify.model]])",
+            of_all.iter().map(|c| c.law.as_str()).collect::<Vec<_>>().join(", "),
+            between(low, high, &unit),
+            p_equation(largest.p),
+            rest.map_or_else(String::new, |(mean, n)| format!(
+                "; at rest it reads {} {unit} ({})",
+                significant(mean, 3),
+                counted(n, "row", "rows")
+            )),
+            if load == "f_x" { "" } else { ", or the body is not in line" },
+        );
+        return Some(Finding::new(Severity::Warning, "load-at-rest", text));
+    }
+    if rest.is_some() || data.rows > FEW_ROWS || !is_significant(&least) {
+        return None;
+    }
+    let text = format!(
+        "{load}: {} and none at rest do not tell a zero of the load cell from another law: beside {} a constant of {} {unit} is significant ({}), beside {} it is not ({}). Record the load at rest",
+        counted(data.rows, "row", "rows"),
+        least.law,
+        significant(least.value, 2),
+        p_equation(least.p),
+        largest.law,
+        p_equation(largest.p)
+    );
+    Some(Finding::new(Severity::Note, "no-row-at-rest", text))
+}
+
+fn between(low: f64, high: f64, unit: &str) -> String {
+    let (a, b) = (significant(low, 2), significant(high, 2));
+    if a == b { format!("{a} {unit}") } else { format!("{a} to {b} {unit}") }
+}
+
+/// Mean load of the rows at rest, and how many there are.
+fn at_rest(data: &Dataset, load: &str) -> Option<(f64, usize)> {
+    let (speed, loads) = (data.values("speed")?, data.values(load)?);
+    let moves = moving(speed, AT_REST);
+    let rest: Vec<f64> = (0..data.rows).filter(|i| !moves.contains(i)).map(|i| loads[i]).collect();
+    (!rest.is_empty()).then(|| (rest.iter().sum::<f64>() / rest.len() as f64, rest.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use froude_records::campaign::read_campaign;
+    use froude_records::finding::Finding;
+    use rand_distr::{Distribution, StandardNormal};
+    use rand_pcg::Pcg64;
+
+    use crate::source::identify_source;
+
+    /// The findings about a zero of a table.
+    fn found(rows: &str, keys: &str) -> Vec<Finding> {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("t.csv"), format!("speed [m/s],f_x [N]\n{rows}")).unwrap();
+        let campaign =
+            format!("schema = 1\nname = \"a\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n{keys}");
+        std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
+        let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
+        let found = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
+        found.findings.into_iter().filter(|f| matches!(f.code.as_str(), "load-at-rest" | "no-row-at-rest")).collect()
+    }
+
+    /// f_x = −(0.84 + 3.1 U²) N, read to 0.1 mN.
+    const UNZEROED: &str =
+        "0.2,-0.9626\n0.3,-1.1157\n0.4,-1.3347\n0.5,-1.6202\n0.6,-1.9524\n0.7,-2.3572\n0.8,-2.8261\n";
+
+    #[test]
+    fn an_offset_is_found_whatever_law_is_asked_for() {
+        for models in ["", "models = [\"quadratic\"]\n", "models = [\"power_law\", \"power_law_log\"]\n"] {
+            let found = found(UNZEROED, models);
+            assert!(found.len() == 1 && found[0].code == "load-at-rest", "{found:?}");
+            assert!(found[0].message.contains("a constant of −0.84 N"), "{found:?}");
+        }
+        let with_rest = found(&format!("0,-0.8430\n{UNZEROED}"), "");
+        assert!(with_rest[0].message.contains("at rest it reads −0.843 N (1 row)"), "{with_rest:?}");
+    }
+
+    /// Each piece of advice is followed until the finding is gone.
+    #[test]
+    fn what_the_finding_advises_removes_it() {
+        let declared = "[[source.uncertainty]]\nname = \"zero\"\nquantity = \"f_x\"\nstandard = \"0.84 N\"\nshared = \"campaign\"\n";
+        let law = "[identify]\n[[identify.model]]\nname = \"with_zero\"\nf_x = \"F_0 - D*v_x*abs(v_x)\"\n";
+        let subtracted: String = UNZEROED
+            .lines()
+            .map(|line| {
+                line.split_once(',').map(|(u, f)| format!("{u},{}\n", f.parse::<f64>().unwrap() + 0.84)).unwrap()
+            })
+            .collect();
+        for (rows, keys) in [(UNZEROED, declared), (UNZEROED, law), (subtracted.as_str(), "")] {
+            assert!(found(rows, keys).is_empty(), "{keys}: {:?}", found(rows, keys));
+        }
+    }
+
+    fn table(n: u32, seed: u128, truth: fn(f64) -> f64, offset: f64) -> String {
+        let mut rng = Pcg64::new(seed, 7);
+        let mut text = String::new();
+        for i in 0..n {
+            let u = 0.2 + 1.4 * f64::from(i) / f64::from(n - 1);
+            let z: f64 = StandardNormal.sample(&mut rng);
+            let _ = writeln!(text, "{u},{}", -truth(u) - offset + 0.3 * z);
+        }
+        text
+    }
+
+    const TRUTHS: [fn(f64) -> f64; 4] = [
+        |u| 12.0 * u * u,
+        |u| 3.0 * u + 9.0 * u * u,
+        |u| 12.0 * u.powf(1.8),
+        // The friction line of the ITTC (1957), for a length of 3 m.
+        |u| 2400.0 * 0.075 / ((3e6 * u).log10() - 2.0).powi(2) * u * u,
+    ];
+
+    /// 300 sound tables each are reported in 1 % at most and three standard deviations; a tenth of the largest load is found in most of those with ten rows.
+    #[test]
+    fn sound_tables_are_passed_over_and_offsets_found() {
+        let share = |n: u32, truth: fn(f64) -> f64, offset: f64| {
+            let is_told =
+                |seed: u128| found(&table(n, seed, truth, offset), "").iter().any(|f| f.code == "load-at-rest");
+            (0..300).filter(|seed| is_told(*seed)).count()
+        };
+        for truth in TRUTHS {
+            for n in [5, 7, 16] {
+                let told = share(n, truth, 0.0);
+                assert!(told <= 8, "{n} rows: {told} of 300");
+            }
+            let told = share(10, truth, 0.1 * truth(1.6));
+            assert!(told >= 150, "10 rows: {told} of 300");
+        }
+    }
+}
