@@ -1,6 +1,6 @@
 //! The run matrix of a campaign as cases: which settings, by which model, and from which case each starts.
 //!
-//! **Chains.** Cases of one configuration and model lie on a comb. Those at angle 0 go from the fastest to the slowest, each from the one before; at every speed the other angles go up from there. A chain is one job after another, the chains of different combs and of different speeds are independent. Fields are scaled by the ratio of speeds (Reynolds similarity, which holds nearly).
+//! **Chains.** Cases of one configuration and model lie on a comb. Those head on go from the fastest to the slowest, each from the one before. At every speed the others follow in the order of their angle from head on, each from the one that is nearest in the direction of its flow: of a flow with two steady states, settings that are alike by symmetry then take the same one. A chain is one job after another, the chains of different combs and of different speeds are independent. Fields are scaled by the ratio of speeds (Reynolds similarity, which holds nearly).
 //! **Tanks.** In a tank each angle has a mesh of its own, and its cases go from the fastest to the slowest.
 //! **Cold repeats.** Of every `1/cold` cases that start warm one is computed once more from the inflow, under the same name with `-cold`: how far its forces lie from the warm ones' is the hysteresis.
 //! **Computed again.** Settings of a study run on the other grids of a family and in other domains, and of the cases of a configuration that a table has, in the order of angles and of speeds within each, some at equal distances run on a finer mesh, the first and the last among them ([`Again`]). All of these start from the inflow. Iterations and window grow with the refinement, as a change of pressure or flux goes a cell an iteration.
@@ -217,6 +217,12 @@ fn is_same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs()).max(SAME)
 }
 
+/// The angle between the velocities of two points.
+fn apart_rad(a: Point, b: Point) -> f64 {
+    let across = ((a.angle_rad - b.angle_rad) / 2.0).sin().powi(2) * a.pitch_rad.cos() * b.pitch_rad.cos();
+    2.0 * (((a.pitch_rad - b.pitch_rad) / 2.0).sin().powi(2) + across).min(1.0).sqrt().asin()
+}
+
 /// The cases of a configuration and a model.
 struct Comb<'a> {
     spec: &'a CfdSpec,
@@ -230,7 +236,7 @@ impl Comb<'_> {
         // Where each angle has a mesh of its own, fields go from speed to speed only.
         let root_rad = self.body.angle_rad.unwrap_or(0.0);
         let is_head_on = |p: &&Point| (p.angle_rad - root_rad).abs() <= SAME && p.pitch_rad == 0.0;
-        let (head_on, others): (Vec<&Point>, Vec<&Point>) = points.iter().partition(is_head_on);
+        let (head_on, mut others): (Vec<&Point>, Vec<&Point>) = points.iter().partition(is_head_on);
         let mut out = Vec::with_capacity(points.len());
         let mut before: Option<String> = None;
         for point in &head_on {
@@ -238,13 +244,15 @@ impl Comb<'_> {
             before = Some(case.id.clone());
             out.push(case);
         }
-        let mut last: Option<(Point, String)> = None;
+        let root = |speed_m_s| Point { speed_m_s, angle_rad: root_rad, pitch_rad: 0.0 };
+        let from_root = |p: &Point| apart_rad(*p, root(p.speed_m_s));
+        others.sort_by(|a, b| b.speed_m_s.total_cmp(&a.speed_m_s).then(from_root(a).total_cmp(&from_root(b))));
+        let mut done = head_on;
         for point in others {
-            let along = last.take().filter(|(p, _)| p.speed_m_s == point.speed_m_s && p.pitch_rad == point.pitch_rad);
-            let root = || head_on.iter().find(|p| p.speed_m_s == point.speed_m_s).map(|p| self.id(p));
-            let case = self.case(point, along.map(|(_, id)| id).or_else(root));
-            last = Some((*point, case.id.clone()));
-            out.push(case);
+            let at_its_speed = done.iter().copied().filter(|p| p.speed_m_s == point.speed_m_s);
+            let nearest = at_its_speed.min_by(|a, b| apart_rad(**a, *point).total_cmp(&apart_rad(**b, *point)));
+            out.push(self.case(point, nearest.map(|p| self.id(p))));
+            done.push(point);
         }
         out
     }
@@ -369,6 +377,24 @@ mod tests {
         assert_eq!(at("H2LT-u0.3-a3").start_from.as_deref(), Some("H2LT-u0.3-a0"));
         assert_eq!(at("H2LT-u0.3-a90").start_from.as_deref(), Some("H2LT-u0.3-a87"));
         assert_eq!(at("H2LT-u0.02-a0").start_from.as_deref(), Some("H2LT-u0.04-a0"));
+    }
+
+    #[test]
+    fn both_planes_start_alike() {
+        let plan = "[[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nspeed = \"0.4 m/s\"\n\
+             angle = [\"-15 deg\", \"-7.5 deg\", \"0 deg\", \"7.5 deg\", \"15 deg\"]\npitch = [\"0 deg\", \"7.5 deg\", \"15 deg\"]\n";
+        let cases = of(plan, "cold = 0\ndomain = \"full\"");
+        let from = |id: &str| cases.iter().find(|c| c.id == id).and_then(|c| c.start_from.clone());
+        for (id, expected) in [
+            ("H1LT-u0.4-a7.5", "H1LT-u0.4-a0"),
+            ("H1LT-u0.4-a-7.5", "H1LT-u0.4-a0"),
+            ("H1LT-u0.4-a0-p7.5", "H1LT-u0.4-a0"),
+            ("H1LT-u0.4-a15", "H1LT-u0.4-a7.5"),
+            ("H1LT-u0.4-a-15", "H1LT-u0.4-a-7.5"),
+            ("H1LT-u0.4-a0-p15", "H1LT-u0.4-a0-p7.5"),
+        ] {
+            assert_eq!(from(id).as_deref(), Some(expected), "{id}");
+        }
     }
 
     #[test]

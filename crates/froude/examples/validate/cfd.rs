@@ -228,10 +228,6 @@ cold   = 0
 speed = "0.4 m/s"
 angle = ["0 deg", "7.5 deg", "15 deg"]
 pitch = ["0 deg", "7.5 deg", "15 deg"]
-[[source.plan]]
-speed = "0.4 m/s"
-angle = "TURNED_ANGLE deg"
-pitch = "TURNED_PITCH deg"
 [[identify.model]]
 name = "two_angles"
 f_x  = "-D_x*v_x*abs(v_x) - D_xx*v_x*(v_y^2 + v_z^2)/speed"
@@ -240,17 +236,36 @@ f_z  = "-D_z*v_z*sqrt(v_y^2 + v_z^2) - L_z*abs(v_x)*v_z"
 m_y  = "M_y*v_x*v_z"
 m_z  = "-M_z*v_x*v_y"
 "#;
+/// The plan of [`TWO_ANGLES`] with other settings.
+const GRID: &str = "angle = [\"0 deg\", \"7.5 deg\", \"15 deg\"]\npitch = [\"0 deg\", \"7.5 deg\", \"15 deg\"]\n";
 const CAPSULE_FILE: &str = "schema = 1\nname = \"capsule\"\n[body]\nshape = \"capsule\"\nlength = \"1 m\"\nmajor_semi_axis = \"45 mm\"\nminor_semi_axis = \"45 mm\"\nends = { length = \"45 mm\" }\n";
 
-fn two_angles(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
-    // 15° from the axis, turned about it by three and a half cells of the 32: no symmetry of the mesh, and none that holds the wake.
+/// A velocity so far from the axis, turned about it by three and a half cells of the 32, as angle and pitch in degrees: no symmetry of the mesh, and none that holds the wake.
+fn turned(from_axis_deg: f64) -> [f64; 2] {
     let (sin, cos) = (3.5 * std::f64::consts::TAU / 32.0).sin_cos();
-    let (across, along) = 15_f64.to_radians().sin_cos();
-    let (angle, pitch) = ((across * cos).atan2(along).to_degrees(), (across * sin).asin().to_degrees());
-    let text = TWO_ANGLES.replace("TURNED_ANGLE", &angle.to_string()).replace("TURNED_PITCH", &pitch.to_string());
-    let path = campaign(root, "two-angles", &text)?;
+    let (across, along) = from_axis_deg.to_radians().sin_cos();
+    [(across * cos).atan2(along).to_degrees(), (across * sin).asin().to_degrees()]
+}
+
+fn moved_capsule(root: &Path, name: &str, text: &str) -> Result<PathBuf, Failed> {
+    let path = campaign(root, name, text)?;
     std::fs::write(path.with_file_name("capsule.toml"), CAPSULE_FILE)?;
     finish(&path)?;
+    Ok(path)
+}
+
+/// The loads that were computed at these angles in degrees.
+fn loads_at(path: &Path, [angle, pitch]: [f64; 2]) -> Result<[f64; 6], Failed> {
+    let rows = collect(&Store::open(&path.with_file_name("cfd"))?).rows;
+    let is_it = |row: &&Collected| {
+        let flow = row.case.flow;
+        (flow.angle_rad.to_degrees() - angle).abs() < 0.1 && (flow.pitch_rad.to_degrees() - pitch).abs() < 0.1
+    };
+    Ok(rows.iter().find(is_it).map_or([f64::NAN; 6], |row| row.loads))
+}
+
+fn two_angles(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
+    let path = moved_capsule(root, "two-angles", TWO_ANGLES)?;
     let found = identify(&Job { out: Some(path.with_file_name("results")), ..Job::new(&path) }, &|_| {})?;
     let estimate = found.file.estimates.first().ok_or("no estimate")?;
     let of = |name: &str| {
@@ -269,16 +284,8 @@ fn two_angles(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
         );
     }
     // A rotation about the axis takes (30°, 0) into (0, 30°).
-    let rows = collect(&Store::open(&path.with_file_name("cfd"))?).rows;
-    let at = |angle: f64, pitch: f64| {
-        let is_it = |row: &&Collected| {
-            let flow = row.case.flow;
-            (flow.angle_rad.to_degrees() - angle).abs() < 0.1 && (flow.pitch_rad.to_degrees() - pitch).abs() < 0.1
-        };
-        rows.iter().find(is_it).map_or([f64::NAN; 6], |row| row.loads)
-    };
     for angle in [7.5, 15.0] {
-        let (level, upright) = (at(angle, 0.0), at(0.0, angle));
+        let (level, upright) = (loads_at(&path, [angle, 0.0])?, loads_at(&path, [0.0, angle])?);
         let scale = level[1].abs();
         for (what, a, b, scale) in [
             ("f_x", level[0], upright[0], level[0].abs()),
@@ -294,14 +301,33 @@ fn two_angles(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
             );
         }
     }
-    let (level, turned) = (at(15.0, 0.0), at(angle, pitch));
-    let across = turned[1].hypot(turned[2]);
+    let level = loads_at(&path, [15.0, 0.0])?;
+    let plan = |settings: &[[f64; 2]]| {
+        let block = |[angle, pitch]: &[f64; 2]| format!("angle = \"{angle} deg\"\npitch = \"{pitch} deg\"\n");
+        let blocks: Vec<String> = settings.iter().map(block).collect();
+        TWO_ANGLES.replace(GRID, &blocks.join("[[source.plan]]\nspeed = \"0.4 m/s\"\n"))
+    };
+    let (near, far) = (turned(7.5), turned(15.0));
+    let about = moved_capsule(root, "turned-about", &plan(&[[0.0, 0.0], near, far]))?;
+    let loads = loads_at(&about, far)?;
+    let across = loads[1].hypot(loads[2]);
     claims.holds(
         MOVED,
         "force across at 15° from the axis, in the plane and turned about the axis by 39.4°, which the mesh has no symmetry of",
         "the same within 2 %",
         format!("{:.5} N and {across:.5} N ({:+.2} %)", level[1], 100.0 * (across / level[1] - 1.0)),
         (across / level[1] - 1.0).abs() <= 0.02,
+    );
+    let at_once = moved_capsule(root, "at-once", &plan(&[[0.0, 0.0], [15.0, 0.0]]))?;
+    let other = loads_at(&at_once, [15.0, 0.0])?;
+    claims.add(
+        MOVED,
+        "f_x, f_y and m_z at 15°, started from the flow at 7.5° and from the one head on",
+        "one steady state would give the same; both are converged",
+        [0, 1, 5]
+            .map(|k| format!("{:.5} and {:.5} ({:+.1} %)", level[k], other[k], 100.0 * (other[k] / level[k] - 1.0)))
+            .join(", "),
+        Verdict::Finding,
     );
     Ok(())
 }
