@@ -534,6 +534,7 @@ fn parquet_and_mcap_are_read_as_csv_is() {
             line_of_row: (1..=rows.len()).collect(),
             sidecar: None,
             left_out: Vec::new(),
+            blank: Vec::new(),
         };
         prepare_table(&table, &path).unwrap().take_place().unwrap();
         let sidecar = sidecar()

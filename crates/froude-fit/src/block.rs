@@ -118,7 +118,7 @@ fn groups(problem: &Problem, options: &Options, held: &[Option<f64>]) -> Vec<usi
     let mut sets = Sets::new(n_components + p);
     for j in (0..p).filter(|&j| held[j].is_none()) {
         for (i, &component) in problem.component.iter().enumerate() {
-            if problem.design[(i, j)] != 0.0 {
+            if problem.design[(i, j)] != 0.0 && problem.weight_of(i) > 0.0 {
                 sets.join(component, n_components + j);
             }
         }
@@ -185,7 +185,8 @@ fn block(
     let components: Vec<usize> = (0..n_components).filter(|&c| group[c] == root).collect();
     let columns: Vec<usize> =
         (0..problem.n_coefficients()).filter(|&j| held[j].is_none() && group[n_components + j] == root).collect();
-    let rows: Vec<usize> = (0..problem.n_rows()).filter(|&i| group[problem.component[i]] == root).collect();
+    let rows: Vec<usize> =
+        (0..problem.n_rows()).filter(|&i| group[problem.component[i]] == root && problem.weight_of(i) > 0.0).collect();
     let row_component: Vec<usize> =
         rows.iter().filter_map(|&i| components.iter().position(|&c| c == problem.component[i])).collect();
     let root_weight: Vec<f64> = rows.iter().map(|&i| problem.weight_of(i).sqrt()).collect();

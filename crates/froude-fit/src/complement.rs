@@ -31,7 +31,7 @@ pub fn complement(problem: &Problem, options: &Options, columns: &Mat<f64>) -> O
         basis.extend(cleared(weighted(columns, j), &basis));
     }
     let new = basis.split_off(own);
-    (!new.is_empty()).then(|| Mat::from_fn(n, new.len(), |i, k| new[k][i] / root[i]))
+    (!new.is_empty()).then(|| Mat::from_fn(n, new.len(), |i, k| if root[i] > 0.0 { new[k][i] / root[i] } else { 0.0 }))
 }
 
 /// What a column has beside an orthonormal basis, of length 1; `None` where that is rounding.

@@ -47,10 +47,10 @@ pub enum FitError {
         value: f64,
     },
 
-    /// A weight is not a positive number.
+    /// A weight is below zero or not finite.
     #[error(
-        "weight of row {row} is {weight}; a weight is a relative 1/variance, positive and \
-         finite (leave the row out to ignore it)"
+        "weight of row {row} is {weight}; a weight is a relative 1/variance, not negative and \
+         finite (0 where the row is no observation)"
     )]
     Weight {
         /// Row of the weight.

@@ -399,7 +399,7 @@ fn components(problem: &Problem, options: &Options, parts: &[Part], residuals: &
 
 fn component(problem: &Problem, options: &Options, part: &Part, k: usize, residuals: &[f64]) -> ComponentSummary {
     let c = part.block.components[k];
-    let rows: Vec<usize> = (0..problem.n_rows()).filter(|&i| problem.component[i] == c).collect();
+    let rows = problem.rows_of(c);
     let weighted: Vec<f64> = rows.iter().map(|&i| problem.weight_of(i).sqrt() * residuals[i]).collect();
     let size: f64 = rows.iter().map(|&i| problem.weight_of(i) * problem.response[i] * problem.response[i]).sum();
     let rss = dot(&weighted, &weighted);

@@ -17,7 +17,7 @@ pub struct Problem {
     pub design: Mat<f64>,
     /// `y`, length `n`.
     pub response: Vec<f64>,
-    /// Relative 1/variance of each row; `None` means all one.
+    /// Relative 1/variance of each row; `None` means all one, 0 that the row is no observation.
     pub weight: Option<Vec<f64>>,
     /// Component of each row, an index into `components`.
     pub component: Vec<usize>,
@@ -74,6 +74,12 @@ impl Problem {
         }
     }
 
+    /// Rows of a component that are observations: those of a weight above zero.
+    #[must_use]
+    pub fn rows_of(&self, component: usize) -> Vec<usize> {
+        (0..self.n_rows()).filter(|&i| self.component[i] == component && self.weight_of(i) > 0.0).collect()
+    }
+
     /// Weight of row `i`.
     pub(crate) fn weight_of(&self, i: usize) -> f64 {
         self.weight.as_ref().map_or(1.0, |w| w[i])
@@ -99,7 +105,7 @@ impl Problem {
         if let Some(weight) = &self.weight {
             size("weight", weight.len(), n, of_rows)?;
             for (row, &weight) in weight.iter().enumerate() {
-                if !(weight.is_finite() && weight > 0.0) {
+                if !(weight.is_finite() && weight >= 0.0) {
                     return Err(FitError::Weight { row, weight });
                 }
             }
@@ -128,7 +134,7 @@ impl Problem {
         let mut has_rows = vec![false; count];
         for (row, &component) in self.component.iter().enumerate() {
             match has_rows.get_mut(component) {
-                Some(flag) => *flag = true,
+                Some(flag) => *flag |= self.weight_of(row) > 0.0,
                 None => {
                     return Err(FitError::NoSuchComponent { row, component, count });
                 }

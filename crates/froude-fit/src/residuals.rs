@@ -49,7 +49,7 @@ impl Residuals {
         let onto = mul_vec(qr.q.as_ref(), &tr_mul_vec(qr.q.as_ref(), &response));
         (0..problem.components.len())
             .map(|c| {
-                let rows: Vec<usize> = (0..n).filter(|&i| problem.component[i] == c).collect();
+                let rows = problem.rows_of(c);
                 Self {
                     residual: rows.iter().map(|&i| response[i] - onto[i]).collect(),
                     q: Mat::from_fn(rows.len(), qr.rank, |i, k| qr.q[(rows[i], k)]),

@@ -64,7 +64,8 @@ pub struct ComponentScore<T> {
 
 /// The rows to train on, as a problem without components that lost all rows.
 fn training(problem: &Problem, rows: &[usize]) -> Problem {
-    let mut part = problem.rows(rows);
+    let observed: Vec<usize> = rows.iter().copied().filter(|&i| problem.weight_of(i) > 0.0).collect();
+    let mut part = problem.rows(&observed);
     let kept: Vec<usize> = (0..problem.components.len()).filter(|c| part.component.contains(c)).collect();
     part.component = part.component.iter().filter_map(|c| kept.iter().position(|k| k == c)).collect();
     part.components = kept.iter().map(|&c| problem.components[c].clone()).collect();

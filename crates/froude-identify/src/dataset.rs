@@ -41,6 +41,8 @@ pub struct Dataset {
     pub headers: Vec<String>,
     /// Headers of columns in the file that its sidecar does not name.
     pub left_out: Vec<String>,
+    /// Loads that were not measured in some rows: whether each row is an observation of the load.
+    pub observed: IndexMap<String, Vec<bool>>,
     /// What these rows were drawn from, where they are a sample.
     pub sample: Option<Drawn>,
 }
@@ -126,6 +128,12 @@ impl Dataset {
     #[must_use]
     pub fn loads(&self) -> Vec<&'static str> {
         LOADS.into_iter().filter(|l| self.channels.contains_key(*l)).collect()
+    }
+
+    /// Whether row `i` is an observation of a load.
+    #[must_use]
+    pub fn observes(&self, load: &str, i: usize) -> bool {
+        self.observed.get(load).is_none_or(|is| is[i])
     }
 
     /// Header of a column, `f_x [mN]` say; the bare name where no table was read.
@@ -236,6 +244,9 @@ impl Dataset {
             line: keep.iter().filter_map(|&i| self.line.get(i).copied()).collect(),
             headers: self.headers.clone(),
             left_out: self.left_out.clone(),
+            observed: (self.observed.iter())
+                .map(|(load, is)| (load.clone(), keep.iter().map(|&i| is[i]).collect()))
+                .collect(),
             sample: self.sample.clone(),
         }
     }

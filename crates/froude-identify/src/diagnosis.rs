@@ -162,13 +162,15 @@ const WEIGHS_MORE: f64 = 10.0;
 
 /// A row whose weight alone decides a load.
 fn dominating_row(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
-    let Some(weight) = model.problem.weight.as_ref().filter(|_| data.sample.is_none()) else { return Vec::new() };
+    let Some(weight) = model.problem.weight.as_ref().filter(|_| data.sample.is_none() && model.is_weighted()) else {
+        return Vec::new();
+    };
     let n = data.rows;
     let of_load = |(r, load): (usize, &String)| {
         let rows = r * n..(r + 1) * n;
-        let mut sorted = weight[rows.clone()].to_vec();
+        let mut sorted: Vec<f64> = weight[rows.clone()].iter().copied().filter(|w| *w > 0.0).collect();
         sorted.sort_by(f64::total_cmp);
-        let median = sorted[n / 2];
+        let median = *sorted.get(sorted.len() / 2)?;
         let i = rows.max_by(|a, b| model.fit.leverage[*a].total_cmp(&model.fit.leverage[*b]))?;
         let (leverage, times) = (model.fit.leverage[i], weight[i] / median);
         (leverage > DECIDES && times > WEIGHS_MORE).then(|| {
@@ -240,8 +242,13 @@ pub fn unevenness(model: &ModelFit, data: &Dataset, load: &str) -> Option<Uneven
     let speed = data.values("speed").filter(|_| n >= FEWEST_FOR_SCATTER)?;
     let r = model.law.responses.iter().position(|name| name == load)?;
     let weight = |row: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[row]);
-    let size: Vec<f64> = (r * n..(r + 1) * n).map(|row| model.fit.residuals[row].abs() * weight(row).sqrt()).collect();
-    let speed: Vec<f64> = speed.iter().map(|u| u.abs()).collect();
+    let rows: Vec<usize> = (0..n).filter(|&i| data.observes(load, i)).collect();
+    let size: Vec<f64> =
+        rows.iter().map(|&i| model.fit.residuals[r * n + i].abs() * weight(r * n + i).sqrt()).collect();
+    let speed: Vec<f64> = rows.iter().map(|&i| speed[i].abs()).collect();
+    if rows.len() < FEWEST_FOR_SCATTER {
+        return None;
+    }
     Some(Unevenness::of(&size, &speed))
 }
 

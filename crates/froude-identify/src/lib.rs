@@ -26,6 +26,7 @@ pub mod eiv;
 pub mod envelope;
 mod error;
 pub mod formula;
+mod idle;
 pub mod inspect;
 pub mod large;
 pub mod law;

@@ -82,6 +82,11 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, IdentifyEr
             columns.push(number(&format!("{load}_leverage"), &model.fit.leverage[rows], Unit::one()));
         }
     }
+    let not_measured = data.observed.iter().flat_map(|(load, is)| {
+        let rows = (0..data.rows).filter(|&i| !is[i]);
+        rows.flat_map(move |i| [(load.clone(), i), (format!("{load}_residual"), i)])
+    });
+    let blank = not_measured.collect();
     // What does not exist in a row (the power law at rest has no logarithm) leaves its column out.
     columns.retain(|c| match &c.data {
         ColumnData::Number { si, .. } => si.iter().all(|x| x.is_finite()),
@@ -94,6 +99,7 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, IdentifyEr
         line_of_row: data.line.clone(),
         sidecar: None,
         left_out: Vec::new(),
+        blank,
     })
 }
 

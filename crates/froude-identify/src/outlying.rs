@@ -101,7 +101,8 @@ fn uneven_without(model: &ModelFit, data: &Dataset, r: usize, found: Outlying) -
             .sum::<f64>()
     };
     let weight = |i: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[i]);
-    let others: Vec<usize> = (0..n).filter(|row| *row != found.row).collect();
+    let load = &model.law.responses[r];
+    let others: Vec<usize> = (0..n).filter(|row| *row != found.row && data.observes(load, *row)).collect();
     let size = |row: &usize| {
         let i = r * n + row;
         (model.fit.residuals[i] + moved(i)).abs() * weight(i).sqrt()

@@ -177,7 +177,7 @@ fn derived(d: &reduced::Derived, coefficients: &IndexMap<String, Coefficient>) -
 }
 
 fn method(model: &ModelFit, data: &Dataset) -> String {
-    let is_weighted = model.problem.weight.is_some();
+    let is_weighted = model.is_weighted();
     let base = if model.law.in_logarithms() {
         if is_weighted { "least squares of logarithms" } else { "least squares of logarithms (equal relative errors)" }
     } else if model.law.is_nonlinear() {
@@ -206,7 +206,7 @@ fn method(model: &ModelFit, data: &Dataset) -> String {
     if let fit::Loss::Huber { k } = model.options.loss {
         out += &format!(", Huber loss with k = {k}");
     }
-    if model.problem.weight.is_some() {
+    if model.is_weighted() {
         let has_std = model.law.responses.iter().any(|load| data.values(&format!("std_{load}")).is_some());
         out += if has_std { ", weighted by the table's standard deviations" } else { ", weighted by the fitted loads" };
     }

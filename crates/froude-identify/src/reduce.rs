@@ -5,11 +5,11 @@
 use std::path::Path;
 
 use froude_hydro::fluid::Water;
-use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Source};
+use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Source, SourceKind};
 use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::meant;
 use froude_records::plausible;
-use froude_records::table::{Column, ColumnData, Table, links_of_configuration, read_table};
+use froude_records::table::{Column, ColumnData, Table, links_of_configuration, read_table, read_table_with_blanks};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
@@ -18,7 +18,7 @@ use crate::error::IdentifyError;
 use crate::result::ReadFile;
 use crate::source::models;
 use crate::uncertainty::SharedError;
-use crate::{columns, tare, two_units};
+use crate::{columns, idle, tare, two_units};
 
 /// The observations of a table.
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, Iden
         Input::Table(path) => path.clone(),
         other => return Err(not_a_table(source, other)),
     };
-    let table = read_table(&path, source.sidecar.as_deref())?;
+    let table = read_table_with_blanks(&path, source.sidecar.as_deref())?;
     let mut files = vec![ReadFile::new(path, "table")];
     files.extend(table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar")));
     reduce_table(campaign, source, &table, files)
@@ -76,6 +76,10 @@ pub fn reduce_table(
         findings.push(finding);
         data = data.subset(&unique);
         keep = unique.iter().map(|&i| keep[i]).collect();
+    }
+    // Computed loads are zero by symmetry, and errors in variables know every row.
+    if source.kind != SourceKind::Cfd && !campaign.identify.errors_in_variables {
+        findings.extend(idle::mark(&mut data));
     }
     // The findings about the observations concern those that are fitted.
     findings.extend(zero_drift(&data));
@@ -124,6 +128,7 @@ pub(crate) fn conditioned(
     has_speed: bool,
 ) -> Result<Dataset, IdentifyError> {
     let mut data = dataset(table, source, has_speed)?;
+    idle::of_blanks(table, &mut data)?;
     water_or_air(table, campaign)?;
     water(&mut data, campaign, findings)?;
     subtract_zeros(&mut data);

@@ -16,6 +16,7 @@ use froude_records::finding::{Finding, Severity};
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw};
+use crate::regression::fitted::is_uneven;
 use crate::regression::held::{MOST_CUTS, beside_priors, hold};
 use crate::regression::job::Job;
 use crate::regression::problem::step;
@@ -114,7 +115,8 @@ fn relative_residual(
     let predicted = law.predict(data, &coefficients[..law.coefficients.len()])?;
     let n = data.rows;
     for (r, summary) in fitted.components.iter_mut().enumerate() {
-        let sum = |of: &dyn Fn(usize) -> f64| (r * n..(r + 1) * n).map(|i| of(i).powi(2)).sum::<f64>();
+        let observed = |i: &usize| data.observes(&law.responses[r], i % n);
+        let sum = |of: &dyn Fn(usize) -> f64| (r * n..(r + 1) * n).filter(observed).map(|i| of(i).powi(2)).sum::<f64>();
         summary.relative_residual = (sum(&|i| newtons[i] - predicted[i]) / sum(&|i| newtons[i])).sqrt();
     }
     Ok(())
@@ -134,7 +136,7 @@ fn errors_in_variables(
     let has_bounds = options.bounds.iter().any(|b| b.lower.is_finite() || b.upper.is_finite());
     let has_more = !options.inequalities.is_empty() || !options.priors.is_empty() || !options.fixed.is_empty();
     let has_other = options.loss != fit::Loss::Squares || options.covariance != fit::CovarianceKind::Classical;
-    if has_bounds || has_more || has_other || !options.excluded.is_empty() || problem.weight.is_some() {
+    if has_bounds || has_more || has_other || !options.excluded.is_empty() || is_uneven(problem) {
         return Err(IdentifyError::Campaign {
             place: place(),
             what: "errors_in_variables goes with neither bounds, priors, known, fixed or excluded coefficients, dissipative, huber, HC3, cluster, weights, nor \

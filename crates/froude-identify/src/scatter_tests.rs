@@ -193,7 +193,7 @@ fn uneven(
         (p < with.level).then_some((with.words, above < 0.5, p))
     });
     let (words, grows, p) = found?;
-    let is_weighted = model.problem.weight.is_some();
+    let is_weighted = model.is_weighted();
     let has_std = data.values(&format!("std_{load}")).is_some();
     let (assumed, advice) = match (model.law.in_logarithms(), is_weighted) {
         (true, false) => ("equal relative errors", "compare with the fit in newtons"),

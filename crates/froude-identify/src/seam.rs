@@ -16,7 +16,7 @@ use crate::law::ForceLaw;
 use crate::regression::{ModelFit, Settings, regress};
 use crate::result::{NotFitted, SourceResult};
 use crate::selection::{Recommendation, Score, added_terms, leave_one_out, range_block, recommend};
-use crate::{bootstrap, diagnosis, record, uncertainty, zero};
+use crate::{bootstrap, diagnosis, idle, record, uncertainty, zero};
 
 pub use crate::seam::reduced::{Choice, Derived, Reduced, Stated};
 
@@ -27,12 +27,23 @@ pub use crate::seam::reduced::{Choice, Derived, Reduced, Stated};
 /// # Errors
 ///
 /// See [`IdentifyError`]; a law that cannot be fitted costs its own row, unless it is the last.
-pub fn fit(reduced: Reduced, identify: &Identify, progress: &dyn Fn(&str)) -> Result<SourceResult, IdentifyError> {
-    let fitted = reduced.laws.iter().map(|law| {
-        progress(&law.name);
-        regress(law, &reduced.data, reduced.settings(identify)).map_err(|error| (law.name.clone(), error))
-    });
-    let fitted = fitted.collect();
+pub fn fit(mut reduced: Reduced, identify: &Identify, progress: &dyn Fn(&str)) -> Result<SourceResult, IdentifyError> {
+    let each = |reduced: &Reduced| -> Vec<_> {
+        let fitted = reduced.laws.iter().map(|law| {
+            progress(&law.name);
+            regress(law, &reduced.data, reduced.settings(identify)).map_err(|error| (law.name.clone(), error))
+        });
+        fitted.collect()
+    };
+    let mut fitted = each(&reduced);
+    if reduced.stated.method == "table" {
+        let models: Vec<&ModelFit> = fitted.iter().filter_map(|result| result.as_ref().ok()).collect();
+        let quiet = idle::mark_quiet(&models, &mut reduced.data);
+        if !quiet.is_empty() {
+            reduced.findings.extend(quiet);
+            fitted = each(&reduced);
+        }
+    }
     conclude(reduced, identify, fitted, progress)
 }
 

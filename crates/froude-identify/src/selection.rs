@@ -67,12 +67,14 @@ pub fn aicc(model: &ModelFit, data: &Dataset) -> Option<f64> {
 pub fn aicc_of(model: &ModelFit, data: &Dataset, load: &str) -> Option<f64> {
     let r = model.law.responses.iter().position(|response| response == load)?;
     let n = data.rows;
-    let of_weights: f64 = model.problem.weight.iter().flat_map(|w| &w[r * n..(r + 1) * n]).map(|w| w.ln()).sum();
+    let of_weights: f64 =
+        model.problem.weight.iter().flat_map(|w| &w[r * n..(r + 1) * n]).filter(|w| **w > 0.0).map(|w| w.ln()).sum();
     let base = model.fit.components[r].aicc? - of_weights;
     if !model.law.in_logarithms() {
         return Some(base);
     }
-    let jacobian: f64 = data.values(load)?.iter().map(|f| f.abs().ln()).sum();
+    let loads = data.values(load)?;
+    let jacobian: f64 = (0..n).filter(|&i| data.observes(load, i)).map(|i| loads[i].abs().ln()).sum();
     Some(base + 2.0 * jacobian)
 }
 

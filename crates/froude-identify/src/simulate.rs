@@ -230,7 +230,15 @@ pub fn table(data: &Dataset, source: &Source) -> Result<Table, IdentifyError> {
             });
         }
     }
-    Ok(Table { path, columns, n_rows: data.rows, line_of_row: data.line.clone(), sidecar: None, left_out: Vec::new() })
+    Ok(Table {
+        path,
+        columns,
+        n_rows: data.rows,
+        line_of_row: data.line.clone(),
+        sidecar: None,
+        left_out: Vec::new(),
+        blank: Vec::new(),
+    })
 }
 
 /// A unit that is written here; one that did not parse would be written as SI.

@@ -259,13 +259,16 @@ pub(crate) fn split_header(header: &str) -> Result<(&str, Option<&str>), &'stati
 }
 
 impl Want<'_> {
+    /// Whether a cell may be empty where tables of several axes are read: a load, or the motion along or about an axis.
+    pub fn may_be_blank(&self) -> bool {
+        matches!(self, Self::Number { name, .. } if is_of_axis(name))
+    }
+
     /// What to do about an empty cell: a column that a table can do without may also be left out.
     pub fn advice(&self, path: &Path, sidecar: Option<&Sidecar>) -> String {
         let Some(name) = name_of(self) else { return fill_or_delete() };
         let base = name.strip_suffix("_dot").unwrap_or(name);
-        let is_motion = matches!(base, "v_x" | "v_y" | "v_z" | "w_x" | "w_y" | "w_z" | "speed" | "angle");
-        let is_load = matches!(base, "f_x" | "f_y" | "f_z" | "m_x" | "m_y" | "m_z");
-        if is_motion || is_load || is_text_column(name) || name == "n_links" {
+        if is_of_axis(base) || matches!(base, "speed" | "angle") || is_text_column(name) || name == "n_links" {
             return fill_or_delete();
         }
         let leave_out = match sidecar {
@@ -281,6 +284,11 @@ impl Want<'_> {
         };
         format!("fill it in, delete the row, or do without the column: {leave_out}{instead}")
     }
+}
+
+/// Whether a column is a load, or the motion along or about an axis.
+fn is_of_axis(name: &str) -> bool {
+    matches!(name, "v_x" | "v_y" | "v_z" | "w_x" | "w_y" | "w_z" | "f_x" | "f_y" | "f_z" | "m_x" | "m_y" | "m_z")
 }
 
 /// A finite number in a cell; `advice` is what to do where it is empty.
@@ -327,6 +335,7 @@ pub(crate) fn assemble(
             .filter(|(_, want)| matches!(want, Want::LeftOut))
             .map(|(header, _)| header.clone())
             .collect(),
+        blank: Vec::new(),
     };
     match sidecar {
         Some(sidecar) => {

@@ -138,7 +138,7 @@ pub(crate) fn chunk(
         let problem = "the text is not UTF-8; save the file as UTF-8".to_owned();
         RecordError::Syntax { place: Place::line(path, first + before), problem }
     })?;
-    let (raws, lines) = head.rows(&mut Records::new(path, text, first))?;
+    let (raws, lines) = head.rows(&mut Records::new(path, text, first), None)?;
     head.table(raws, lines)
 }
 

@@ -15,6 +15,7 @@
 //! a row is skipped in silence. The tests compare it with the `csv` crate.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::Path;
 
@@ -43,15 +44,37 @@ pub fn read_csv(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordE
     parse_csv(path, utf8(path, &bytes)?, sidecar)
 }
 
+/// The same with empty cells of loads and of motions along axes, which [`Table::blank`] lists.
+///
+/// # Errors
+///
+/// See [`RecordError`].
+pub fn read_csv_with_blanks(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
+    let bytes = read_bytes(path, LARGEST_BYTES, "a table")?;
+    let mut blank = Vec::new();
+    let table = parse(path, utf8(path, &bytes)?, sidecar, Some(&mut blank))?;
+    Ok(Table { blank, ..table })
+}
+
 /// The same from text; `path` is for messages.
 ///
 /// # Errors
 ///
 /// See [`RecordError`].
 pub fn parse_csv(path: &Path, text: &str, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
+    parse(path, text, sidecar, None)
+}
+
+/// The same; empty cells are an error without a place for them.
+fn parse(
+    path: &Path,
+    text: &str,
+    sidecar: Option<&Sidecar>,
+    blank: Option<&mut Vec<(String, usize)>>,
+) -> Result<Table, RecordError> {
     let mut records = Records::new(path, text.strip_prefix('\u{feff}').unwrap_or(text), 1);
     let head = Head::read(&mut records, sidecar)?;
-    let (raws, lines) = head.rows(&mut records)?;
+    let (raws, lines) = head.rows(&mut records, blank)?;
     head.table(raws, lines)
 }
 
@@ -90,8 +113,12 @@ impl<'a, 's> Head<'a, 's> {
         Ok(Self { path, sidecar, place, header, wants })
     }
 
-    /// All further rows, with the line of each.
-    pub(crate) fn rows(&self, records: &mut Records<'_, '_>) -> Result<(Vec<Raw>, Vec<usize>), RecordError> {
+    /// All further rows, with the line of each; empty cells that may be empty are 0 and listed, where there is a place for them.
+    pub(crate) fn rows(
+        &self,
+        records: &mut Records<'_, '_>,
+        mut blank: Option<&mut Vec<(String, usize)>>,
+    ) -> Result<(Vec<Raw>, Vec<usize>), RecordError> {
         let path = self.path;
         let mut raws: Vec<Raw> = self
             .wants
@@ -110,14 +137,21 @@ impl<'a, 's> Head<'a, 's> {
                 });
             }
             for (j, (cell, raw)) in cells.iter().zip(&mut raws).enumerate() {
-                match raw {
-                    Raw::Numbers(values) => {
+                match (raw, &self.wants[j], &mut blank) {
+                    (Raw::Numbers(values), want @ Want::Number { name, .. }, Some(blank))
+                        if cell.trim().is_empty() && want.may_be_blank() =>
+                    {
+                        room.take((size_of::<(String, usize)>() + name.len()) as u64)?;
+                        memory::push(blank, (name.clone(), lines.len())).map_err(|e| RecordError::memory(path, e))?;
+                        room.number(values, 0.0)?;
+                    }
+                    (Raw::Numbers(values), ..) => {
                         let advice = || self.wants[j].advice(path, self.sidecar);
                         let value = number(cell.trim(), &self.header[j], &|| Place::line(path, line), &advice)?;
                         room.number(values, value)?;
                     }
-                    Raw::Texts(_) if is_left_out[j] => {}
-                    Raw::Texts(texts) => room.text(texts, unguarded(cell), &|| Place::line(path, line))?,
+                    (Raw::Texts(_), ..) if is_left_out[j] => {}
+                    (Raw::Texts(texts), ..) => room.text(texts, unguarded(cell), &|| Place::line(path, line))?,
                 }
             }
             memory::push(&mut lines, line).map_err(|e| RecordError::memory(path, e))?;
@@ -286,10 +320,14 @@ fn all_finite(table: &Table, path: &Path) -> Result<(), RecordError> {
 fn write_rows(table: &Table, file: &mut dyn Write) -> std::io::Result<()> {
     let header: Vec<_> = table.columns.iter().map(|c| quoted(guarded(c.header()))).collect();
     writeln!(file, "{}", header.join(","))?;
+    let blank: BTreeSet<(&str, usize)> = table.blank.iter().map(|(name, row)| (name.as_str(), *row)).collect();
     for row in 0..table.n_rows {
         for (j, column) in table.columns.iter().enumerate() {
             if j > 0 {
                 file.write_all(b",")?;
+            }
+            if blank.contains(&(column.name.as_str(), row)) {
+                continue;
             }
             match &column.data {
                 ColumnData::Number { unit, si, .. } => {

@@ -7,7 +7,7 @@ use crate::nearest::suggestion;
 use crate::plausible;
 use crate::units::{Dimension, Unit};
 
-pub use crate::table_file::{prepare_table, read_table, sidecar_of};
+pub use crate::table_file::{prepare_table, read_table, read_table_with_blanks, sidecar_of};
 
 /// A table in memory.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +24,8 @@ pub struct Table {
     pub sidecar: Option<PathBuf>,
     /// Headers of the file's columns that the sidecar does not name.
     pub left_out: Vec<String>,
+    /// Empty cells, as column and row: read as 0, and only by [`read_table_with_blanks`].
+    pub blank: Vec<(String, usize)>,
 }
 
 /// One column.

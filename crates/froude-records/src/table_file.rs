@@ -21,6 +21,19 @@ pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordEr
     }
 }
 
+/// As [`read_table`]; in CSV a load, and a motion along or about an axis, may have empty cells, which [`Table::blank`] lists.
+///
+/// # Errors
+///
+/// As [`read_table`].
+pub fn read_table_with_blanks(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordError> {
+    let mapping = sidecar_of(path, sidecar)?;
+    match Format::of(path)? {
+        Format::Csv => csv_table::read_csv_with_blanks(path, mapping.as_ref()),
+        Format::Parquet => parquet_table::read_parquet(path, mapping.as_ref()),
+    }
+}
+
 /// The sidecar of a table: the one given, or the `.toml` of the same name beside it.
 ///
 /// # Errors

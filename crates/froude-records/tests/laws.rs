@@ -149,6 +149,7 @@ proptest! {
                 line_of_row: (2..2 + rows.len()).collect(),
                 sidecar: None,
                 left_out: Vec::new(),
+                blank: Vec::new(),
             };
             if name == "t.csv" { write_csv(&table, &path).unwrap() } else { write_parquet(&table, &path).unwrap() }
             let read = read_table(&path, None).unwrap();

@@ -109,7 +109,15 @@ fn a_negative_zero_is_written_as_zero() {
     let data = ColumnData::Number { unit: Unit::one(), dimension: Dimension::ONE, si: vec![-0.0, -1.5] };
     let columns = vec![Column { name: "x".to_owned(), data }];
     write_csv(
-        &Table { path: path.clone(), columns, n_rows: 2, line_of_row: vec![2, 3], sidecar: None, left_out: Vec::new() },
+        &Table {
+            path: path.clone(),
+            columns,
+            n_rows: 2,
+            line_of_row: vec![2, 3],
+            sidecar: None,
+            left_out: Vec::new(),
+            blank: Vec::new(),
+        },
         &path,
     )
     .unwrap();

@@ -400,6 +400,7 @@ impl Prediction {
             line_of_row: data.line.clone(),
             sidecar: None,
             left_out: Vec::new(),
+            blank: Vec::new(),
         }
     }
 

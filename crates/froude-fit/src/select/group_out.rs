@@ -75,10 +75,7 @@ pub fn leave_one_group_out(
         .components
         .iter()
         .enumerate()
-        .map(|(c, name)| {
-            let rows: Vec<usize> = (0..n).filter(|&i| problem.component[i] == c).collect();
-            ComponentScore { component: name.clone(), score: score(&rows, groups, &error) }
-        })
+        .map(|(c, name)| ComponentScore { component: name.clone(), score: score(&problem.rows_of(c), groups, &error) })
         .collect())
 }
 

@@ -48,7 +48,7 @@ pub fn lack_of_fit(
         .enumerate()
         .map(|(c, component)| {
             let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-            for i in (0..n).filter(|&i| problem.component[i] == c) {
+            for i in problem.rows_of(c) {
                 groups.entry(settings[i]).or_default().push(i);
             }
             let pure: f64 = groups.values().map(|rows| scatter(problem, rows)).sum();

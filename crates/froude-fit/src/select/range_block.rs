@@ -56,9 +56,8 @@ pub fn range_block(problem: &Problem, options: &Options, train: &[bool]) -> Resu
         .iter()
         .enumerate()
         .map(|(c, name)| {
-            let of_component = |i: &usize| problem.component[*i] == c;
-            let n_train = rows.iter().filter(|i| of_component(i)).count();
-            let test: Vec<usize> = (0..n).filter(|i| of_component(i) && !train[*i]).collect();
+            let (inside, test): (Vec<usize>, Vec<usize>) = problem.rows_of(c).into_iter().partition(|&i| train[i]);
+            let n_train = inside.len();
             ComponentScore { component: name.clone(), score: score(problem, &predicted, n_train, &test) }
         })
         .collect();

@@ -48,12 +48,12 @@ fn numbers_that_are_none() {
     let mut problem = good();
     problem.response[3] = f64::INFINITY;
     refused(&problem, &Options::default(), "response of row 3 is inf; every entry must be finite");
-    let problem = Problem { weight: Some(vec![1.0, 0.0, 1.0, 1.0]), ..good() };
+    let problem = Problem { weight: Some(vec![1.0, -1.0, 1.0, 1.0]), ..good() };
     refused(
         &problem,
         &Options::default(),
-        "weight of row 1 is 0; a weight is a relative 1/variance, positive and finite (leave the \
-         row out to ignore it)",
+        "weight of row 1 is -1; a weight is a relative 1/variance, not negative and finite (0 where the row is \
+         no observation)",
     );
 }
 

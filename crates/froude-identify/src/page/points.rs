@@ -31,7 +31,7 @@ pub(super) fn of(model: &ModelFit, data: &Dataset) -> Result<Vec<Point>, Identif
     for (r, response) in model.law.responses.iter().enumerate() {
         let Some(measured) = data.values(response) else { continue };
         let standard = data.values(&format!("std_{response}"));
-        for i in 0..n {
+        for i in (0..n).filter(|&i| data.observes(response, i)) {
             out.push(Point {
                 configuration: data.configuration[i].clone(),
                 component: response.clone(),

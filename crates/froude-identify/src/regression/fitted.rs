@@ -189,6 +189,12 @@ impl ModelFit {
         fitted.status == fit::Status::Free && (value < low - rounding || value > high + rounding)
     }
 
+    /// Whether some rows weigh more than others.
+    #[must_use]
+    pub fn is_weighted(&self) -> bool {
+        is_uneven(&self.problem)
+    }
+
     /// Standard deviation of a row of each load about the law, in the unit of the load (of a fit in logarithms, a part of it).
     ///
     /// Of weighted rows the root of their mean variance, σ √(Σ (1/w)/n): σ itself is that of a row of weight 1, and there may be no such row.
@@ -196,7 +202,7 @@ impl ModelFit {
     pub fn sigma_of_rows(&self, load: usize) -> Option<f64> {
         let sigma = self.fit.components[load].sigma?;
         let Some(weight) = &self.problem.weight else { return Some(sigma) };
-        let rows = (0..weight.len()).filter(|i| self.problem.component[*i] == load);
+        let rows = self.problem.rows_of(load).into_iter();
         let (sum, n) = rows.fold((0.0, 0.0), |(sum, n), i| (sum + 1.0 / weight[i], n + 1.0));
         Some(sigma * (sum / n).sqrt())
     }
@@ -258,6 +264,12 @@ impl ModelFit {
     pub fn prediction_std(&self, row: &[f64]) -> f64 {
         spread(&self.covariance, row)
     }
+}
+
+/// Whether some observations of a problem weigh more than others.
+pub(crate) fn is_uneven(problem: &fit::Problem) -> bool {
+    let weighs = |w: &Vec<f64>| w.iter().filter(|w| **w > 0.0).any(|w| (w - 1.0).abs() > 1e-12);
+    problem.weight.as_ref().is_some_and(weighs)
 }
 
 /// √(xᵀCx) of the coefficients that x belongs to.

@@ -18,11 +18,11 @@ const STEPS: usize = 30;
 /// Least variance, as part of the mean one: a row without error would decide everything.
 const LEAST: f64 = 1e-3;
 
-/// A weight for each row, of mean one within its load; `None` where a load has no scatter.
+/// A weight for each row that is an observation, of mean one within its load; `None` where a load has no scatter.
 pub(crate) fn weights(problem: &fit::Problem, fitted: &fit::Fit) -> Option<Vec<f64>> {
-    let mut out = vec![1.0; problem.n_rows()];
+    let mut out = vec![0.0; problem.n_rows()];
     for c in 0..problem.components.len() {
-        let rows: Vec<usize> = (0..problem.n_rows()).filter(|&i| problem.component[i] == c).collect();
+        let rows = problem.rows_of(c);
         let square = |i: usize| fitted.residuals[i].powi(2) / (1.0 - fitted.leverage[i]).max(LEAST);
         let squares: Vec<f64> = rows.iter().map(|&i| square(i)).collect();
         let loads: Vec<f64> = rows.iter().map(|&i| fitted.fitted[i].powi(2)).collect();

@@ -143,6 +143,15 @@ fn of_rows(root: &Mat<f64>, sensitivity: &Mat<f64>) -> Mat<f64> {
     transposed.transpose().to_owned()
 }
 
+fn is_observed(problem: &fit::Problem, i: usize) -> bool {
+    problem.weight.as_ref().is_none_or(|w| w[i] > 0.0)
+}
+
+/// Weight of a row; 1 where it is no observation, whose line of the design is zero.
+fn weight(problem: &fit::Problem, i: usize) -> f64 {
+    problem.weight.as_ref().map_or(1.0, |w| if w[i] > 0.0 { w[i] } else { 1.0 })
+}
+
 /// Ω factored, and what follows from it.
 struct Solved {
     /// Cholesky factor of Ω.
@@ -156,13 +165,12 @@ struct Solved {
 impl Solved {
     fn at(problem: &fit::Problem, shared: &[Vec<f64>], sigma: &[f64]) -> Option<Self> {
         let n = problem.n_rows();
-        let weight = |i: usize| problem.weight.as_ref().map_or(1.0, |w| w[i]);
         let mut omega = Mat::<f64>::zeros(n, n);
         for i in 0..n {
-            omega[(i, i)] = sigma[problem.component[i]].powi(2) / weight(i);
+            omega[(i, i)] = sigma[problem.component[i]].powi(2) / weight(problem, i);
         }
         for column in shared {
-            let there: Vec<usize> = (0..n).filter(|&i| column[i] != 0.0).collect();
+            let there: Vec<usize> = (0..n).filter(|&i| column[i] != 0.0 && is_observed(problem, i)).collect();
             for &i in &there {
                 for &j in &there {
                     omega[(i, j)] += column[i] * column[j];
@@ -182,17 +190,16 @@ impl Solved {
 
     /// yᵀP D_c P y over tr P D_c.
     fn ratio(&self, problem: &fit::Problem, c: usize) -> f64 {
-        let weight = |i: usize| problem.weight.as_ref().map_or(1.0, |w| w[i]);
-        let rows = || (0..problem.n_rows()).filter(|&i| problem.component[i] == c);
-        let found: f64 = rows().map(|i| self.py[i].powi(2) / weight(i)).sum();
-        let expected: f64 = rows().map(|i| self.p[(i, i)] / weight(i)).sum();
+        let rows = problem.rows_of(c);
+        let found: f64 = rows.iter().map(|&i| self.py[i].powi(2) / weight(problem, i)).sum();
+        let expected: f64 = rows.iter().map(|&i| self.p[(i, i)] / weight(problem, i)).sum();
         if expected > 0.0 { found / expected } else { 1.0 }
     }
 
     /// σ⁴ tr P D P D of a load.
     fn dof(&self, problem: &fit::Problem, c: usize, sigma: f64) -> f64 {
-        let weight = |i: usize| problem.weight.as_ref().map_or(1.0, |w| w[i]);
-        let rows: Vec<usize> = (0..problem.n_rows()).filter(|&i| problem.component[i] == c).collect();
+        let rows = problem.rows_of(c);
+        let weight = |i: usize| weight(problem, i);
         let of = |i: usize| rows.iter().map(|&j| self.p[(i, j)].powi(2) / (weight(i) * weight(j))).sum::<f64>();
         sigma.powi(4) * rows.iter().map(|&i| of(i)).sum::<f64>()
     }
@@ -205,15 +212,16 @@ impl Solved {
         let lower = self.root.as_ref();
         solve_lower_triangular_in_place(lower, design.as_mut(), Par::Seq);
         solve_lower_triangular_in_place(lower, response.as_mut(), Par::Seq);
-        fit::Problem { design, response: (0..n).map(|i| response[(i, 0)]).collect(), weight: None, ..problem.clone() }
+        let observed = (0..n).map(|i| f64::from(u8::from(is_observed(problem, i))));
+        let weight = problem.weight.as_ref().filter(|w| w.contains(&0.0)).map(|_| observed.collect());
+        fit::Problem { design, response: (0..n).map(|i| response[(i, 0)]).collect(), weight, ..problem.clone() }
     }
 
     /// The fit of the whitened rows in place of that by least squares, with σ of the rows alone.
     fn replace(&self, fitted: &mut fit::Fit, found: fit::Fit, problem: &fit::Problem, sigma: &[f64]) {
         let (n, p) = (problem.n_rows(), problem.n_coefficients());
-        let weight = |i: usize| problem.weight.as_ref().map_or(1.0, |w| w[i]);
         let s = of_rows(&self.root, &found.sensitivity);
-        let variance: Vec<f64> = (0..n).map(|i| sigma[problem.component[i]].powi(2) / weight(i)).collect();
+        let variance: Vec<f64> = (0..n).map(|i| sigma[problem.component[i]].powi(2) / weight(problem, i)).collect();
         let covariance = Mat::from_fn(p, p, |a, b| (0..n).map(|i| s[(a, i)] * s[(b, i)] * variance[i]).sum::<f64>());
         let of_load: Vec<f64> = (0..sigma.len()).map(|c| self.dof(problem, c, sigma[c])).collect();
         let value: Vec<f64> = found.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect();

@@ -23,7 +23,9 @@ pub(crate) fn logarithms(
         .zip(v)
         .enumerate()
         .map(|(i, (f, v))| {
-            if f * v < 0.0 {
+            if !data.observes(&law.responses[0], i) {
+                Ok(0.0)
+            } else if f * v < 0.0 {
                 Ok(f.abs().ln())
             } else {
                 Err(IdentifyError::Campaign {
@@ -127,6 +129,10 @@ pub(crate) fn problem(
             design[(row, first + row / n * groups.names.len() + groups.of_row[row % n])] = 1.0;
         }
     }
+    for row in (0..measured.len()).filter(|row| !data.observes(&law.responses[row / n], row % n)) {
+        response[row] = 0.0;
+        design.row_mut(row).fill(0.0);
+    }
     let component: Vec<usize> = (0..measured.len()).map(|row| row / n).collect();
     Ok(fit::Problem {
         design,
@@ -142,8 +148,30 @@ pub(crate) fn problem(
     })
 }
 
-/// Relative weights from `std_*` columns, scaled so that their mean is one within a response.
+/// Weights of the rows, 0 where a load was not measured; `None` where all are one.
 pub(crate) fn weights(law: &ForceLaw, data: &Dataset, weight: Weight) -> Result<Option<Vec<f64>>, IdentifyError> {
+    let of_std = of_std(law, data, weight)?;
+    if !law.responses.iter().any(|load| data.observed.contains_key(load)) {
+        return Ok(of_std);
+    }
+    let n = data.rows;
+    let mut out = of_std.unwrap_or_else(|| vec![1.0; law.responses.len() * n]);
+    for (r, load) in law.responses.iter().enumerate() {
+        let own = &mut out[r * n..(r + 1) * n];
+        for (i, w) in own.iter_mut().enumerate() {
+            *w = if data.observes(load, i) { *w } else { 0.0 };
+        }
+        let count = own.iter().filter(|w| **w > 0.0).count().max(1) as f64;
+        let mean = own.iter().sum::<f64>() / count;
+        for w in own.iter_mut() {
+            *w /= mean;
+        }
+    }
+    Ok(Some(out))
+}
+
+/// Relative weights from `std_*` columns, scaled so that their mean is one within a response.
+fn of_std(law: &ForceLaw, data: &Dataset, weight: Weight) -> Result<Option<Vec<f64>>, IdentifyError> {
     let stds: Vec<Option<&[f64]>> = law.responses.iter().map(|r| data.values(&format!("std_{r}"))).collect();
     if weight == Weight::One || stds.iter().all(Option::is_none) {
         return Ok(None);
@@ -154,7 +182,7 @@ pub(crate) fn weights(law: &ForceLaw, data: &Dataset, weight: Weight) -> Result<
             out.extend(std::iter::repeat_n(1.0, data.rows));
             continue;
         };
-        if let Some(i) = std.iter().position(|s| *s <= 0.0) {
+        if let Some(i) = (0..std.len()).find(|&i| std[i] <= 0.0 && data.observes(response, i)) {
             return Err(IdentifyError::Campaign {
                 place: format!("model {}", law.name),
                 what: format!(
@@ -169,7 +197,16 @@ pub(crate) fn weights(law: &ForceLaw, data: &Dataset, weight: Weight) -> Result<
         let weight: Vec<f64> = std
             .iter()
             .zip(loads)
-            .map(|(s, f)| if law.in_logarithms() { (f / s).powi(2) } else { 1.0 / (s * s) })
+            .enumerate()
+            .map(|(i, (s, f))| {
+                if !data.observes(response, i) {
+                    0.0
+                } else if law.in_logarithms() {
+                    (f / s).powi(2)
+                } else {
+                    1.0 / (s * s)
+                }
+            })
             .collect();
         let mean = weight.iter().sum::<f64>() / weight.len() as f64;
         out.extend(weight.iter().map(|w| w / mean));

@@ -137,6 +137,7 @@ mod tests {
             line_of_row: (first_row + 1..=first_row + time_s.len()).collect(),
             sidecar: None,
             left_out: Vec::new(),
+            blank: Vec::new(),
         }
     }
 

@@ -57,5 +57,6 @@ pub fn table(folder: &Path, rows: &[Row]) -> Table {
         line_of_row: (1..=n_rows).collect(),
         sidecar: None,
         left_out: Vec::new(),
+        blank: Vec::new(),
     }
 }

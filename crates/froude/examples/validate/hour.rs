@@ -142,6 +142,7 @@ fn log(root: &Path, folder: &Path, periods: usize) -> Result<usize, Box<dyn Erro
         line_of_row: Vec::new(),
         sidecar: None,
         left_out: Vec::new(),
+        blank: Vec::new(),
     };
     std::fs::create_dir(folder.join("runs"))?;
     prepare_table(&table, &table.path)?.take_place()?;

@@ -118,6 +118,7 @@ fn table(flows: &[&ComparedFlow], of: Dimension, result: &SourceResult, name: &s
         line_of_row: (2..2 + flows.len()).collect(),
         sidecar: None,
         left_out: Vec::new(),
+        blank: Vec::new(),
     };
     Ok(csv_bytes(&table)?)
 }

@@ -48,5 +48,6 @@ pub(super) fn table(moments: &[Moment], is_driven: bool, path: &Path) -> Table {
         line_of_row: (1..=moments.len()).collect(),
         sidecar: None,
         left_out: Vec::new(),
+        blank: Vec::new(),
     }
 }

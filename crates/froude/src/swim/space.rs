@@ -193,6 +193,7 @@ fn table(moments: &[SpatialMoment], path: &Path) -> Table {
         line_of_row: (1..=moments.len()).collect(),
         sidecar: None,
         left_out: Vec::new(),
+        blank: Vec::new(),
     }
 }
 
