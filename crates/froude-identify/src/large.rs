@@ -34,7 +34,7 @@ use crate::dataset::{Dataset, Drawn};
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::motions::Motions;
-use crate::reduce::{fitted_loads, kept_rows, left_out, observed, one_unit, zero_drift};
+use crate::reduce::{kept_rows, left_out, observed, one_unit, zero_drift};
 use crate::regression::{Condensed, ModelFit, Scatter, Settings, regress};
 use crate::result::{ReadFile, SourceResult};
 use crate::seam::{Reduced, conclude};
@@ -229,7 +229,7 @@ fn reduced(
     findings.extend(left_out(facts.n_used, facts.n_read));
     findings.extend(zero_drift(ends));
     findings.extend(lint::motion::motion_contradictions(table, keep, ends));
-    one_unit(table, sample, &fitted_loads(campaign, source, ends))?;
+    one_unit(table, sample, campaign, source)?;
     let (validity, found) = validity::ranges(ends, campaign);
     findings.extend(found);
     findings.extend(lint::of_ends(ends, campaign, &laws));

@@ -84,7 +84,7 @@ pub fn reduce_table(
     // The findings about the observations concern those that are fitted.
     findings.extend(zero_drift(&data));
     findings.extend(crate::lint::motion::motion_contradictions(table, &keep, &data));
-    one_unit(table, &data, &fitted_loads(campaign, source, &data))?;
+    one_unit(table, &data, campaign, source)?;
     let mut shared_errors = Vec::new();
     if let Some(tare) = &source.tare {
         let (errors, found) = tare::subtract(&mut data, tare)?;
@@ -149,7 +149,7 @@ pub(crate) fn left_out(kept: usize, n_read: usize) -> Option<Finding> {
 }
 
 /// The loads that a law of the source gives or has; all of them where its laws cannot be made.
-pub(crate) fn fitted_loads(campaign: &Campaign, source: &Source, data: &Dataset) -> Vec<&'static str> {
+fn fitted_loads(campaign: &Campaign, source: &Source, data: &Dataset) -> Vec<&'static str> {
     let mut loads = data.loads();
     if let Ok(laws) = models::laws(campaign, source, data) {
         loads.retain(|load| columns::is_in(load, &laws));
@@ -158,8 +158,15 @@ pub(crate) fn fitted_loads(campaign: &Campaign, source: &Source, data: &Dataset)
 }
 
 /// Refuses a load whose rows stand in two units: their mean is the load of nothing. A load that nothing fits does no harm.
-pub(crate) fn one_unit(table: &Table, data: &Dataset, loads: &[&'static str]) -> Result<(), IdentifyError> {
-    let Some(found) = two_units::found(data, loads) else { return Ok(()) };
+pub(crate) fn one_unit(
+    table: &Table,
+    data: &Dataset,
+    campaign: &Campaign,
+    source: &Source,
+) -> Result<(), IdentifyError> {
+    let loads = fitted_loads(campaign, source, data);
+    let found = two_units::found(data, &loads).filter(|found| !two_units::is_foretold(found, data, campaign, source));
+    let Some(found) = found else { return Ok(()) };
     let [large, small] = found.rows;
     let place = |row: usize| {
         let line = data.line.get(row);
@@ -178,7 +185,7 @@ pub(crate) fn one_unit(table: &Table, data: &Dataset, loads: &[&'static str]) ->
     };
     let problem = format!(
         "is {} here and {} in {}, at one setting; there are two groups of rows a factor of {} apart, as loads of one body are not: {}, \
-         probably; convert them, or leave them out with `keep`",
+         probably. Convert them; where they are right, name what differs between the two in a column `configuration`, whose rows are not compared with each other",
         written(large),
         written(small),
         place(small),

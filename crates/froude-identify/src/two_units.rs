@@ -8,14 +8,21 @@
 //! of a setting fall into two tight groups that lie thirtyfold apart, the column has two units. A load that is noise
 //! (a side force at no angle), or that depends on something that the table does not state, is spread over the gap and
 //! changes its sign, and is passed over.
+//!
+//! **The law decides.** Inertia and drag cancel at one speed of an accelerated motion, and lift and drag at one angle: such rows look a hundredfold small and are foretold by the law. Rows in another
+//! unit are not, and a law that is fitted to two halves leaves most of the load.
 
 use std::collections::BTreeMap;
 
 use froude_fit::distribution::coverage_factor;
+use froude_records::campaign::{Campaign, Source};
 
 use crate::dataset::{Dataset, labels};
+use crate::law::ForceLaw;
 use crate::lint::motion::SIGN_MATTERS_ABOVE;
 use crate::lint::repeats::{is_outcome, within};
+use crate::regression::{Settings, regress};
+use crate::source::models::laws;
 
 /// Rows slower than this part of the fastest are left to the zero of the sensor.
 const SLOW: f64 = 0.3;
@@ -56,6 +63,8 @@ pub struct TwoUnits {
     pub rows: [usize; 2],
     /// How many times the one group is the other.
     pub factor: f64,
+    /// The rows of the smaller group.
+    few: Vec<usize>,
 }
 
 impl TwoUnits {
@@ -75,6 +84,31 @@ fn cause(factor: f64) -> Option<&'static str> {
 pub fn found(data: &Dataset, loads: &[&'static str]) -> Option<TwoUnits> {
     let settings = settings(data);
     loads.iter().find_map(|load| of_load(load, data.values(load)?, data, &settings))
+}
+
+/// A law that leaves less than this of a load describes it.
+const DESCRIBES: f64 = 0.3;
+/// What a law leaves of sound rows, in root mean squares of what it leaves of the others.
+const LIKE_OTHERS: f64 = 4.0;
+
+/// Whether one of the laws foretells the rows that look as if they were in another unit.
+pub(crate) fn is_foretold(of: &TwoUnits, data: &Dataset, campaign: &Campaign, source: &Source) -> bool {
+    let laws = laws(campaign, source, data).unwrap_or_default();
+    let settings = Settings::new(&source.name, source.kind, &campaign.identify);
+    let foretells = |law: &ForceLaw| {
+        let (Some(r), Ok(model)) = (law.responses.iter().position(|l| l == of.load), regress(law, data, settings))
+        else {
+            return false;
+        };
+        let left = |i: &usize| {
+            let row = r * data.rows + i;
+            (model.fit.residuals[row] / (1.0 - model.fit.leverage[row]).max(f64::MIN_POSITIVE)).powi(2)
+        };
+        let (few, others): (Vec<usize>, Vec<usize>) = (0..data.rows).partition(|i| of.few.contains(i));
+        let mean = |rows: &[usize]| (rows.iter().map(left).sum::<f64>() / rows.len() as f64).sqrt();
+        model.fit.components[r].relative_residual < DESCRIBES && mean(&few) <= LIKE_OTHERS * mean(&others)
+    };
+    laws.iter().filter(|law| !law.in_logarithms()).any(foretells)
 }
 
 fn of_load(load: &'static str, f: &[f64], data: &Dataset, settings: &[Vec<usize>]) -> Option<TwoUnits> {
@@ -126,7 +160,8 @@ fn of_load(load: &'static str, f: &[f64], data: &Dataset, settings: &[Vec<usize>
         if spread(high, rows[0]) > REPEATED || spread(low, rows[1]) > REPEATED || scatter(most, &u) > SCATTER {
             return None;
         }
-        Some(TwoUnits { load, rows, factor })
+        let few = if high.len() < low.len() { high } else { low }.iter().map(|(_, i)| *i).collect();
+        Some(TwoUnits { load, rows, factor, few })
     })
 }
 

@@ -360,3 +360,33 @@ fn a_value_that_bounds_move_has_no_interval_of_another_value() {
     let [low, high] = free.estimates[0].coefficients["D_x_II"].interval_95.unwrap();
     assert!(low < 20.0 && 20.0 < high && !free.findings.iter().any(|f| f.code == "moved-by-bounds"));
 }
+
+/// Inertia and drag cancel near 0.78 m/s of a body that slows down: these rows are small by the law, and in no other unit. Rows in gram-force are refused all the same.
+#[test]
+fn rows_in_which_inertia_and_drag_cancel_are_no_other_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let law = "[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n[identify]\n[[identify.model]]\nname = \"free\"\nf_x = \"-A*v_x_dot - X_uu*v_x*abs(v_x)\"\n";
+    std::fs::write(folder.path().join("c.toml"), format!("{HEAD}{law}")).unwrap();
+    let found = |has_gram_force: bool| {
+        let mut table = "v_x [m/s],v_x_dot [m/s^2],f_x [N]\n".to_owned();
+        let mut row = 0;
+        for a in [-0.3, 0.1, 0.4] {
+            for repeat in 0..3 {
+                for k in 0..6 {
+                    let v = 0.781 + 0.3 * f64::from(k);
+                    let error = 0.02 * f64::from((row * 7 + repeat) % 5 - 2);
+                    let by = if has_gram_force && a > 0.0 && row % 2 == 1 { 101.97 } else { 1.0 };
+                    let _ = writeln!(table, "{v},{a},{}", by * (-30.0 * a - 15.0 * v * v + error));
+                    row += 1;
+                }
+            }
+        }
+        std::fs::write(folder.path().join("t.csv"), table).unwrap();
+        let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
+        identify_source(&campaign, &campaign.sources[0], &|_| {}).map_err(|e| e.to_string())
+    };
+    let sound = found(false).unwrap();
+    assert!((sound.estimates[0].coefficients["A"].value.unwrap() / 30.0 - 1.0).abs() < 0.01);
+    let said = found(true).err().unwrap();
+    assert!(said.contains("gram-force") && said.contains("configuration"), "{said}");
+}
