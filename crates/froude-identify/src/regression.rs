@@ -23,6 +23,8 @@ use crate::regression::problem::step;
 use crate::regression::uncertain::Uncertainty;
 use crate::{dissipation, eiv};
 
+pub(crate) use crate::regression::fitted_weights::Variance;
+
 pub use crate::regression::fitted::{Condensed, ModelFit, Scatter, Settings, Weight};
 
 /// Fits `law` to `data`.
