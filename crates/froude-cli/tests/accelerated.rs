@@ -169,3 +169,40 @@ fn a_channel_whose_sign_is_not_declared_and_a_cut_log_are_refused() {
     let error = refused(folder.path(), IDENTIFY);
     assert!(error.contains("the zero of the cell is unknown: the body stands still for 0.00 s before"), "{error}");
 }
+
+/// One sample of a million newtons decided every coefficient; it is named, and a mark leaves it out.
+#[test]
+fn a_wild_sample_is_refused_until_a_mark_leaves_it_out() {
+    let folder = simulated(EXAMPLE, &ONE);
+    let log = folder.path().join("runs/001.csv");
+    let rows = std::fs::read_to_string(&log).unwrap();
+    let force = rows.lines().next().unwrap().split(',').position(|head| head.starts_with("force")).unwrap();
+    let mut time = String::new();
+    let spoilt = rows.lines().enumerate().map(|(i, line)| {
+        let mut cells: Vec<&str> = line.split(',').collect();
+        if i == 700 {
+            time = cells[0].to_owned();
+            cells[force] = "1000000";
+        }
+        cells.join(",") + "\n"
+    });
+    let spoilt: String = spoilt.collect();
+    std::fs::write(&log, spoilt).unwrap();
+    let error = refused(folder.path(), IDENTIFY);
+    assert!(
+        error.contains("001.csv") && error.contains("force is 1.000 × 10⁶ N at 6.99 s") && error.contains("[[marks]]"),
+        "{error}"
+    );
+    let sidecar = folder.path().join("runs/001.toml");
+    let text = std::fs::read_to_string(&sidecar).unwrap();
+    let at: f64 = time.parse().unwrap();
+    let mark = format!(
+        "\n[[marks]]\nfrom = \"{} s\"\nto = \"{} s\"\nwhy = \"spike\"\nby = \"test\"\n",
+        at - 0.005,
+        at + 0.005
+    );
+    std::fs::write(&sidecar, text + &mark).unwrap();
+    let record = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
+    let drag = record["estimates"][0]["coefficients"]["D_y_II"]["value"].as_f64().unwrap();
+    assert!((0.0..100.0).contains(&drag), "{drag}");
+}

@@ -310,3 +310,20 @@ fn releases_of_two_bodies_need_two_sources() {
     let said = refusal(&["identify", text(&campaign)]);
     assert!(said.contains("002.csv: is of \"H2LT\", and the log before it of \"H1LT\""), "{said}");
 }
+
+/// One log in milliseconds under a header in seconds took the added mass a millionfold away.
+#[test]
+fn a_log_in_milliseconds_among_others_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let runs = folder.path().join("releases");
+    releases(&runs, HEAVE, 4, "position [m]");
+    let path = runs.join("release-2.csv");
+    let rows = std::fs::read_to_string(&path).unwrap();
+    let in_ms = rows.lines().map(|line| match line.split_once(',') {
+        Some((t, rest)) if t.parse::<f64>().is_ok() => format!("{},{rest}\n", 1000.0 * t.parse::<f64>().unwrap()),
+        _ => format!("{line}\n"),
+    });
+    std::fs::write(&path, in_ms.collect::<String>()).unwrap();
+    let said = refusal(&["identify", text(&campaign(folder.path(), "\"decay_envelope\"", DECLARED))]);
+    assert!(said.contains("release-2.csv") && said.contains("the step of its times is 20.0 s"), "{said}");
+}

@@ -4,6 +4,7 @@
 //! |-------------|-------------|--------------------------------------------------------------------------------------------------------|
 //! | `read`      | –           | columns by unit and sign (done by the importer)                                                        |
 //! | `times`     | [`times`]   | times of a calendar are counted from the first sample of the log                                        |
+//! | –           | [`wild`]    | a sample orders of magnitude away from all others is refused                                            |
 //! | `clock`, `delay`, `filter` | [`align`] | stamps of another clock, and late ones, as times of the log                               |
 //! | `clipped`   | [`clipped`] | readings at the end of the range, or flat at an extreme, are marked                                    |
 //! | `resampled` | [`align`]   | channels whose stamps moved, by a cubic spline at the rows of the log; rows without data are cut        |
@@ -21,6 +22,7 @@ pub mod loads;
 pub mod resolution;
 pub mod stretches;
 pub mod times;
+pub mod wild;
 
 use froude_identify::method::MethodError;
 use froude_records::run::ImportedRun;
@@ -45,6 +47,7 @@ pub fn condition(run: &mut ImportedRun, method: &str) -> Result<(), MethodError>
     times::from_the_first_sample(run);
     run.findings.extend(stretches::astray(&run.log, &run.declared.marks));
     resolution::check(run);
+    wild::check(run)?;
     let stamps = align::stamps(run, method);
     clipped::mark(run, &stamps);
     align::resample(run, &stamps)?;

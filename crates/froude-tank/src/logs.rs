@@ -101,6 +101,7 @@ pub(crate) fn read_averaging(
         }
         out.runs.push(log);
     }
+    conditioning::wild::compare(&out.runs)?;
     out.findings.extend(of_a_calendar(&out.runs));
     Ok(out)
 }
