@@ -206,3 +206,42 @@ fn a_wild_sample_is_refused_until_a_mark_leaves_it_out() {
     let drag = record["estimates"][0]["coefficients"]["D_y_II"]["value"].as_f64().unwrap();
     assert!((0.0..100.0).contains(&drag), "{drag}");
 }
+
+/// A force that a filter holds back is late by 60 ms: it is found, and declaring it removes the finding.
+#[test]
+fn a_force_that_is_late_is_found_and_declaring_it_removes_the_finding() {
+    let folder = simulated(EXAMPLE, &[]);
+    let late = |log: &std::path::Path| {
+        let rows = std::fs::read_to_string(log).unwrap();
+        let mut lines: Vec<Vec<String>> = rows.lines().map(|l| l.split(',').map(str::to_owned).collect()).collect();
+        let force = lines[0].iter().position(|head| head.starts_with("force")).unwrap();
+        let seconds = |row: &[String]| row[0].parse::<f64>().unwrap();
+        let step_s = seconds(&lines[2]) - seconds(&lines[1]);
+        let by = (0.06 / step_s).round() as usize;
+        for i in (1 + by..lines.len()).rev() {
+            lines[i][force] = lines[i - by][force].clone();
+        }
+        let text: Vec<String> = lines.into_iter().map(|cells| cells.join(",")).collect();
+        std::fs::write(log, text.join("\n") + "\n").unwrap();
+    };
+    let lag = |folder: &std::path::Path| {
+        let record = json(&froude(folder, &["identify", "campaign.toml", "--json"]));
+        let findings = record["findings"].as_array().unwrap().clone();
+        findings.iter().find(|f| f["code"] == "lag").map(|f| f["message"].as_str().unwrap().to_owned())
+    };
+    assert_eq!(lag(folder.path()), None);
+    for entry in std::fs::read_dir(folder.path().join("runs")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "csv") {
+            late(&path);
+        }
+    }
+    let said = lag(folder.path()).expect("a lag");
+    let (_, advice) = said.split_once("write ").unwrap();
+    let (delay, _) = advice.split_once(" in [source").unwrap();
+    let campaign = folder.path().join("campaign.toml");
+    let text = std::fs::read_to_string(&campaign).unwrap();
+    let lines = text.lines().map(|line| if line.starts_with("delay") { delay } else { line });
+    std::fs::write(&campaign, lines.collect::<Vec<_>>().join("\n")).unwrap();
+    assert_eq!(lag(folder.path()), None, "after {delay}");
+}

@@ -91,7 +91,6 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     let scatter = scatter_tests::findings(model, data, &outlying);
     out.extend(scatter.iter().map(|(_, finding)| finding.clone()));
     out.extend(misfit::findings(model, data, d, campaign, (&scatter, &outlying)));
-    out.extend(no_better_than_nothing(model));
     out.extend(decided_by_one(model, data));
     out.extend(added_mass_sign(model, data));
     out.extend(rows);
@@ -188,24 +187,6 @@ fn dominating_row(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
         })
     };
     model.law.responses.iter().enumerate().filter_map(of_load).collect()
-}
-
-/// A load of which the law leaves more than there is.
-fn no_better_than_nothing(model: &ModelFit) -> Vec<Finding> {
-    // A logarithm is zero at one newton, and no size of a load.
-    let is_worse = |relative: f64| !model.law.in_logarithms() && relative > 1.0 + 1e-9;
-    let worse = model.fit.components.iter().filter(|c| is_worse(c.relative_residual));
-    worse
-        .map(|c| {
-            let text = format!(
-                "{}, {}: the law leaves {} of the load (root mean square): it is no better than none; check the sign of the load and the values that are held",
-                model.law.name,
-                c.name,
-                percent(c.relative_residual)
-            );
-            Finding::new(Severity::Warning, "no-better-than-nothing", text)
-        })
-        .collect()
 }
 
 /// How |residual| goes with speed.

@@ -53,6 +53,7 @@ pub mod table;
 mod tare;
 pub mod two_units;
 pub mod uncertainty;
+pub mod unexplained;
 pub mod validation;
 pub mod validity;
 mod verdict;

@@ -13,12 +13,14 @@
 //! | [`rows`]     | weighted means of motion and force, zeros       | Shinbrot 1957 (modulating functions); USR eq. 16 |
 //! | [`law`]      | a drag law with a term of the acceleration      | USR eq. 15 and 16                              |
 //! | [`mod@reduce`] | mass, delay, what declared errors do          | JCGM 100:2008 (GUM), 5.2                       |
+//! | `lag`        | a lag of the force that nobody declared         | –                                              |
 //! | [`simulate`] | the runs that a campaign would give             | –                                              |
 //! | [`mod@plan`] | run matrix, time, travel, intervals to expect   | Fisher 1922                                    |
 //!
 //! Not here: two axes at once, moments, waves that the tow makes.
 
 pub mod error;
+mod lag;
 pub mod law;
 pub mod page;
 pub mod plan;

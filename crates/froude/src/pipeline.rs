@@ -14,6 +14,7 @@ use froude_identify::data_files::DataFiles;
 use froude_identify::dataset::Dataset;
 use froude_identify::method::{Export, Found, Method, observes};
 use froude_identify::reduce::reduce;
+use froude_identify::unexplained::unexplained;
 use froude_identify::{IdentifyError, asked, observations};
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
@@ -216,7 +217,9 @@ impl Gathered {
             self.exports.push(Export { name, ..export });
         }
         let of_source = |f: Finding| if source.name.is_empty() { f } else { f.of_source(&source.name) };
-        self.findings.extend(findings.into_iter().map(of_source));
+        let estimates = self.sources[first..].iter().flat_map(Answer::estimates);
+        let left: Vec<Finding> = estimates.flat_map(unexplained).collect();
+        self.findings.extend(findings.into_iter().chain(left).map(of_source));
         self.beside = self.beside.take().or(beside);
         self.is_part |= is_part;
         Ok(())

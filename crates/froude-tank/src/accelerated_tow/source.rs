@@ -15,7 +15,7 @@ use froude_records::units::Dimension;
 use super::law::{asked, names};
 use super::reduce::{Body, Mounted, Reduced, Setup, reduce};
 use super::rows::{TowRun, Way, root_mean_square};
-use super::{page, plan, simulate};
+use super::{lag, page, plan, simulate};
 use crate::logs::{self, Logs};
 use crate::reference;
 
@@ -117,6 +117,7 @@ impl Method for AcceleratedTow {
         }
         findings.append(&mut result.findings);
         let best = result.recommendation.as_ref().map_or(0, |r| r.index);
+        findings.extend(result.models.get(best).and_then(|model| lag::finding(campaign, &reduced, &setup, model)));
         let blocks = vec![page::section(&logs, &reduced, &setup, result.models.get(best))];
         Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
     }

@@ -1,0 +1,30 @@
+//! Laws that leave most of the load unexplained, of every method.
+//!
+//! What a law leaves is the root mean square of its residuals over that of the load, as the record has it. Noise of a usual sensor leaves a few per cent: above a half something else moves the load.
+
+use froude_records::estimate::Estimate;
+use froude_records::finding::{Finding, Severity};
+use froude_records::number::percent;
+
+/// Part of a load that a law may leave.
+const MOST: f64 = 0.5;
+
+/// The loads of a recommended estimate that its law does not explain.
+#[must_use]
+pub fn unexplained(estimate: &Estimate) -> Vec<Finding> {
+    let left = estimate.diagnostics.relative_residual.iter().filter(|(_, left)| estimate.recommended && **left > MOST);
+    left.map(|(load, left)| {
+        let law = &estimate.law.name;
+        let text = format!("{law}, {load}: the law leaves {} of the load (root mean square)", percent(*left));
+        if *left > 1.0 + 1e-9 {
+            let text = format!("{text}: it is no better than none; check the sign of the load and the values that are held");
+            return Finding::new(Severity::Warning, "no-better-than-nothing", text);
+        }
+        let text = format!(
+            "{text}: something else moves it, and its coefficients and intervals are those of the rest; look for a lag between motion and load, a variable that the law lacks, \
+             or a load that is mostly noise"
+        );
+        Finding::new(Severity::Warning, "mostly-unexplained", text)
+    })
+    .collect()
+}
