@@ -265,6 +265,25 @@ pub fn calibration_of(
     calibration_from(&readings, campaign, setup)
 }
 
+/// Standard uncertainties beyond which friction goes by direction.
+const BY_DIRECTION: f64 = 3.0;
+
+/// What runs both ways say of friction by direction, and whether they can.
+fn friction_by_direction(c: &Calibration) -> Option<Finding> {
+    if c.is_one_way_missed {
+        let text = "runs without weight one way and with weights the other way do not tell a friction that is larger one way from the force per volt: 10 % of the friction is some 3 % of it. \
+                    Add runs without weight both ways";
+        return Some(Finding::new(Severity::Warning, "friction-by-direction", text.to_owned()));
+    }
+    let one_way = c.one_way_n.filter(|d| d.value.abs() > BY_DIRECTION * d.standard)?;
+    let text = format!(
+        "friction is {} N along +y and {} N along −y: the force per volt is that of both; look for a tilted rail, a cable or a brake",
+        number::significant(c.friction_n + one_way.value, 3),
+        number::significant(c.friction_n - one_way.value, 3)
+    );
+    Some(Finding::new(Severity::Note, "friction-by-direction", text))
+}
+
 /// The same from what such runs showed.
 #[must_use]
 pub fn calibration_from(
@@ -297,7 +316,10 @@ pub fn calibration_from(
                 ),
             )),
         ),
-        Ok(calibration) => (Some(calibration), None),
+        Ok(calibration) => {
+            let finding = friction_by_direction(&calibration);
+            (Some(calibration), finding)
+        }
         Err(error) => (None, Some(Finding::new(Severity::Warning, "not-calibrated", error.to_string()))),
     }
 }

@@ -30,6 +30,8 @@ pub struct Scenario {
     pub coulomb_n: f64,
     /// Coulomb friction of the motor itself, before the gear, at the chain, N; in addition to [`Scenario::coulomb_n`].
     pub motor_coulomb_n: f64,
+    /// Part by which friction is larger along +y and smaller along −y.
+    pub one_way: f64,
     /// Viscous friction at the chain, N s/m.
     pub viscous_n_s_m: f64,
     /// Growth of the Coulomb part mid-tank, as a part.
@@ -107,6 +109,7 @@ impl Scenario {
             efficiency: 0.8,
             coulomb_n: 3.9e-3 * ratio,
             motor_coulomb_n: 0.0,
+            one_way: 0.0,
             viscous_n_s_m: 4.657e-6 * ratio * ratio,
             bump: 0.2,
             bump_width_m: 0.27,
@@ -251,7 +254,8 @@ impl Scenario {
             let friction_n = if v == 0.0 {
                 0.0
             } else {
-                v.signum() * (self.coulomb_at_n(position_m) * friction_factor - unloaded_n + wander) + viscous * v
+                let along = self.coulomb_at_n(position_m) * friction_factor - unloaded_n + wander;
+                (v.signum() * along + viscous * v) * (1.0 + self.one_way * v.signum())
             };
             let water_n = drag * v * v.abs() + added * a;
             let hung_n = if v == 0.0 { weight_n } else { weight_n + v.signum() * self.pulley_loss * weight_n };
