@@ -36,8 +36,8 @@ pub(crate) struct Block {
     pub row_component: Vec<usize>,
     /// Observations behind the rows of each component, where these were condensed.
     pub observations: Option<Vec<usize>>,
-    /// `(column, value, standard)` of each prior.
-    pub priors: Vec<(usize, f64, f64)>,
+    /// Each prior as a row over the columns, over its standard uncertainty, and its right-hand side.
+    pub priors: Vec<(Vec<(usize, f64)>, f64)>,
     /// `β₀`.
     pub offset: Vec<f64>,
     /// `Z`, columns × q.
@@ -128,6 +128,11 @@ fn groups(problem: &Problem, options: &Options, held: &[Option<f64>]) -> Vec<usi
         for j in free_columns_of(&constraint.row, held) {
             let first = *first.get_or_insert(j);
             sets.join(n_components + first, n_components + j);
+        }
+    }
+    for prior in options.priors.iter().filter(|prior| held[prior.index].is_none()) {
+        for (j, _) in prior.with.iter().filter(|(j, _)| held[*j].is_none()) {
+            sets.join(n_components + prior.index, n_components + j);
         }
     }
     // Columns that meet no component join the first one.
@@ -221,7 +226,13 @@ fn block(
     let priors = options
         .priors
         .iter()
-        .filter_map(|prior| local(prior.index).map(|l| (l, prior.value * scale[l], prior.standard * scale[l])))
+        .filter(|prior| local(prior.index).is_some())
+        .map(|prior| {
+            let entries = std::iter::once((prior.index, 1.0)).chain(prior.with.iter().map(|(j, slope)| (*j, -slope)));
+            let known: f64 = prior.with.iter().filter_map(|(j, slope)| held[*j].map(|value| slope * value)).sum();
+            let row = entries.filter_map(|(j, x)| local(j).map(|l| (l, x / (prior.standard * scale[l])))).collect();
+            (row, (prior.value + known) / prior.standard)
+        })
         .collect();
     let here = |row: &[f64]| free_columns_of(row, held).any(|j| local(j).is_some());
     let scaled = |row: &[f64], value: f64| {

@@ -85,11 +85,11 @@ fn whiten(block: &Block, sigma: &[f64]) -> Whitened {
     let at_offset = mul_vec(block.design.as_ref(), &block.offset);
     let mut design = Mat::zeros(n_priors + n, q);
     let mut response = Vec::with_capacity(n_priors + n);
-    for (k, &(column, value, standard)) in block.priors.iter().enumerate() {
+    for (k, (entries, value)) in block.priors.iter().enumerate() {
         for l in 0..q {
-            design[(k, l)] = block.basis[(column, l)] / standard;
+            design[(k, l)] = entries.iter().map(|(column, x)| x * block.basis[(*column, l)]).sum();
         }
-        response.push((value - block.offset[column]) / standard);
+        response.push(value - entries.iter().map(|(column, x)| x * block.offset[*column]).sum::<f64>());
     }
     for i in 0..n {
         let s = sigma[block.row_component[i]];

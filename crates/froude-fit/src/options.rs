@@ -1,5 +1,8 @@
 //! How a problem is to be fitted.
 
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Mat, Par, Side};
+
 use crate::error::FitError;
 use crate::problem::{Problem, size};
 
@@ -75,7 +78,9 @@ pub struct Constraint {
 }
 
 /// A value known beforehand, with its standard uncertainty.
-#[derive(Debug, Clone, Copy, PartialEq)]
+///
+/// Values that are correlated follow each other: the second is given the first, β₂ − s β₁ with the slope s = cov/u₁², and so on ([`Prior::correlated`]).
+#[derive(Debug, Clone, PartialEq)]
 pub struct Prior {
     /// The coefficient.
     pub index: usize,
@@ -83,6 +88,36 @@ pub struct Prior {
     pub value: f64,
     /// Its standard uncertainty, positive, in the unit of the coefficient.
     pub standard: f64,
+    /// Coefficients that it goes with, and their slopes: known is the coefficient less the sum of slope times coefficient.
+    pub with: Vec<(usize, f64)>,
+}
+
+impl Prior {
+    /// A value that goes with no other.
+    #[must_use]
+    pub const fn new(index: usize, value: f64, standard: f64) -> Self {
+        Self { index, value, standard, with: Vec::new() }
+    }
+
+    /// Values of several coefficients with their covariance; `None` where that is not positive definite.
+    ///
+    /// Each given those before it: Anderson (2003), *An Introduction to Multivariate Statistical Analysis*, 2.5.
+    #[must_use]
+    pub fn correlated(indices: &[usize], values: &[f64], covariance: &Mat<f64>) -> Option<Vec<Self>> {
+        let lower = covariance.llt(Side::Lower).ok()?.L().to_owned();
+        // Rows of L⁻¹, with the last entry 1: β_k less what those before it say.
+        let n = indices.len();
+        let mut inverse = Mat::<f64>::identity(n, n);
+        solve_lower_triangular_in_place(lower.as_ref(), inverse.as_mut(), Par::Seq);
+        let of = |k: usize| {
+            let standard = lower[(k, k)];
+            let slopes: Vec<f64> = (0..k).map(|j| -inverse[(k, j)] * standard).collect();
+            let value = values[k] - slopes.iter().zip(values).map(|(s, v)| s * v).sum::<f64>();
+            let with = (0..k).filter(|j| slopes[*j] != 0.0).map(|j| (indices[j], slopes[j])).collect();
+            Self { index: indices[k], value, standard, with }
+        };
+        Some((0..n).map(of).collect())
+    }
 }
 
 /// What is minimised.

@@ -39,7 +39,10 @@ impl Residuals {
         let factor = |i: usize| problem.weight_of(i).sqrt() / sigma[problem.component[i]];
         let priors = &options.priors;
         let design = Mat::from_fn(n + priors.len(), free.len(), |i, k| match priors.get(i.wrapping_sub(n)) {
-            Some(prior) => f64::from(u8::from(prior.index == free[k])) / prior.standard,
+            Some(prior) => {
+                let slope = prior.with.iter().find(|(j, _)| *j == free[k]).map_or(0.0, |(_, slope)| *slope);
+                (f64::from(u8::from(prior.index == free[k])) - slope) / prior.standard
+            }
             None => problem.design[(i, free[k])] * factor(i),
         });
         let of_held = |i: usize| options.fixed.iter().map(|&(j, value)| problem.design[(i, j)] * value).sum::<f64>();

@@ -37,7 +37,7 @@ use crate::units::{Dimension, Unit};
 use crate::weight_tow::{weight_plan, weight_tow};
 
 /// Kinds of covariance that can be asked for.
-const COVARIANCES: [&str; 4] = ["classical", "HC3", "cluster", "blocks"];
+const COVARIANCES: [&str; 4] = ["classical", "HC3", "cluster", "serial"];
 
 /// Where the numbers of a source can lie.
 const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
@@ -547,6 +547,7 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
         fixed,
         // It follows when the records are read.
         known_covariance: Vec::new(),
+        prior_covariance: Vec::new(),
         covariance: one_of(s, "covariance", &COVARIANCES, &COVARIANCES)?.map(str::to_owned),
         fitted_weights: one_of(s, "weights", &["std", "fitted"], &[false, true])?.unwrap_or_default(),
         group_offset: one_of(s, "group_offset", &["ignore", "estimate"], &[false, true])?.unwrap_or_default(),

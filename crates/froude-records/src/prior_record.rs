@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The value is that of the entry, in the water of the test where both densities are stated; with `volume`, C_A = A/(ρV) by the density that the record refers to. Its standard uncertainty is that of the record (of the
-//! mesh, that is) and `model_form` of the value, added in the mean square: an ideal fluid is no real one, and the record does not know by how much. Known coefficients from one
+//! mesh, that is) and `model_form` of the value, added in the mean square: an ideal fluid is no real one, and the record does not know by how much. Priors, and known coefficients, from one
 //! estimate have its covariance between them; their model forms are independent.
 
 use std::path::PathBuf;
@@ -27,13 +27,16 @@ use crate::units::{Dimension, Unit, parse_unit};
 /// A record that cannot be read; no such estimate or entry; a mass for λ₁, or for C_A without its volume; no uncertainty.
 pub(crate) fn resolve(campaign: &mut Campaign) -> Result<(), RecordError> {
     let density = campaign.fluid.density_kg_m3;
+    let mut of_priors = Vec::new();
     for prior in &mut campaign.identify.prior {
-        if let Some(from) = prior.record.clone() {
-            let found = value(prior, &from, density)?;
+        let found = prior.record.clone().map(|from| value(prior, &from, density)).transpose()?;
+        if let (Some(found), Some(from)) = (&found, &prior.record) {
             (prior.value, prior.standard_uncertainty) = (found.value, found.standard);
-            campaign.identify.stated_units.extend(found.stated_unit(prior, &from));
+            campaign.identify.stated_units.extend(found.stated_unit(prior, from));
         }
+        of_priors.push(found);
     }
+    campaign.identify.prior_covariance = covariance(&campaign.identify.prior, &of_priors);
     let mut of_records = Vec::new();
     for known in &mut campaign.identify.known {
         let found = known.record.clone().map(|from| value(known, &from, density)).transpose()?;
@@ -43,15 +46,18 @@ pub(crate) fn resolve(campaign: &mut Campaign) -> Result<(), RecordError> {
         }
         of_records.push(found);
     }
-    let known = &campaign.identify.known;
+    campaign.identify.known_covariance = covariance(&campaign.identify.known, &of_records);
+    Ok(())
+}
+
+/// Covariance of values, of which some are entries of records.
+fn covariance(specs: &[PriorSpec], of_records: &[Option<Found>]) -> Vec<Vec<f64>> {
     let between = |i: usize, j: usize| match (&of_records[i], &of_records[j]) {
-        _ if i == j => known[i].standard_uncertainty.powi(2),
+        _ if i == j => specs[i].standard_uncertainty.powi(2),
         (Some(a), Some(b)) => a.covariance_with(b),
         _ => 0.0,
     };
-    campaign.identify.known_covariance =
-        (0..known.len()).map(|i| (0..known.len()).map(|j| between(i, j)).collect()).collect();
-    Ok(())
+    (0..specs.len()).map(|i| (0..specs.len()).map(|j| between(i, j)).collect()).collect()
 }
 
 /// An entry of a record.

@@ -211,8 +211,7 @@ impl<E> Problem<'_, E> {
         let stated = self.identify.prior.iter().chain(&self.identify.known);
         let of_campaign = stated.filter(|p| p.model.as_ref().is_none_or(|m| *m == self.law));
         let of_campaign = of_campaign.filter_map(|p| {
-            let prior =
-                ls::Prior { index: self.position(&p.coefficient)?, value: p.value, standard: p.standard_uncertainty };
+            let prior = ls::Prior::new(self.position(&p.coefficient)?, p.value, p.standard_uncertainty);
             Some((format!("prior of {}", p.coefficient), prior))
         });
         let (held, excluded) = (self.held(), self.excluded());

@@ -91,7 +91,7 @@ fn same(a: &Fit, b: &Fit) {
 #[test]
 fn triangles_give_what_their_rows_give() {
     let bound = Bound { lower: 0.55, upper: f64::INFINITY };
-    let prior = Prior { index: 0, value: 0.45, standard: 0.01 };
+    let prior = Prior::new(0, 0.45, 0.01);
     for is_shared in [false, true] {
         let problem = problem(is_shared);
         let (few, observations) = condensed(&problem);
@@ -100,7 +100,7 @@ fn triangles_give_what_their_rows_give() {
         for options in [
             Options::default(),
             Options { bounds: vec![bound; p], ..Options::default() },
-            Options { priors: vec![prior], ..Options::default() },
+            Options { priors: vec![prior.clone()], ..Options::default() },
             Options { covariance: CovarianceKind::Cr3, ..Options::default() },
         ] {
             let rows = fit(&problem, &options).unwrap();

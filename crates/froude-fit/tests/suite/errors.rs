@@ -89,7 +89,7 @@ fn options_that_cannot_be() {
         "coefficient \"b0\" is fixed at -1, outside its bounds [0, inf]",
     );
     with(
-        Options { priors: vec![Prior { index: 0, value: 1.0, standard: 0.0 }], ..Options::default() },
+        Options { priors: vec![Prior::new(0, 1.0, 0.0)], ..Options::default() },
         "the standard uncertainty of a prior is 0; it must be positive and finite (fix the \
          coefficient to take a value as exact)",
     );

@@ -35,7 +35,7 @@ fn rescaled(problem: &Problem, options: &Options, factor: &[f64]) -> Fit {
         priors: options
             .priors
             .iter()
-            .map(|p| Prior { index: p.index, value: p.value / factor[p.index], standard: p.standard / factor[p.index] })
+            .map(|p| Prior::new(p.index, p.value / factor[p.index], p.standard / factor[p.index]))
             .collect(),
         ..options.clone()
     };
@@ -88,7 +88,7 @@ proptest! {
             ..Options::default()
         };
         let with_prior = Options {
-            priors: vec![Prior { index: 3, value: 0.1, standard: 0.05 }],
+            priors: vec![Prior::new(3, 0.1, 0.05)],
             equalities: vec![Constraint { row: vec![0.0, 1.0, 1.0, 0.0], value: 0.8 }],
             ..Options::default()
         };

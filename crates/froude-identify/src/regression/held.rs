@@ -54,7 +54,12 @@ pub(crate) fn beside_priors(
     let known = known::parts(law, settings, problem, &free);
     let parts: Vec<Part> = std::iter::once(scatter(&free)).chain(declared).chain(known).collect();
     let mut findings = Vec::new();
-    for prior in &options.priors {
+    let of_law = settings.identify.prior.iter().filter(|p| p.model.as_ref().is_none_or(|model| *model == law.name));
+    let stated = of_law.filter_map(|p| {
+        let index = specs.iter().position(|spec| spec.name == p.coefficient)?;
+        Some(fit::Prior::new(index, p.value, p.standard_uncertainty))
+    });
+    for prior in stated {
         let c = &free.coefficients[prior.index];
         let (Some(value), Some(_)) = (c.unconstrained, c.standard) else { continue };
         let own = combine(&parts, prior.index, OUTSIDE_95);

@@ -109,7 +109,7 @@ pub(super) fn problem<'a>(
         names.push((name, unit.to_owned()));
         start.push(start_at);
         if let Some(known) = known {
-            priors.push((what.to_owned(), ls::Prior { index, value: known.value, standard: known.standard }));
+            priors.push((what.to_owned(), ls::Prior::new(index, known.value, known.standard)));
         }
         index
     };

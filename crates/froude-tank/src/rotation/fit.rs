@@ -143,7 +143,7 @@ pub(super) fn problem<'a>(
         names.push((name.to_owned(), unit.to_owned()));
         start.push(known.map_or(0.0, |k| k.value));
         if let Some(known) = known {
-            priors.push((name.to_owned(), ls::Prior { index, value: known.value, standard: known.standard }));
+            priors.push((name.to_owned(), ls::Prior::new(index, known.value, known.standard)));
         }
         index
     };
