@@ -57,8 +57,6 @@ pub enum GroupedBy {
     Run,
     /// Motions, each of one run or of several that repeat it.
     Motion,
-    /// Contiguous blocks of rows.
-    Block,
 }
 
 impl GroupedBy {
@@ -69,7 +67,6 @@ impl GroupedBy {
             Self::Column => "group",
             Self::Run => "run",
             Self::Motion => "motion",
-            Self::Block => "block",
         }
     }
 
@@ -80,7 +77,6 @@ impl GroupedBy {
             Self::Column => "groups",
             Self::Run => "runs",
             Self::Motion => "motions",
-            Self::Block => "blocks",
         }
     }
 }

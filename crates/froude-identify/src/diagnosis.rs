@@ -76,7 +76,21 @@ fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f
     let n = data.rows;
     let most = groups.iter().copied().max().map_or(0, |m| m + 1);
     let stacked: Vec<usize> = (0..model.problem.response.len()).map(|row| row / n * most + groups[row % n]).collect();
-    match fit::select::lack_of_fit(&model.problem, &model.fit, &stacked) {
+    let clear = model.clear_of_declared();
+    let refitted = if model.declared.ncols() > 0 {
+        fit::fit(
+            &clear,
+            &fit::Options {
+                excluded: model.options.excluded.clone(),
+                fixed: model.options.fixed.clone(),
+                ..fit::Options::default()
+            },
+        )
+        .ok()
+    } else {
+        None
+    };
+    match fit::select::lack_of_fit(&clear, refitted.as_ref().unwrap_or(&model.fit), &stacked) {
         Ok(tests) => tests.into_iter().filter_map(|t| t.score.as_ref().map(|s| (t.component.clone(), s.p))).collect(),
         Err(_) => indexmap::IndexMap::new(),
     }
@@ -90,7 +104,7 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     let (outlying, rows) = outlying_rows(model, data);
     let scatter = scatter_tests::findings(model, data, &outlying);
     out.extend(scatter.iter().map(|(_, finding)| finding.clone()));
-    out.extend(misfit::findings(model, data, d, campaign, (&scatter, &outlying)));
+    out.extend(misfit::findings(model, data, d, (&scatter, &outlying)));
     out.extend(decided_by_one(model, data));
     out.extend(added_mass_sign(model, data));
     out.extend(rows);
@@ -243,8 +257,9 @@ fn decided_by_one(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
         if model.is_refused(j) {
             let groups = data.group.as_ref().map(|group| distinct(group)).unwrap_or_default();
             let group = groups.get(which).cloned().unwrap_or_default();
-            let advice = if data.grouped_by == GroupedBy::Block {
-                "blocks hold too few rows of their own: take more rows, or runs in another order"
+            let is_in_time = data.values("time").is_some() && data.rows >= 2 * data.clusters();
+            let advice = if is_in_time {
+                "record runs of other motions, or count rows that follow each other by their correlation (covariance = \"serial\")"
             } else if data.grouped_by == GroupedBy::Motion {
                 "record runs of other motions"
             } else {

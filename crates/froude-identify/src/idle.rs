@@ -44,11 +44,17 @@ pub(crate) fn of_blanks(table: &Table, data: &mut Dataset) -> Result<(), RecordE
     for (name, row) in &table.blank {
         let has_load = |load: &str| loads.contains(&load) && !is_blank(load, *row);
         let of_axis = PAIRS.iter().any(|(load, motion)| motion == name && has_load(load));
-        if of_axis || !loads.iter().any(|load| has_load(load)) {
+        let has_none = !loads.iter().any(|load| has_load(load));
+        if of_axis || has_none {
             return Err(RecordError::EmptyCell {
                 place: table.place_of_row(*row),
                 column: data.header(name).to_owned(),
-                advice: "fill it in or delete the row; a load that was not measured may be empty, and with it the motion along its axis".to_owned(),
+                advice: if has_none {
+                    "fill it in or delete the row".to_owned()
+                } else {
+                    "fill it in; a load that was not measured may be empty, and with it the motion along its axis"
+                        .to_owned()
+                },
             });
         }
         if loads.contains(&name.as_str()) {

@@ -170,7 +170,10 @@ fn at_once(campaign: &Campaign, source: &Source) -> Option<&'static str> {
         (identify.angle_offset == AngleOffset::Estimate, "angle_offset = \"estimate\" (it is iterated over the rows)"),
         (identify.fitted_weights, "weights = \"fitted\" (each row weighs by the fitted load)"),
         (identify.group_offset, "group_offset = \"estimate\" (each group has columns of its own)"),
-        (identify.covariance.as_deref() == Some("blocks"), "covariance = \"blocks\" (they are parts of all rows)"),
+        (
+            identify.covariance.as_deref() == Some("serial"),
+            "covariance = \"serial\" (rows are compared with their neighbours)",
+        ),
         (is_hc3, "covariance = \"HC3\" (each row weighs by its residual); \"cluster\" goes with it"),
         (!identify.cross_validation.is_empty(), "cross_validation (its blocks are fitted by themselves)"),
         (identify.wild_bootstrap.is_some(), "wild_bootstrap (it draws the residuals of all rows)"),

@@ -14,7 +14,7 @@
 //! | v_y², v_z² | the same | a part that is even in the drift |
 //!
 //! Given the fitted loads the residuals are independent of them, so that t is exact for independent normal errors of one size. It is not asked where these are not: of rows in time, of
-//! setups with offsets, of scatter that is uneven, of a row that lies apart, beside a prior, or beside a declared error that is no gain. Where successive rows are alike the finding says that
+//! setups with offsets, of scatter that is uneven, of a row that lies apart, or beside a prior. Declared errors that rows share are no misfit: the residuals are cleared of them. Where successive rows are alike the finding says that
 //! this may be it.
 //!
 //! **Source.** Cook & Weisberg (1982), 2.3; Tukey (1949), Biometrics 5, 232; Milliken & Graybill (1970), J. Am. Stat. Assoc. 65, 797 (any function of the fitted loads).
@@ -22,17 +22,15 @@
 use froude_fit as fit;
 use froude_fit::distribution::t_two_sided;
 use froude_fit::residuals::Residuals;
-use froude_records::campaign::Campaign;
 use froude_records::estimate::Diagnostics;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::p_equation;
 
-use crate::dataset::{Dataset, LOADS};
+use crate::dataset::Dataset;
 use crate::motions;
 use crate::regression::{ModelFit, Scatter};
 use crate::scatter_tests::{ALARM, declares_groups};
 use crate::source::models::{Drift, PAIRS};
-use crate::uncertainty::in_words;
 
 /// Fewest rows that a shape is looked for in.
 const FEWEST_ROWS: usize = 8;
@@ -44,14 +42,13 @@ pub(crate) fn findings(
     model: &ModelFit,
     data: &Dataset,
     diagnostics: &Diagnostics,
-    campaign: &Campaign,
     (scatter, outlying): (&[(String, Finding)], &[(String, usize)]),
 ) -> Vec<Finding> {
     // Errors that rows of a run or a setup share are no misfit.
     if declares_groups(model) {
         return Vec::new();
     }
-    let shapes = shapes(model, data, &gains(campaign));
+    let shapes = shapes(model, data);
     let loads = model.law.responses.len() as f64;
     let mut out = Vec::new();
     for load in &model.law.responses {
@@ -91,7 +88,7 @@ struct Shape {
 }
 
 /// The loads in which a shape can be looked for.
-fn shapes(model: &ModelFit, data: &Dataset, gains: &[String]) -> Vec<Shape> {
+fn shapes(model: &ModelFit, data: &Dataset) -> Vec<Shape> {
     let is_plain = matches!(model.scatter, Scatter::Classical)
         && model.whitened.is_none()
         && !model.in_variables
@@ -99,13 +96,13 @@ fn shapes(model: &ModelFit, data: &Dataset, gains: &[String]) -> Vec<Shape> {
         && model.options.loss == fit::Loss::Squares
         && model.options.priors.is_empty()
         && data.sample.is_none()
-        && !motions::is_in_time(data)
-        && model.budget.iter().all(|part| part.in_scatter || !part.kind.is_type_b() || gains.contains(&part.name));
+        && !motions::is_in_time(data);
     let Ok(fitted) = model.law.predict(data, model.law_coefficients()) else { return Vec::new() };
     if !is_plain {
         return Vec::new();
     }
-    let residuals = Residuals::of(&model.problem, &model.options, &model.fit);
+    let sigma: Vec<f64> = model.fit.components.iter().map(|c| c.sigma.filter(|s| *s > 0.0).unwrap_or(1.0)).collect();
+    let residuals = Residuals::with(&model.clear_of_declared(), &model.options, &sigma);
     let named = model.law.responses.iter().zip(&model.fit.components).enumerate();
     let has_scatter = |c: &fit::ComponentSummary| c.sigma.is_some_and(|s| s > 0.0) && c.relative_residual > ROUNDING;
     named
@@ -152,13 +149,6 @@ fn candidates(data: &Dataset, load: &str, fitted: &[f64]) -> Vec<(String, Vec<f6
         }
     }
     out
-}
-
-/// Errors of a campaign that scale loads or speeds: a law of powers takes these, and no shape is left.
-fn gains(campaign: &Campaign) -> Vec<String> {
-    let is_scaled = |name: &str| LOADS.contains(&name) || matches!(name, "speed" | "v_x" | "v_y" | "v_z" | "density");
-    let entries = campaign.sources.iter().flat_map(|source| &source.uncertainty);
-    entries.filter(|entry| entry.relative && is_scaled(&entry.quantity)).map(in_words).collect()
 }
 
 /// p of a shape of one load; where loads share coefficients, what it leaves in the others counts too.

@@ -9,6 +9,7 @@ pub(crate) mod known;
 mod problem;
 pub(crate) mod uncertain;
 
+use faer::Mat;
 use froude_fit as fit;
 use froude_records::campaign::{BoundKind, Identify, PriorSpec};
 use froude_records::finding::{Finding, Severity};
@@ -21,6 +22,7 @@ use crate::regression::held::{MOST_CUTS, beside_priors, hold};
 use crate::regression::job::Job;
 use crate::regression::problem::step;
 use crate::regression::uncertain::Uncertainty;
+use crate::uncertainty::{Linearised, directions};
 use crate::{dissipation, eiv};
 
 pub(crate) use crate::regression::fitted_weights::Variance;
@@ -79,6 +81,17 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         relative_residual(law, data, &coefficients, &job.newtons, &mut fitted)?;
     }
     findings.extend(beside_priors(law, data, settings, &problem, &options, &job.specs)?);
+    let at = Linearised {
+        law,
+        data,
+        coefficients: &coefficients[..law.coefficients.len()],
+        sensitivity: &fitted.sensitivity,
+    };
+    let declared = if whitened.is_some() || settings.condensed.is_some() {
+        Mat::zeros(problem.n_rows(), 0)
+    } else {
+        directions(at, settings.budget, settings.shared_errors)?
+    };
     let uncertainty = Uncertainty::of(law, data, settings, (&problem, &fitted), [in_variables, whitened.is_some()])?;
     let of_fit = fitted.components.iter().flat_map(|c| c.sigma.into_iter().chain([c.rss]));
     let numbers = coefficients.iter().copied().chain(of_fit).chain(uncertainty.variances()).chain(uncertainty.arms());
@@ -91,6 +104,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         law: law.clone(),
         specs: job.specs,
         problem,
+        declared,
         beside: settings.condensed.map(|condensed| condensed.beside.clone()).unwrap_or_default(),
         options,
         fit: fitted,
@@ -193,6 +207,25 @@ pub(crate) fn known_of<'a>(identify: &'a Identify, law: &ForceLaw) -> impl Itera
     identify.known.iter().enumerate().filter(move |(_, known)| is_meant(known))
 }
 
+/// The priors of a law, with the covariance of those that are of one record.
+fn priors(identify: &Identify, law: &ForceLaw, position: &dyn Fn(&str) -> Option<usize>) -> Vec<fit::Prior> {
+    let is_meant = |prior: &PriorSpec| prior.model.as_ref().is_none_or(|model| *model == law.name);
+    let meant = identify.prior.iter().enumerate().filter(|(_, prior)| is_meant(prior));
+    let meant: Vec<(usize, &PriorSpec, usize)> =
+        meant.filter_map(|(k, prior)| Some((k, prior, position(&prior.coefficient)?))).collect();
+    let indices: Vec<usize> = meant.iter().map(|(.., index)| *index).collect();
+    let values: Vec<f64> = meant.iter().map(|(_, prior, _)| prior.value).collect();
+    let between = |a: usize, b: usize| {
+        let of_records = identify.prior_covariance.get(meant[a].0).map_or(0.0, |row| row[meant[b].0]);
+        if a == b { meant[a].1.standard_uncertainty.powi(2) } else { of_records }
+    };
+    let covariance = Mat::from_fn(meant.len(), meant.len(), between);
+    let alone = |(_, prior, index): &(usize, &PriorSpec, usize)| {
+        fit::Prior::new(*index, prior.value, prior.standard_uncertainty)
+    };
+    fit::Prior::correlated(&indices, &values, &covariance).unwrap_or_else(|| meant.iter().map(alone).collect())
+}
+
 /// Bounds, fixed values, exclusions, priors and constraints by name.
 fn options(law: &ForceLaw, specs: &[CoefficientSpec], settings: Settings<'_>) -> fit::Options {
     let identify = settings.identify;
@@ -215,18 +248,7 @@ fn options(law: &ForceLaw, specs: &[CoefficientSpec], settings: Settings<'_>) ->
     fit::Options {
         observations: settings.condensed.map(|c| c.observations.clone()).unwrap_or_default(),
         bounds,
-        priors: identify
-            .prior
-            .iter()
-            .filter(|p| p.model.as_ref().is_none_or(|m| m == &law.name))
-            .filter_map(|p| {
-                position(&p.coefficient).map(|index| fit::Prior {
-                    index,
-                    value: p.value,
-                    standard: p.standard_uncertainty,
-                })
-            })
-            .collect(),
+        priors: priors(identify, law, &position),
         fixed: (identify.fixed.iter().map(|(name, value)| (name, *value)))
             .chain(known_of(identify, law).map(|(_, known)| (&known.coefficient, known.value)))
             .filter_map(|(name, value)| Some((position(name)?, value)))

@@ -1,7 +1,7 @@
 //! Tests of what the intervals assume of the scatter: independent from row to row, of one size, and of no offset by group.
 //!
 //! Each is exact for independent normal errors of one size and has a stated level over all loads of the law, so that of clean tables few carry a warning. They are asked of
-//! the residuals of the fit without bounds, whitened by weights and declared shared errors.
+//! the residuals of the fit without bounds, whitened by weights and by declared errors of runs and setups, and cleared of every other declared error that rows share: each is one more coefficient.
 //!
 //! | code | statistic | against |
 //! | --- | --- | --- |
@@ -15,6 +15,7 @@
 //! probabilities by Imhof (1961), see [`froude_fit::ratio`].
 
 use froude_fit as fit;
+use froude_fit::FEWEST_CLUSTERS;
 use froude_fit::distribution::{f_upper, normal_upper};
 use froude_fit::faer::Mat;
 use froude_fit::ratio::{Form, above};
@@ -52,7 +53,10 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, us
             let problem = &whitened.problem;
             Residuals::with(problem, &model.options, &vec![1.0; problem.components.len()])
         }
-        None => Residuals::of(&model.problem, &model.options, &model.fit),
+        None => {
+            let sigma = model.fit.components.iter().map(|c| c.sigma.filter(|s| *s > 0.0).unwrap_or(1.0));
+            Residuals::with(&model.clear_of_declared(), &model.options, &sigma.collect::<Vec<_>>())
+        }
     };
     let Ok(predicted) = model.law.predict(data, model.law_coefficients()) else { return Vec::new() };
     let loads = residuals.len().max(1) as f64;
@@ -132,13 +136,13 @@ fn serial(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
     (p < ALARM_OF_FEW / loads).then(|| {
         let text = format!(
             "{}, {load}: residuals of successive rows are alike (Durbin–Watson {statistic:.2}, 2 where independent, {}): intervals assume \
-             independent rows and are too narrow. {} for independent instead; a law that follows the drift removes it",
+             independent rows and are too narrow. {}; a law that follows the drift removes it",
             model.law.name,
             p_equation(p),
-            if data.group.is_some() {
-                "covariance = \"cluster\" takes the groups"
+            if data.group.is_some() && data.clusters() >= FEWEST_CLUSTERS {
+                "covariance = \"cluster\" takes the groups for independent instead"
             } else {
-                "covariance = \"blocks\" takes four contiguous blocks of rows"
+                "covariance = \"serial\" counts rows that are alike as fewer"
             }
         );
         Finding::new(Severity::Warning, "serial-correlation", text)

@@ -12,7 +12,7 @@ use crate::law::ForceLaw;
 use crate::reduce::{Observations, reduce};
 use crate::regression::Scatter;
 use crate::seam::{Choice, Reduced, fit};
-use crate::source::handed::{in_blocks, merges_motions, no_budget, of_table, scatter};
+use crate::source::handed::{merges_motions, no_budget, of_table, scatter};
 use crate::{columns, diagnosis, lint, motions, validity, zero};
 
 pub use crate::result::{NotFitted, ReadFile, SourceResult};
@@ -58,7 +58,6 @@ pub fn identify_observations(
             what: "group_offset = \"estimate\" needs groups: write group = \"COLUMN\", the column that says which rows share an offset".to_owned(),
         });
     }
-    in_blocks(campaign, &mut observations.data);
     let laws = laws(campaign, source, &observations.data)?;
     if merges_motions(campaign, source) {
         findings.extend(motions::merge(&mut observations.data, &laws));

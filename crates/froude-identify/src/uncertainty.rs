@@ -179,6 +179,49 @@ pub fn contributions(
     Ok(out)
 }
 
+/// Rows up to which [`directions`] are made.
+const MOST_ROWS: usize = 10_000;
+
+/// What declared errors that rows share may do to the responses: a column for each error, of any length, over all rows. What the scatter shows by itself has none, nor have tables of very many rows.
+///
+/// # Errors
+///
+/// A quantity that is no channel of the observations.
+pub(crate) fn directions(
+    fit: Linearised<'_>,
+    budget: &[BudgetEntry],
+    shared_errors: &[SharedError],
+) -> Result<Mat<f64>, IdentifyError> {
+    let (n, loads) = (fit.data.rows, &fit.law.responses);
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    if n > MOST_ROWS || fit.data.sample.is_some() {
+        return Ok(Mat::zeros(n * loads.len(), 0));
+    }
+    for entry in budget {
+        let direction = direction(fit, entry)?;
+        let groups = groups(fit.data, entry.shared);
+        let count = groups.iter().max().map_or(0, |most| most + 1);
+        let of_group =
+            |g: usize| direction.iter().enumerate().map(|(i, d)| if groups[i % n] == g { *d } else { 0.0 }).collect();
+        columns.extend((0..count).filter(|_| count < n).map(of_group));
+    }
+    for error in shared_errors.iter().filter(|error| !error.is_of_each_row) {
+        for k in 0..error.covariance.len() {
+            let mut column = vec![0.0; n * loads.len()];
+            for (load, rows) in &error.directions {
+                let Some(r) = loads.iter().position(|name| name == load) else { continue };
+                for (i, row) in rows.iter().enumerate().take(n) {
+                    column[r * n + i] = row.get(k).copied().unwrap_or(0.0);
+                }
+            }
+            as_logarithms(fit, &mut column, &fit.law.measured(fit.data)?);
+            columns.push(column);
+        }
+    }
+    columns.retain(|column| column.iter().any(|x| *x != 0.0));
+    Ok(Mat::from_fn(n * loads.len(), columns.len(), |i, k| columns[k][i]))
+}
+
 /// What an entry is called in a budget.
 pub(crate) fn in_words(entry: &BudgetEntry) -> String {
     entry.name.clone().map_or_else(|| entry.quantity.clone(), |name| format!("{name} ({})", entry.quantity))

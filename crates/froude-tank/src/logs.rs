@@ -16,6 +16,7 @@ use froude_records::run::step::Step;
 use froude_records::run::{Channel, ImportedRun, Role, RunReader, RunStatus, read_run_meta, recorded_run};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
+use indexmap::IndexMap;
 
 use crate::conditioning;
 use crate::long_logs::{self, LENGTHS, Lengths, Reading};
@@ -63,6 +64,7 @@ pub(crate) fn read_averaging(
         return Err(MethodError::input(folder, what));
     }
     let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };
+    let mut of_logs: Vec<(PathBuf, Finding)> = Vec::new();
     let readings = long_logs::readings(&paths, lengths);
     for (path, reading) in paths.into_iter().zip(readings) {
         let mut log = imported(&path, reading, progress)?;
@@ -93,7 +95,8 @@ pub(crate) fn read_averaging(
         }
         out.findings.extend(long_logs::note(&log));
         conditioning::condition(&mut log, method)?;
-        out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
+        let told = log.findings.iter().filter(|f| f.severity > Severity::Note);
+        of_logs.extend(told.map(|finding| (path.clone(), finding.clone())));
         let sidecar = path.with_extension("toml");
         out.files.push(ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role.name()) });
         if sidecar.exists() {
@@ -101,9 +104,29 @@ pub(crate) fn read_averaging(
         }
         out.runs.push(log);
     }
+    out.findings.extend(once(of_logs));
     conditioning::wild::compare(&out.runs)?;
     out.findings.extend(of_a_calendar(&out.runs));
     Ok(out)
+}
+
+/// Findings of logs, each cause once: what differs between two findings of one code in numbers alone is said of the first log.
+fn once(of_logs: Vec<(PathBuf, Finding)>) -> Vec<Finding> {
+    let mut causes: IndexMap<(String, String), (Finding, usize)> = IndexMap::new();
+    for (path, finding) in of_logs {
+        let text = finding.message.replace(&path.display().to_string(), "");
+        let words: String = text.chars().filter(|c| c.is_alphabetic()).collect();
+        causes.entry((finding.code.clone(), words)).or_insert((finding, 0)).1 += 1;
+    }
+    let merged = causes.into_values().map(|(finding, count)| {
+        let others = match count {
+            1 => return finding,
+            2 => "; the same in another log".to_owned(),
+            _ => format!("; the same in {} other logs", count - 1),
+        };
+        Finding { message: finding.message.clone() + &others, ..finding }
+    });
+    merged.collect()
 }
 
 /// That the times of some logs are counted from their first samples, said once.

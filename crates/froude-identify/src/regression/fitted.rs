@@ -126,6 +126,8 @@ pub struct ModelFit {
     pub problem: fit::Problem,
     /// Columns of the other laws on its rows, where these are condensed.
     pub beside: Vec<(String, Mat<f64>)>,
+    /// What declared errors that rows share may do to its rows, a column each.
+    pub declared: Mat<f64>,
     /// The options it was fitted with.
     pub options: fit::Options,
     /// The fit.
@@ -187,6 +189,19 @@ impl ModelFit {
         let [low, high] = c.interval(free);
         let rounding = ROUNDING * c.standard;
         fitted.status == fit::Status::Free && (value < low - rounding || value > high + rounding)
+    }
+
+    /// The problem with a coefficient for every declared error that rows share: what it leaves is free of them.
+    #[must_use]
+    pub fn clear_of_declared(&self) -> fit::Problem {
+        let (n, p, k) = (self.problem.n_rows(), self.problem.n_coefficients(), self.declared.ncols());
+        if k == 0 || self.declared.nrows() != n {
+            return self.problem.clone();
+        }
+        let entry = |i: usize, j: usize| if j < p { self.problem.design[(i, j)] } else { self.declared[(i, j - p)] };
+        let mut names = self.problem.names.clone();
+        names.extend((0..k).map(|error| format!("declared error {error}")));
+        fit::Problem { design: Mat::from_fn(n, p + k, entry), names, ..self.problem.clone() }
     }
 
     /// Whether some rows weigh more than others.

@@ -108,20 +108,44 @@ pub(crate) fn serial(
     errors: &fit::serial::RowErrors,
 ) -> Option<Part> {
     let at = step(fitted);
-    let (x, p) = (&problem.design, fitted.coefficients.len());
+    let (x, p, n) = (&problem.design, fitted.coefficients.len(), data.rows);
     let left = |i: usize| problem.response[i] - (0..p).map(|j| x[(i, j)] * at[j]).sum::<f64>();
-    let residual: Vec<f64> = (0..problem.response.len()).map(left).collect();
-    let found = fit::serial::serial(x, &fitted.sensitivity, &residual, &labels(&data.run), errors)?;
+    let run = labels(&data.run);
+    let (mut covariance, mut dof) = (Mat::zeros(p, p), vec![f64::INFINITY; p]);
+    let (mut correlations, mut is_largest) = (Vec::new(), false);
+    for (r, load) in problem.components.iter().enumerate() {
+        let rows = problem.rows_of(r);
+        let of_load: Vec<usize> = (0..p).filter(|&j| rows.iter().any(|&i| x[(i, j)] != 0.0)).collect();
+        // A coefficient of several loads has errors that nobody knows the correlation of.
+        let is_shared = |j: &usize| (0..x.nrows()).any(|i| problem.component[i] != r && x[(i, *j)] != 0.0);
+        if of_load.iter().any(is_shared) {
+            return None;
+        }
+        let design = Mat::from_fn(rows.len(), of_load.len(), |i, k| x[(rows[i], of_load[k])]);
+        let sensitivity = Mat::from_fn(of_load.len(), rows.len(), |k, i| fitted.sensitivity[(of_load[k], rows[i])]);
+        let residual: Vec<f64> = rows.iter().map(|&i| left(i)).collect();
+        let of_rows: Vec<usize> = rows.iter().map(|i| run[i % n]).collect();
+        let found = fit::serial::serial(&design, &sensitivity, &residual, &of_rows, errors)?;
+        for (a, &j) in of_load.iter().enumerate() {
+            dof[j] = found.dof[a];
+            for (b, &k) in of_load.iter().enumerate() {
+                covariance[(j, k)] = found.covariance[(a, b)];
+            }
+        }
+        let by = format!("{:.2}", found.correlation);
+        correlations.push(if problem.components.len() > 1 { format!("{by} ({load})") } else { by });
+        is_largest |= found.is_largest;
+    }
     Some(Part {
         name: format!(
-            "scatter of the rows in time, correlated by {:.2} from one to the next{}",
-            found.correlation,
-            if found.is_largest { ", the most that runs of this length tell: it may be more" } else { "" }
+            "scatter of the rows in time, correlated by {} from one to the next{}",
+            correlations.join(", "),
+            if is_largest { ", the most that runs of this length tell: it may be more" } else { "" }
         ),
         shared: "sample",
         kind: Kind::A,
-        covariance: found.covariance,
-        dof: found.dof,
+        covariance,
+        dof,
         shape: Shape::Normal,
         in_scatter: false,
         origin: None,

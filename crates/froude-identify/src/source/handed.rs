@@ -1,11 +1,12 @@
 //! What the rows of a table hand over the seam.
 
 use froude_fit::FEWEST_CLUSTERS;
+use froude_fit::serial::{RowErrors, RowWindow};
 use froude_records::campaign::{Campaign, Source, SourceKind};
 use froude_records::estimate::ReferencePoint;
 use froude_records::finding::{Finding, Severity};
 
-use crate::dataset::{Dataset, GroupedBy};
+use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::regression::Scatter;
@@ -49,17 +50,6 @@ pub(crate) fn no_budget(campaign: &Campaign, source: &Source, stated: &[SharedEr
     })
 }
 
-/// Blocks of `covariance = "blocks"`: with fewer rows each would hold too few, with more blocks neighbours would still be alike.
-const BLOCKS: usize = 4;
-
-/// Contiguous blocks of rows in place of the groups, where the campaign asks for them.
-pub(crate) fn in_blocks(campaign: &Campaign, data: &mut Dataset) {
-    if campaign.identify.covariance.as_deref() == Some("blocks") {
-        data.group = Some((0..data.rows).map(|i| format!("block {}", 1 + i * BLOCKS / data.rows)).collect());
-        data.grouped_by = GroupedBy::Block;
-    }
-}
-
 /// Whether runs that repeat a motion are one cluster: wherever groups may be clusters, and are no offsets.
 pub(crate) fn merges_motions(campaign: &Campaign, source: &Source) -> bool {
     let is_asked = match campaign.identify.covariance.as_deref() {
@@ -92,11 +82,12 @@ pub(crate) fn scatter(
     match campaign.identify.covariance.as_deref() {
         Some("classical") => return Ok(Scatter::Classical),
         Some("HC3" | "hc3") => return Ok(Scatter::Hc3),
-        Some("cluster" | "CR3" | "cr3" | "blocks") => return Ok(Scatter::Cluster),
+        Some("cluster" | "CR3" | "cr3") => return Ok(Scatter::Cluster),
+        Some("serial") => return Ok(Scatter::Serial(RowErrors { window: RowWindow::single(), white: None })),
         Some(other) => {
             return Err(IdentifyError::Campaign {
                 place: "[identify]".to_owned(),
-                what: format!("covariance = {other:?} is not known; use classical, HC3, cluster or blocks"),
+                what: format!("covariance = {other:?} is not known; use classical, HC3, cluster or serial"),
             });
         }
         None if source.kind != SourceKind::Cfd => {

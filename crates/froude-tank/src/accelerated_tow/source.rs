@@ -14,7 +14,7 @@ use froude_records::units::Dimension;
 
 use super::law::{asked, names};
 use super::reduce::{Body, Mounted, Reduced, Setup, reduce};
-use super::rows::{TowRun, Way, root_mean_square};
+use super::rows::{Rows, TowRun, Way, root_mean_square};
 use super::{lag, page, plan, simulate};
 use crate::logs::{self, Logs};
 use crate::reference;
@@ -25,8 +25,8 @@ pub struct AcceleratedTow;
 const WHY: &str = "drag and added mass are wrong by its size or its sign where one is guessed";
 /// A row whose acceleration is below this part of the largest is one of constant speed.
 const STEADY: f64 = 0.05;
-/// Noise of the acceleration lowers C_A; this part of it is reported.
-const ATTENUATED: f64 = 1e-3;
+/// Noise of the acceleration lowers C_A; this part of its standard uncertainty is reported.
+const ATTENUATED: f64 = 0.5;
 /// Masses by runs in air and by declaration further apart than so many standard uncertainties are reported.
 const APART: f64 = 2.5;
 
@@ -85,7 +85,6 @@ impl Method for AcceleratedTow {
                 .iter()
                 .map(|error| Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}"))),
         );
-        findings.extend(of_runs(&reduced, &setup, spec));
         findings.extend(driven(&reduced, &setup));
         let laws = asked(campaign, source, &reduced.data, &setup.axis)?;
         let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial(reduced.of_rows.clone()) };
@@ -117,6 +116,9 @@ impl Method for AcceleratedTow {
         }
         findings.append(&mut result.findings);
         let best = result.recommendation.as_ref().map_or(0, |r| r.index);
+        let added = result.estimates.get(best).and_then(|e| e.coefficients.get(&names(&setup.axis)[3]));
+        let relative = added.and_then(|c| Some((c.standard_uncertainty? / c.value?).abs())).unwrap_or(f64::INFINITY);
+        findings.extend(of_runs(&reduced, &setup, spec, relative));
         findings.extend(result.models.get(best).and_then(|model| lag::finding(campaign, &reduced, &setup, model)));
         let blocks = vec![page::section(&logs, &reduced, &setup, result.models.get(best))];
         Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
@@ -280,26 +282,32 @@ fn driven(reduced: &Reduced, setup: &Setup) -> Option<Finding> {
     })
 }
 
-/// What the runs show.
-fn of_runs(reduced: &Reduced, setup: &Setup, spec: &AcceleratedTowSpec) -> Vec<Finding> {
+/// What the runs show; `relative` is the standard uncertainty of C_A as part of it.
+fn of_runs(reduced: &Reduced, setup: &Setup, spec: &AcceleratedTowSpec, relative: f64) -> Vec<Finding> {
     let mut out = Vec::new();
-    for (id, body, rows) in &reduced.runs {
+    let part_of = |(id, body, rows): &(String, usize, Rows)| {
         let noise = (rows.noise_m_s2 / root_mean_square(&rows.acceleration_m_s2)).powi(2);
         let (mass, added_kg) = (reduced.masses[*body], reduced.added_kg[*body]);
         // The same noise stands in m a; a mass weighed by it comes out too small alike.
         let part =
             if mass.is_weighed || added_kg <= 0.0 { noise } else { noise * (mass.value_kg + added_kg) / added_kg };
-        if part > ATTENUATED {
-            let text = format!(
-                "run {id:?}: the noise of its acceleration is {:.2} % of it in the mean square, by which C_A{} comes out some {:.2} % too small; write a longer window than {} s in \
-                 [source.accelerated_tow], or take a finer encoder",
-                1e2 * noise,
-                setup.axis,
-                1e2 * part,
-                setup.window_s
-            );
-            out.push(Finding::new(Severity::Warning, "acceleration-noise", text));
-        }
+        (id.clone(), noise, part)
+    };
+    let parts: Vec<(String, f64, f64)> = reduced.runs.iter().map(part_of).collect();
+    let mean = parts.iter().map(|(.., part)| part).sum::<f64>() / parts.len() as f64;
+    if let Some((id, noise, part)) =
+        parts.into_iter().max_by(|a, b| a.2.total_cmp(&b.2)).filter(|_| mean > ATTENUATED * relative)
+    {
+        let text = format!(
+            "the noise of the acceleration makes C_A{} some {:.2} % too small, which is more than half of its standard uncertainty; most in run {id:?} ({:.2} %, a noise of {:.2} % in the mean \
+             square): write a longer window than {} s in [source.accelerated_tow], or take a finer encoder",
+            setup.axis,
+            1e2 * mean,
+            1e2 * part,
+            1e2 * noise,
+            setup.window_s
+        );
+        out.push(Finding::new(Severity::Warning, "acceleration-noise", text));
     }
     for (body, mass) in setup.bodies.iter().zip(&reduced.masses) {
         if let Some(stated) = body.mass_kg.filter(|_| mass.is_weighed) {

@@ -59,8 +59,8 @@ fn wild(sorted: &[f64]) -> Option<(usize, f64, f64)> {
         return None;
     }
     // Cuts of k values below and m above.
-    let cuts = (0..=FEW).flat_map(|k| (0..=FEW - k).map(move |m| (k, n - 1 - m))).skip(1);
-    cuts.filter_map(|(low, high)| {
+    let mut cuts = (0..=FEW).flat_map(|k| (0..=FEW - k).map(move |m| (k, n - 1 - m))).skip(1);
+    cuts.find_map(|(low, high)| {
         let range = sorted[high] - sorted[low];
         let far = |x: f64| x > BEYOND * range && range > 0.0;
         let below = low == 0 || far(sorted[low] - sorted[low - 1]);
@@ -68,7 +68,6 @@ fn wild(sorted: &[f64]) -> Option<(usize, f64, f64)> {
         let place = if high < n - 1 { n - 1 } else { 0 };
         (below && above).then_some((place, sorted[low], sorted[high]))
     })
-    .next()
 }
 
 /// Refuses a log whose steps of time, or whose range of a channel, are far larger than those of the other logs.

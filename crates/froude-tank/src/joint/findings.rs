@@ -2,6 +2,7 @@
 
 use froude_fit::Status;
 use froude_fit::budget::Uncertain;
+use froude_fit::distribution::t_two_sided;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::text::counted;
@@ -13,8 +14,8 @@ use crate::motion::{Cycles, Motion};
 const STEADY: f64 = 0.02;
 /// A period within this part of a whole number is whole.
 const WHOLE: f64 = 0.02;
-/// Declared and found differ by more than chance beyond this many standard deviations of their difference.
-const CONTRADICTS: f64 = 3.0;
+/// Chance of doubting a declaration that is right, over all of them.
+const ALARM: f64 = 0.004;
 /// Of five independent cycles a fifth of the variance repeats; more than this is a misfit.
 const REPEATED: f64 = 0.6;
 
@@ -131,7 +132,9 @@ pub(crate) fn contradicted(fit: &JointFit, declared: &[(String, Uncertain)], che
             0.0 => combined.standard,
             standard => (standard * standard - combined.standard * combined.standard).max(0.0).sqrt(),
         };
-        (shift > 0.0 && (found - known.value).abs() > CONTRADICTS * shift).then(|| {
+        // Few runs know their scatter, and so the shift, poorly.
+        let p = t_two_sided((found - known.value).abs() / shift, combined.dof);
+        (shift > 0.0 && p * (declared.len() as f64) < ALARM).then(|| {
             warning(
                 "declared-contradicted",
                 format!(

@@ -249,7 +249,7 @@ pub fn short(claims: &mut Claims, runs: u64) {
         "",
         "[identify]\ncovariance = \"HC3\"\n",
         "group = \"day\"\n[identify]\ncovariance = \"cluster\"\n",
-        "[identify]\ncovariance = \"blocks\"\n",
+        "[identify]\ncovariance = \"serial\"\n",
         "[identify]\nweights = \"fitted\"\ncovariance = \"HC3\"\n",
         "group = \"day\"\n[identify]\ngroup_offset = \"estimate\"\n",
         "[[source.uncertainty]]\nquantity = \"f_x\"\nstandard = \"5 %\"\nshared = \"setup\"\n",

@@ -204,10 +204,10 @@ fn setups(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
     Ok(())
 }
 
-/// Errors that follow each other by 0.8, in 16 to 48 rows: whether it is seen, and what intervals by four blocks hold then.
+/// Errors that follow each other by 0.8, in 16 to 48 rows: whether it is seen, and what intervals by their correlation hold then.
 fn neighbours(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
     const NOISE_N: f64 = 0.2;
-    for (n, floor, of_blocks) in [(16, 50.0, 91.0), (24, 80.0, 91.0), (30, 90.0, 93.0), (48, 99.0, 93.0)] {
+    for (n, floor, of_serial) in [(16, 50.0, 93.0), (24, 80.0, 93.0), (30, 90.0, 93.0), (48, 99.0, 93.0)] {
         let table = |rho: f64, linear: f64| {
             move |rng: &mut Pcg64| {
                 let mut error = normal(rng);
@@ -232,16 +232,17 @@ fn neighbours(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
             }
         }
         let judge = |found: &SourceResult| {
-            [("D_x_I", 4.0), ("D_x_II", 12.0)].map(|(name, truth)| told(found, name, truth, " by four blocks")).to_vec()
+            [("D_x_I", 4.0), ("D_x_II", 12.0)]
+                .map(|(name, truth)| told(found, name, truth, " by their correlation"))
+                .to_vec()
         };
-        let rest = format!("{law}[identify]\ncovariance = \"blocks\"\n");
+        let rest = format!("{law}[identify]\ncovariance = \"serial\"\n");
         for tally in run(&campaign(&rest), seeds, 600 + n as u128, table(0.8, 4.0), judge)? {
             let what = format!("{n} rows in random order whose errors follow each other by 0.8, two coefficients");
-            judged(claims, &what, &tally, of_blocks, false, &format!(", mean width {:.3}", tally.width()));
+            judged(claims, &what, &tally, of_serial, false, &format!(", mean width {:.3}", tally.width()));
         }
-        // One coefficient averages over blocks of unequal speeds, and neighbours across their borders are alike.
-        let rest = "models = [\"quadratic\"]\n[identify]\ncovariance = \"blocks\"\n";
-        let judge = |found: &SourceResult| vec![told(found, "D_x_II", 12.0, " by four blocks")];
+        let rest = "models = [\"quadratic\"]\n[identify]\ncovariance = \"serial\"\n";
+        let judge = |found: &SourceResult| vec![told(found, "D_x_II", 12.0, " by their correlation")];
         for tally in run(&campaign(rest), seeds, 650 + n as u128, table(0.8, 0.0), judge)? {
             if tally.name.ends_with(WITHOUT) {
                 continue;
@@ -252,7 +253,7 @@ fn neighbours(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
                     "{n} rows in random order whose errors follow each other by 0.8, one coefficient: {}",
                     tally.name
                 ),
-                &format!("{of_blocks} % wanted"),
+                &format!("{of_serial} % wanted"),
                 format!(
                     "{:.2} % of {}, of {seeds} with an interval, mean width {:.3}",
                     tally.percent(),
