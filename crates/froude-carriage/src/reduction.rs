@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use froude_fit::budget::Uncertain;
+use froude_fit::distribution::t_two_sided;
 use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_identify::method::MethodError;
 use froude_records::campaign::Campaign;
@@ -265,19 +266,19 @@ pub fn calibration_of(
     calibration_from(&readings, campaign, setup)
 }
 
-/// Standard uncertainties beyond which friction goes by direction.
-const BY_DIRECTION: f64 = 3.0;
+/// False-alarm probability of reporting friction by direction.
+const BY_DIRECTION: f64 = 0.004;
 
 /// What runs both ways say of friction by direction, and whether they can.
 fn friction_by_direction(c: &Calibration) -> Option<Finding> {
     if c.is_one_way_missed {
-        let text = "runs without weight one way and with weights the other way do not tell a friction that is larger one way from the force per volt: 10 % of the friction is some 3 % of it. \
-                    Add runs without weight both ways";
+        let text = "the runs cannot separate direction-dependent friction from the force per volt: a 10 % difference in friction shifts it by about 3 %. Repeat runs without weight in \
+                    both directions";
         return Some(Finding::new(Severity::Warning, "friction-by-direction", text.to_owned()));
     }
-    let one_way = c.one_way_n.filter(|d| d.value.abs() > BY_DIRECTION * d.standard)?;
+    let one_way = c.one_way_n.filter(|d| t_two_sided(d.value / d.standard, d.dof) < BY_DIRECTION)?;
     let text = format!(
-        "friction is {} N along +y and {} N along −y: the force per volt is that of both; look for a tilted rail, a cable or a brake",
+        "friction is {} N along +y and {} N along −y: the force per volt accounts for both; check for a tilted rail, a cable or a brake",
         number::significant(c.friction_n + one_way.value, 3),
         number::significant(c.friction_n - one_way.value, 3)
     );

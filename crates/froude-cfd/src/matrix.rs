@@ -1,6 +1,6 @@
 //! The run matrix of a campaign as cases: which settings, by which model, and from which case each starts.
 //!
-//! **Chains.** Cases of one configuration and model lie on a comb. Those head on go from the fastest to the slowest, each from the one before. At every speed the others follow in the order of their angle from head on, each from the one that is nearest in the direction of its flow: of a flow with two steady states, settings that are alike by symmetry then take the same one. A chain is one job after another, the chains of different combs and of different speeds are independent. Fields are scaled by the ratio of speeds (Reynolds similarity, which holds nearly).
+//! **Chains.** Cases of one configuration and model lie on a comb. Those head on go from the fastest to the slowest, each from the one before. At every speed the others follow in the order of their angle from head on, each from the one that is nearest in the direction of its flow: where a flow has two steady states, settings equivalent by symmetry then reach the same one. A chain is one job after another, the chains of different combs and of different speeds are independent. Fields are scaled by the ratio of speeds (Reynolds similarity, which holds nearly).
 //! **Tanks.** In a tank each angle has a mesh of its own, and its cases go from the fastest to the slowest.
 //! **Cold repeats.** Of every `1/cold` cases that start warm one is computed once more from the inflow, under the same name with `-cold`: how far its forces lie from the warm ones' is the hysteresis.
 //! **Computed again.** Settings of a study run on the other grids of a family and in other domains, and of the cases of a configuration that a table has, in the order of angles and of speeds within each, some at equal distances run on a finer mesh, the first and the last among them ([`Again`]). All of these start from the inflow. Iterations and window grow with the refinement, as a change of pressure or flux goes a cell an iteration.
@@ -380,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn both_planes_start_alike() {
+    fn symmetric_settings_start_from_symmetric_cases() {
         let plan = "[[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nspeed = \"0.4 m/s\"\n\
              angle = [\"-15 deg\", \"-7.5 deg\", \"0 deg\", \"7.5 deg\", \"15 deg\"]\npitch = [\"0 deg\", \"7.5 deg\", \"15 deg\"]\n";
         let cases = of(plan, "cold = 0\ndomain = \"full\"");

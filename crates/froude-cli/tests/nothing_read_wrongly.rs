@@ -306,7 +306,7 @@ fn rows_in_gram_force_are_refused_with_their_lines() {
         said.contains(", at one setting; there are two groups of rows a factor of 10")
             && said.ends_with(
                 "as loads of one body are not: some rows are in gram-force under a header in newtons (1 N is 102 gf), probably. Convert \
-                 them; where they are right, name what differs between the two in a column `configuration`, whose rows are not compared with each other"
+                 them; if they are correct, give the two groups different names in a column `configuration`: rows of different configurations are not compared"
             ),
         "{said}"
     );

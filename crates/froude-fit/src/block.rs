@@ -36,7 +36,7 @@ pub(crate) struct Block {
     pub row_component: Vec<usize>,
     /// Observations behind the rows of each component, where these were condensed.
     pub observations: Option<Vec<usize>>,
-    /// Each prior as a row over the columns, over its standard uncertainty, and its right-hand side.
+    /// Each prior as its row entries and right-hand side, both divided by its standard uncertainty.
     pub priors: Vec<(Vec<(usize, f64)>, f64)>,
     /// `β₀`.
     pub offset: Vec<f64>,

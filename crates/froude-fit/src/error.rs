@@ -49,8 +49,8 @@ pub enum FitError {
 
     /// A weight is below zero or not finite.
     #[error(
-        "weight of row {row} is {weight}; a weight is a relative 1/variance, not negative and \
-         finite (0 where the row is no observation)"
+        "weight of row {row} is {weight}; a weight is a relative 1/variance, finite and \
+         not negative (0 ignores the row)"
     )]
     Weight {
         /// Row of the weight.

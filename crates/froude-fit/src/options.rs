@@ -79,7 +79,7 @@ pub struct Constraint {
 
 /// A value known beforehand, with its standard uncertainty.
 ///
-/// Values that are correlated follow each other: the second is given the first, β₂ − s β₁ with the slope s = cov/u₁², and so on ([`Prior::correlated`]).
+/// Correlated values are stated as conditionals: the second given the first, β₂ − s β₁ with the slope s = cov/u₁², and so on ([`Prior::correlated`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prior {
     /// The coefficient.
@@ -88,25 +88,30 @@ pub struct Prior {
     pub value: f64,
     /// Its standard uncertainty, positive, in the unit of the coefficient.
     pub standard: f64,
-    /// Coefficients that it goes with, and their slopes: known is the coefficient less the sum of slope times coefficient.
+    /// Coefficients that it is conditioned on, with their slopes: `value` is that of the coefficient minus Σ slope · coefficient.
     pub with: Vec<(usize, f64)>,
 }
 
+/// Part of a variance by which correlated values are held apart.
+const EXACT: f64 = 1e-9;
+
 impl Prior {
-    /// A value that goes with no other.
+    /// A value independent of all others.
     #[must_use]
     pub const fn new(index: usize, value: f64, standard: f64) -> Self {
         Self { index, value, standard, with: Vec::new() }
     }
 
-    /// Values of several coefficients with their covariance; `None` where that is not positive definite.
+    /// Priors of several coefficients with a joint covariance; `None` if it is not positive definite.
     ///
-    /// Each given those before it: Anderson (2003), *An Introduction to Multivariate Statistical Analysis*, 2.5.
+    /// Each prior is conditioned on those before it: Anderson (2003), *An Introduction to Multivariate Statistical Analysis*, 2.5.
     #[must_use]
     pub fn correlated(indices: &[usize], values: &[f64], covariance: &Mat<f64>) -> Option<Vec<Self>> {
-        let lower = covariance.llt(Side::Lower).ok()?.L().to_owned();
-        // Rows of L⁻¹, with the last entry 1: β_k less what those before it say.
         let n = indices.len();
+        // Entries that go with each other exactly, as those of a body of revolution, leave a variance of zero.
+        let widened = Mat::from_fn(n, n, |i, j| covariance[(i, j)] * if i == j { 1.0 + EXACT } else { 1.0 });
+        let lower = widened.llt(Side::Lower).ok()?.L().to_owned();
+        // Rows of L⁻¹, with the last entry 1: β_k less what those before it say.
         let mut inverse = Mat::<f64>::identity(n, n);
         solve_lower_triangular_in_place(lower.as_ref(), inverse.as_mut(), Par::Seq);
         let of = |k: usize| {

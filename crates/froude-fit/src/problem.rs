@@ -17,7 +17,7 @@ pub struct Problem {
     pub design: Mat<f64>,
     /// `y`, length `n`.
     pub response: Vec<f64>,
-    /// Relative 1/variance of each row; `None` means all one, 0 that the row is no observation.
+    /// Relative 1/variance of each row, 0 to ignore the row; `None` if all are 1.
     pub weight: Option<Vec<f64>>,
     /// Component of each row, an index into `components`.
     pub component: Vec<usize>,

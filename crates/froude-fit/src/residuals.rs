@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use crate::dense::{dot, mul_vec, row, tr_mul_vec};
-use crate::options::Options;
+use crate::options::{Options, Prior};
 use crate::outcome::Fit;
 use crate::problem::Problem;
 use crate::rank::PivotedQr;
@@ -47,7 +47,9 @@ impl Residuals {
         });
         let of_held = |i: usize| options.fixed.iter().map(|&(j, value)| problem.design[(i, j)] * value).sum::<f64>();
         let mut response: Vec<f64> = (0..n).map(|i| (problem.response[i] - of_held(i)) * factor(i)).collect();
-        response.extend(priors.iter().map(|prior| prior.value / prior.standard));
+        let held = |j: usize| options.fixed.iter().find(|(k, _)| *k == j).map_or(0.0, |(_, value)| *value);
+        let known = |prior: &Prior| prior.with.iter().map(|(j, slope)| slope * held(*j)).sum::<f64>();
+        response.extend(priors.iter().map(|prior| (prior.value + known(prior)) / prior.standard));
         let qr = PivotedQr::new(design.as_ref());
         let onto = mul_vec(qr.q.as_ref(), &tr_mul_vec(qr.q.as_ref(), &response));
         (0..problem.components.len())

@@ -31,6 +31,8 @@ use crate::distribution::{dof_of_factor, root, t_two_sided};
 
 /// A correlation time of more than this part of the longest run is not told from what the law fits.
 const LONGEST: f64 = 0.3;
+/// The same of rows that are the samples themselves.
+const LONGEST_OF_SAMPLES: f64 = 1.5;
 /// Points of the mixture.
 const POINTS: usize = 48;
 /// Above this part of the largest correlation …
@@ -245,7 +247,9 @@ fn mixture(
     columns.extend(residuals.iter().cloned());
     let dof = (n - free.len()) as f64;
     let longest = run.chunk_by(|a, b| a == b).map(<[usize]>::len).max().unwrap_or(1);
-    let largest = (-1.0 / (LONGEST * longest as f64)).exp();
+    // Rows that are the samples are few, and may be in any order: what they tell of a slow error decides.
+    let part = if errors.window == RowWindow::single() { LONGEST_OF_SAMPLES } else { LONGEST };
+    let largest = (-1.0 / (part * longest as f64)).exp();
     let white = errors.white.as_ref().map(|(window, standard)| (window.correlation(0.0), standard * standard));
     // Even steps of artanh ρ^m lie closer where a covariance changes faster.
     let step = largest.atanh() / POINTS as f64;

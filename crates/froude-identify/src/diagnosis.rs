@@ -76,20 +76,9 @@ fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f
     let n = data.rows;
     let most = groups.iter().copied().max().map_or(0, |m| m + 1);
     let stacked: Vec<usize> = (0..model.problem.response.len()).map(|row| row / n * most + groups[row % n]).collect();
-    let clear = model.clear_of_declared();
-    let refitted = if model.declared.ncols() > 0 {
-        fit::fit(
-            &clear,
-            &fit::Options {
-                excluded: model.options.excluded.clone(),
-                fixed: model.options.fixed.clone(),
-                ..fit::Options::default()
-            },
-        )
-        .ok()
-    } else {
-        None
-    };
+    let (clear, options) = model.clear_of_declared();
+    let options = fit::Options { covariance: fit::CovarianceKind::Classical, ..options };
+    let refitted = (model.declared.ncols() > 0).then(|| fit::fit(&clear, &options).ok()).flatten();
     match fit::select::lack_of_fit(&clear, refitted.as_ref().unwrap_or(&model.fit), &stacked) {
         Ok(tests) => tests.into_iter().filter_map(|t| t.score.as_ref().map(|s| (t.component.clone(), s.p))).collect(),
         Err(_) => indexmap::IndexMap::new(),
@@ -259,7 +248,7 @@ fn decided_by_one(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
             let group = groups.get(which).cloned().unwrap_or_default();
             let is_in_time = data.values("time").is_some() && data.rows >= 2 * data.clusters();
             let advice = if is_in_time {
-                "record runs of other motions, or count rows that follow each other by their correlation (covariance = \"serial\")"
+                "record runs of other motions, or model the correlation of successive rows (covariance = \"serial\")"
             } else if data.grouped_by == GroupedBy::Motion {
                 "record runs of other motions"
             } else {

@@ -1,11 +1,11 @@
 //! Loads that were not measured in every row: axes tested one at a time in one table, and readings at rest.
 //!
-//! A row says nothing of a load that was not recorded there; counted as an observation it would narrow every interval of that load. Three kinds are told apart:
+//! A row says nothing of a load that was not recorded there; counted as an observation it would narrow every interval of that load. There are three cases:
 //!
 //! - a load whose cell is empty; the motion along or about its axis may be empty too, and is none then;
-//! - a load that is exactly 0 in every row in which its own axis does not move and another one does: nobody measures that. Such rows are none of that load, for all laws;
-//! - rows in which every law gives zero whatever its coefficients, at rest say, and whose loads scatter less than those of the others (F, 1 % over the loads). They determine no coefficient
-//!   and are left out of σ.
+//! - a load that is exactly 0 in every row in which its own axis does not move and another one does: a measured load is never exactly that. Such rows are not observations of that load, under any law;
+//! - rows in which every law predicts zero for any coefficients (at rest, for example) and whose loads scatter less than the others (F, 1 % over the loads; classical fits without weights only).
+//!   They determine no coefficient and are left out of σ.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,6 @@ use froude_records::text::counted;
 
 use crate::dataset::Dataset;
 use crate::regression::{ModelFit, Scatter};
-use crate::source::models::PAIRS;
 
 /// Chance of leaving out rows that scatter like the others, over all loads.
 const LEVEL: f64 = 0.01;
@@ -43,7 +42,7 @@ pub(crate) fn of_blanks(table: &Table, data: &mut Dataset) -> Result<(), RecordE
     let loads = data.loads();
     for (name, row) in &table.blank {
         let has_load = |load: &str| loads.contains(&load) && !is_blank(load, *row);
-        let of_axis = PAIRS.iter().any(|(load, motion)| motion == name && has_load(load));
+        let of_axis = MAKE.iter().any(|(load, motions)| motions.contains(&name.as_str()) && has_load(load));
         let has_none = !loads.iter().any(|load| has_load(load));
         if of_axis || has_none {
             return Err(RecordError::EmptyCell {
@@ -52,7 +51,7 @@ pub(crate) fn of_blanks(table: &Table, data: &mut Dataset) -> Result<(), RecordE
                 advice: if has_none {
                     "fill it in or delete the row".to_owned()
                 } else {
-                    "fill it in; a load that was not measured may be empty, and with it the motion along its axis"
+                    "fill it in; only a load that was not measured, and the motion along its axis, may be left empty"
                         .to_owned()
                 },
             });
@@ -88,7 +87,7 @@ pub(crate) fn mark(data: &mut Dataset) -> Vec<Finding> {
         let left = is.iter().filter(|is| !**is).count();
         if left > 0 {
             let text = format!(
-                "{load}: it was not measured in {} (empty, or exactly 0 while only other axes move), which are left out for it",
+                "{load}: not measured in {} (cell empty, or exactly 0 while only other axes move); not used for this load",
                 counted(left, "row", "rows")
             );
             out.push(Finding::new(Severity::Note, "load-not-measured", text));
@@ -100,7 +99,7 @@ pub(crate) fn mark(data: &mut Dataset) -> Vec<Finding> {
 
 /// Rows that scatter less than the others and determine nothing, by load; marks them.
 pub(crate) fn mark_quiet(models: &[&ModelFit], data: &mut Dataset) -> Vec<Finding> {
-    if models.iter().any(|m| m.scatter != Scatter::Classical || m.problem.weight.is_some() || m.in_variables) {
+    if models.iter().any(|m| m.scatter != Scatter::Classical || m.is_weighted() || m.in_variables) {
         return Vec::new();
     }
     let mut out = Vec::new();
@@ -113,8 +112,9 @@ pub(crate) fn mark_quiet(models: &[&ModelFit], data: &mut Dataset) -> Vec<Findin
             let row = m.problem.design.row(r * n + i);
             m.problem.response.len() == m.law.responses.len() * n && row.iter().all(|x| *x == 0.0)
         };
-        let quiet: Vec<usize> =
-            (0..n).filter(|&i| !of_load.is_empty() && of_load.iter().all(|m| is_zero(m, i))).collect();
+        let quiet: Vec<usize> = (0..n)
+            .filter(|&i| data.observes(load, i) && !of_load.is_empty() && of_load.iter().all(|m| is_zero(m, i)))
+            .collect();
         let Some(f) = data.values(load) else { continue };
         let k = quiet.len() as f64;
         let own = quiet.iter().map(|&i| f[i] * f[i]).sum::<f64>();
@@ -129,7 +129,7 @@ pub(crate) fn mark_quiet(models: &[&ModelFit], data: &mut Dataset) -> Vec<Findin
             continue;
         }
         let text = format!(
-            "{load}: {} in which no law gives a load, at rest say, {} less than the others and {} left out of σ",
+            "{load}: {} in which every law predicts zero (at rest, for example) {} less than the others and {} left out of σ",
             counted(quiet.len(), "row", "rows"),
             if quiet.len() == 1 { "scatters" } else { "scatter" },
             if quiet.len() == 1 { "is" } else { "are" },

@@ -102,7 +102,8 @@ fn shapes(model: &ModelFit, data: &Dataset) -> Vec<Shape> {
         return Vec::new();
     }
     let sigma: Vec<f64> = model.fit.components.iter().map(|c| c.sigma.filter(|s| *s > 0.0).unwrap_or(1.0)).collect();
-    let residuals = Residuals::with(&model.clear_of_declared(), &model.options, &sigma);
+    let (problem, options) = model.clear_of_declared();
+    let residuals = Residuals::with(&problem, &options, &sigma);
     let named = model.law.responses.iter().zip(&model.fit.components).enumerate();
     let has_scatter = |c: &fit::ComponentSummary| c.sigma.is_some_and(|s| s > 0.0) && c.relative_residual > ROUNDING;
     named

@@ -83,7 +83,8 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, IdentifyEr
         }
     }
     let not_measured = data.observed.iter().flat_map(|(load, is)| {
-        let rows = (0..data.rows).filter(|&i| !is[i]);
+        // A reading at rest that is left out of σ was measured.
+        let rows = (0..data.rows).filter(|&i| !is[i] && data.values(load).is_some_and(|f| f[i] == 0.0));
         rows.flat_map(move |i| [(load.clone(), i), (format!("{load}_residual"), i)])
     });
     let blank = not_measured.collect();

@@ -5,8 +5,9 @@
 //! where n P(|T| ≥ |t|) is below 0.4 % over the loads of the law.
 //!
 //! Nothing is left out: whether a row is a mistake is in its log, not in its residual. A slip at a large speed makes the scatter look uneven, so a row is
-//! named where the scatter is even without it, and where errors that go with the load would name it too: of the rows' σ² = a + b f², or of few rows, which do not tell, of σ ∝ f. Where it is uneven even so, or weights were fitted, the row is compared with rows of its own load by that σ alone,
-//! and t has a third of their degrees of freedom, as it rests on the few rows near its load. Not asked where rows follow each
+//! named only if the scatter is even without it and it also stands out when errors grow with the load: σ² = a + b f² fitted to the other rows or, with too few rows for that, σ ∝ f.
+//! Otherwise, if the scatter of all rows is uneven or weights were fitted, the row is judged by σ² = a + b f² alone; t then has a third of the degrees of freedom, because it rests on the few
+//! rows near that load. Not asked where rows follow each
 //! other in time, of a sample of the rows, and where σ is not that of the squares: with errors in variables, Huber's loss, and constraints that hold.
 //!
 //! **Source.** Cook & Weisberg (1982), *Residuals and Influence in Regression*, 2.2.2.
@@ -21,14 +22,14 @@ use crate::regression::{ModelFit, Variance};
 
 /// Chance of naming a row where all are sound, over all loads of a law.
 const FALSE_ALARM: f64 = 0.004;
-/// Fewest degrees of freedom of the other rows; with so few the row must lie a thousand times apart.
+/// Fewest degrees of freedom of the other rows; with one, only a row almost a thousand standard deviations away is named.
 const FEWEST_DOF: f64 = 1.0;
-/// Part of the degrees of freedom that tells the scatter at one load.
+/// Fraction of the degrees of freedom available for the scatter at one load.
 const AT_ONE_LOAD: f64 = 1.0 / 3.0;
 /// A fit without error has no scatter to compare with.
 const ROUNDING: f64 = 1e-9;
 
-/// Loads below this part of the largest count as that.
+/// Fitted loads below this fraction of the largest are raised to it.
 const LEAST_LOAD: f64 = 0.02;
 /// Nearer to 1 than this a row alone determines a coefficient, and has no residual.
 const ALONE: f64 = 1e-8;
@@ -96,7 +97,7 @@ fn outlying(model: &ModelFit, n: usize, r: usize) -> Option<Outlying> {
     (t_two_sided(most.t, dof) * n as f64 * loads < FALSE_ALARM).then_some(most)
 }
 
-/// The row that lies furthest from the law by the scatter of rows of its load; `None` where the scatter is even, and where chance explains it.
+/// The row furthest from the law relative to the scatter at its load; `None` if the scatter is even and no weights were fitted, or if chance explains the row.
 fn by_its_load(model: &ModelFit, data: &Dataset, r: usize) -> Option<Outlying> {
     let load = &model.law.responses[r];
     let is_fitted = model.is_weighted() && data.values(&format!("std_{load}")).is_none();
@@ -148,7 +149,7 @@ fn uneven_without(model: &ModelFit, data: &Dataset, r: usize, found: Outlying) -
     Some(Unevenness::of(&left.iter().map(|x| x.abs()).collect::<Vec<_>>(), &speeds))
 }
 
-/// Whether the row is named where errors go with the load as well: as the other rows show it, or, of few, as a part of it.
+/// Whether the row still stands out if errors grow with the load: as fitted to the other rows or, with few rows, in proportion to it.
 fn is_beyond_growth(model: &ModelFit, n: usize, r: usize, found: Outlying) -> bool {
     let (others, left) = without(model, r, n, found);
     let largest = others.iter().fold(0.0_f64, |m, i| m.max(model.fit.fitted[*i].abs()));
@@ -156,7 +157,7 @@ fn is_beyond_growth(model: &ModelFit, n: usize, r: usize, found: Outlying) -> bo
     let dof = model.fit.components[r].dof - 1.0;
     let k = r * n + found.row;
     let variance = if n > FEWEST_FOR_SCATTER {
-        // Their mean is that of the scatter, as the fit takes some of it.
+        // Scaled by n/dof, because the fit absorbs part of the scatter.
         let lost = others.len() as f64 / dof;
         let squares: Vec<f64> = left.iter().map(|x| x * x * lost).collect();
         let loads: Vec<f64> = others.iter().map(|i| load(*i)).collect();

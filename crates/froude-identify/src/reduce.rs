@@ -165,7 +165,7 @@ pub(crate) fn one_unit(
     source: &Source,
 ) -> Result<(), IdentifyError> {
     let loads = fitted_loads(campaign, source, data);
-    let found = two_units::found(data, &loads).filter(|found| !two_units::is_foretold(found, data, campaign, source));
+    let found = two_units::found(data, &loads).filter(|found| !two_units::is_predicted(found, data, campaign, source));
     let Some(found) = found else { return Ok(()) };
     let [large, small] = found.rows;
     let place = |row: usize| {
@@ -185,7 +185,7 @@ pub(crate) fn one_unit(
     };
     let problem = format!(
         "is {} here and {} in {}, at one setting; there are two groups of rows a factor of {} apart, as loads of one body are not: {}, \
-         probably. Convert them; where they are right, name what differs between the two in a column `configuration`, whose rows are not compared with each other",
+         probably. Convert them; if they are correct, give the two groups different names in a column `configuration`: rows of different configurations are not compared",
         written(large),
         written(small),
         place(small),

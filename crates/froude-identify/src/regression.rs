@@ -151,12 +151,13 @@ fn errors_in_variables(
     let place = || format!("source {:?}, model {}", settings.source_name, law.name);
     let has_bounds = options.bounds.iter().any(|b| b.lower.is_finite() || b.upper.is_finite());
     let has_more = !options.inequalities.is_empty() || !options.priors.is_empty() || !options.fixed.is_empty();
+    let is_unobserved = law.responses.iter().any(|load| data.observed.contains_key(load));
     let has_other = options.loss != fit::Loss::Squares || options.covariance != fit::CovarianceKind::Classical;
-    if has_bounds || has_more || has_other || !options.excluded.is_empty() || is_uneven(problem) {
+    if has_bounds || has_more || has_other || !options.excluded.is_empty() || is_uneven(problem) || is_unobserved {
         return Err(IdentifyError::Campaign {
             place: place(),
-            what: "errors_in_variables goes with neither bounds, priors, known, fixed or excluded coefficients, dissipative, huber, HC3, cluster, weights, nor \
-                   std columns; leave one of them out. Where the terms with the errors have coefficients that are held, leave out errors_in_variables: their errors are scatter then, \
+            what: "errors_in_variables goes with neither bounds, priors, known, fixed or excluded coefficients, dissipative, huber, HC3, cluster, weights, \
+                   std columns, nor empty cells; leave one of them out. Where the terms with the errors have coefficients that are held, leave out errors_in_variables: their errors are scatter then, \
                    and move no other coefficient"
                 .to_owned(),
         });
@@ -211,8 +212,16 @@ pub(crate) fn known_of<'a>(identify: &'a Identify, law: &ForceLaw) -> impl Itera
 fn priors(identify: &Identify, law: &ForceLaw, position: &dyn Fn(&str) -> Option<usize>) -> Vec<fit::Prior> {
     let is_meant = |prior: &PriorSpec| prior.model.as_ref().is_none_or(|model| *model == law.name);
     let meant = identify.prior.iter().enumerate().filter(|(_, prior)| is_meant(prior));
-    let meant: Vec<(usize, &PriorSpec, usize)> =
+    let is_excluded = |prior: &PriorSpec| identify.exclude.contains(&prior.coefficient);
+    let is_fixed = |prior: &PriorSpec| {
+        let is_known = known_of(identify, law).any(|(_, known)| known.coefficient == prior.coefficient);
+        is_known || identify.fixed.iter().any(|(name, _)| *name == prior.coefficient)
+    };
+    let meant = meant.filter(|(_, prior)| !is_excluded(prior));
+    let mut meant: Vec<(usize, &PriorSpec, usize)> =
         meant.filter_map(|(k, prior)| Some((k, prior, position(&prior.coefficient)?))).collect();
+    // The others are given what is fixed.
+    meant.sort_by_key(|(_, prior, _)| !is_fixed(prior));
     let indices: Vec<usize> = meant.iter().map(|(.., index)| *index).collect();
     let values: Vec<f64> = meant.iter().map(|(_, prior, _)| prior.value).collect();
     let between = |a: usize, b: usize| {

@@ -55,7 +55,8 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, us
         }
         None => {
             let sigma = model.fit.components.iter().map(|c| c.sigma.filter(|s| *s > 0.0).unwrap_or(1.0));
-            Residuals::with(&model.clear_of_declared(), &model.options, &sigma.collect::<Vec<_>>())
+            let (problem, options) = model.clear_of_declared();
+            Residuals::with(&problem, &options, &sigma.collect::<Vec<_>>())
         }
     };
     let Ok(predicted) = model.law.predict(data, model.law_coefficients()) else { return Vec::new() };
@@ -74,7 +75,7 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, us
         found.extend(serial(model, data, load, residuals, loads));
         // One row that lies apart is that, and no scatter that grows: the others are asked.
         let apart = outlying.iter().find(|(of, _)| of == load).map(|(_, row)| *row);
-        found.extend(uneven(model, data, load, (&without(residuals, apart), predicted), loads));
+        found.extend(uneven(model, data, load, (&without(residuals, apart, n), predicted), loads));
         found.extend(offset(model, data, load, residuals, loads));
         out.extend(found.into_iter().map(|finding| (load.clone(), finding)));
     }
@@ -82,9 +83,9 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, us
 }
 
 /// The residuals of the other rows; what was fitted to all takes the same of them.
-fn without(residuals: &Residuals, row: Option<usize>) -> Residuals {
-    let n = residuals.rows.len();
-    let kept: Vec<usize> = (0..n).filter(|i| row.is_none_or(|row| residuals.rows[*i] % n != row)).collect();
+fn without(residuals: &Residuals, row: Option<usize>, n: usize) -> Residuals {
+    let kept: Vec<usize> =
+        (0..residuals.rows.len()).filter(|i| row.is_none_or(|row| residuals.rows[*i] % n != row)).collect();
     Residuals {
         rows: kept.iter().map(|&i| residuals.rows[i]).collect(),
         residual: kept.iter().map(|&i| residuals.residual[i]).collect(),
@@ -140,9 +141,9 @@ fn serial(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
             model.law.name,
             p_equation(p),
             if data.group.is_some() && data.clusters() >= FEWEST_CLUSTERS {
-                "covariance = \"cluster\" takes the groups for independent instead"
+                "covariance = \"cluster\" assumes only that the groups are independent"
             } else {
-                "covariance = \"serial\" counts rows that are alike as fewer"
+                "covariance = \"serial\" models the correlation of successive rows"
             }
         );
         Finding::new(Severity::Warning, "serial-correlation", text)

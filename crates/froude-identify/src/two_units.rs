@@ -9,8 +9,8 @@
 //! (a side force at no angle), or that depends on something that the table does not state, is spread over the gap and
 //! changes its sign, and is passed over.
 //!
-//! **The law decides.** Inertia and drag cancel at one speed of an accelerated motion, and lift and drag at one angle: such rows look a hundredfold small and are foretold by the law. Rows in another
-//! unit are not, and a law that is fitted to two halves leaves most of the load.
+//! **The law decides.** Inertia and drag cancel at one speed of an accelerated motion, and lift and drag at one angle: such rows look a hundred times too small, but the law predicts them. It does
+//! not predict rows in another unit: fitted to a mixture of units, a law leaves most of the load unexplained.
 
 use std::collections::BTreeMap;
 
@@ -63,7 +63,7 @@ pub struct TwoUnits {
     pub rows: [usize; 2],
     /// How many times the one group is the other.
     pub factor: f64,
-    /// The rows of the smaller group.
+    /// The rows of the group with fewer rows.
     few: Vec<usize>,
 }
 
@@ -86,16 +86,19 @@ pub fn found(data: &Dataset, loads: &[&'static str]) -> Option<TwoUnits> {
     loads.iter().find_map(|load| of_load(load, data.values(load)?, data, &settings))
 }
 
-/// A law that leaves less than this of a load describes it.
+/// A law describes a load if its relative residual is below this.
 const DESCRIBES: f64 = 0.3;
-/// What a law leaves of sound rows, in root mean squares of what it leaves of the others.
+/// Largest RMS residual of these rows, relative to that of the others, at which the law predicts them.
 const LIKE_OTHERS: f64 = 4.0;
 
-/// Whether one of the laws foretells the rows that look as if they were in another unit.
-pub(crate) fn is_foretold(of: &TwoUnits, data: &Dataset, campaign: &Campaign, source: &Source) -> bool {
+/// A row that a law predicts lies within this part of the predicted load.
+const NEAR_LOAD: f64 = 0.5;
+
+/// Whether one of the laws predicts the rows that look as if they were in another unit.
+pub(crate) fn is_predicted(of: &TwoUnits, data: &Dataset, campaign: &Campaign, source: &Source) -> bool {
     let laws = laws(campaign, source, data).unwrap_or_default();
     let settings = Settings::new(&source.name, source.kind, &campaign.identify);
-    let foretells = |law: &ForceLaw| {
+    let predicts = |law: &ForceLaw| {
         let (Some(r), Ok(model)) = (law.responses.iter().position(|l| l == of.load), regress(law, data, settings))
         else {
             return false;
@@ -104,11 +107,18 @@ pub(crate) fn is_foretold(of: &TwoUnits, data: &Dataset, campaign: &Campaign, so
             let row = r * data.rows + i;
             (model.fit.residuals[row] / (1.0 - model.fit.leverage[row]).max(f64::MIN_POSITIVE)).powi(2)
         };
+        // What is in another unit is foretold as many times too large or too small.
+        let is_near = |i: &usize| {
+            model.fit.residuals[r * data.rows + i].abs() < NEAR_LOAD * model.fit.fitted[r * data.rows + i].abs()
+        };
+        if !of.few.iter().all(is_near) {
+            return false;
+        }
         let (few, others): (Vec<usize>, Vec<usize>) = (0..data.rows).partition(|i| of.few.contains(i));
         let mean = |rows: &[usize]| (rows.iter().map(left).sum::<f64>() / rows.len() as f64).sqrt();
         model.fit.components[r].relative_residual < DESCRIBES && mean(&few) <= LIKE_OTHERS * mean(&others)
     };
-    laws.iter().filter(|law| !law.in_logarithms()).any(foretells)
+    laws.iter().filter(|law| !law.in_logarithms()).any(predicts)
 }
 
 fn of_load(load: &'static str, f: &[f64], data: &Dataset, settings: &[Vec<usize>]) -> Option<TwoUnits> {

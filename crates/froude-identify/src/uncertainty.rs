@@ -179,10 +179,12 @@ pub fn contributions(
     Ok(out)
 }
 
-/// Rows up to which [`directions`] are made.
+/// Largest number of groups that errors are cleared of.
+const MOST_GROUPS: usize = 50;
+/// Largest number of rows for which [`directions`] are computed.
 const MOST_ROWS: usize = 10_000;
 
-/// What declared errors that rows share may do to the responses: a column for each error, of any length, over all rows. What the scatter shows by itself has none, nor have tables of very many rows.
+/// Effect of each declared shared error on the responses: one column per error over all rows, for one standard uncertainty. Errors of single rows have no column; above [`MOST_ROWS`] rows there are none.
 ///
 /// # Errors
 ///
@@ -197,13 +199,15 @@ pub(crate) fn directions(
     if n > MOST_ROWS || fit.data.sample.is_some() {
         return Ok(Mat::zeros(n * loads.len(), 0));
     }
-    for entry in budget {
+    // A law of a load takes a gain of it; the error of the measured load would take every residual.
+    let is_gain = |entry: &&BudgetEntry| entry.relative && loads.contains(&entry.quantity);
+    for entry in budget.iter().filter(|entry| !is_gain(entry)) {
         let direction = direction(fit, entry)?;
         let groups = groups(fit.data, entry.shared);
         let count = groups.iter().max().map_or(0, |most| most + 1);
         let of_group =
             |g: usize| direction.iter().enumerate().map(|(i, d)| if groups[i % n] == g { *d } else { 0.0 }).collect();
-        columns.extend((0..count).filter(|_| count < n).map(of_group));
+        columns.extend((0..count).filter(|_| count < n && count <= MOST_GROUPS).map(of_group));
     }
     for error in shared_errors.iter().filter(|error| !error.is_of_each_row) {
         for k in 0..error.covariance.len() {
@@ -211,7 +215,7 @@ pub(crate) fn directions(
             for (load, rows) in &error.directions {
                 let Some(r) = loads.iter().position(|name| name == load) else { continue };
                 for (i, row) in rows.iter().enumerate().take(n) {
-                    column[r * n + i] = row.get(k).copied().unwrap_or(0.0);
+                    column[r * n + i] = row.get(k).copied().unwrap_or(0.0) * error.covariance[k][k].sqrt();
                 }
             }
             as_logarithms(fit, &mut column, &fit.law.measured(fit.data)?);
@@ -304,8 +308,9 @@ pub(crate) fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<
 /// where the load errs, at the predicted one where the motion does.
 fn as_logarithms(fit: Linearised<'_>, errors: &mut [f64], loads: &[f64]) {
     if fit.law.in_logarithms() {
+        // A load that was not measured has no logarithm, and no error.
         for (error, load) in errors.iter_mut().zip(loads) {
-            *error /= load;
+            *error = if *load == 0.0 { 0.0 } else { *error / load };
         }
     }
 }

@@ -17,12 +17,12 @@ pub fn unexplained(estimate: &Estimate) -> Vec<Finding> {
         let law = &estimate.law.name;
         let text = format!("{law}, {load}: the law leaves {} of the load (root mean square)", percent(*left));
         if *left > 1.0 + 1e-9 {
-            let text = format!("{text}: it is no better than none; check the sign of the load and the values that are held");
+            let text = format!("{text}: it is no better than no law; check the sign of the load and the fixed values");
             return Finding::new(Severity::Warning, "no-better-than-nothing", text);
         }
         let text = format!(
-            "{text}: something else moves it, and its coefficients and intervals are those of the rest; look for a lag between motion and load, a variable that the law lacks, \
-             or a load that is mostly noise"
+            "{text}: most of the load has another cause, so the coefficients and intervals cannot be trusted; look for a lag between motion and load, a variable missing from the \
+             law, or a load that is mostly noise"
         );
         Finding::new(Severity::Warning, "mostly-unexplained", text)
     })

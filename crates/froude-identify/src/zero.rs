@@ -1,10 +1,10 @@
 //! A load cell that was not zeroed: a load that is the same in every row, whatever the law.
 //!
-//! To each law a constant is added. Where the law is true, t of that constant is exact; where it is another one, it need not be, and a table of a linear and a quadratic term looks to the quadratic law
-//! as if it had an offset. An offset is therefore reported where it is significant beside every law: those that are fitted and the default ones, less those that the load contradicts with the
-//! constant too. If one of them is true, a sound table is reported in 1 % of cases at most, over all loads. Declared errors count: a declared zero is none that was forgotten.
+//! A constant is added to each law in turn and tested with Student's t. The test is exact if the law is true. Under a wrong law it is not: data with a linear and a quadratic term look offset to the
+//! quadratic law. An offset is therefore reported only if it is significant with every law (fitted and default), except laws whose scatter, even with the constant, is significantly larger than that
+//! of the best law. The test level is 0.5 % over all loads. Declared errors widen the test, so a declared zero is not reported.
 //!
-//! A row at rest is one more row here, and the one that tells most.
+//! A row at rest is an ordinary row here, and the most informative one.
 
 use froude_fit::distribution::{f_upper, t_two_sided};
 use froude_records::campaign::{Source, SourceKind};
@@ -20,9 +20,9 @@ use crate::regression::{ModelFit, Settings, regress};
 use crate::selection::widened;
 use crate::source::models::{Drift, axes, polynomial, power_laws};
 
-/// Chance of reporting an offset that is not there, over all loads.
+/// False-alarm probability, over all loads.
 const LEVEL: f64 = 0.005;
-/// Chance at which a law scatters more than the best one does, and is not asked.
+/// Level of the F test that drops a law whose scatter exceeds that of the best one.
 const CONTRADICTED: f64 = 0.001;
 /// Rows up to which a reading at rest is asked for where an offset and another law look alike.
 const FEW_ROWS: usize = 12;
@@ -69,6 +69,12 @@ pub(crate) fn findings(
     loads.dedup();
     let level = LEVEL / loads.len().max(1) as f64;
     let of_load = |load: &String| {
+        // Readings at rest that are left out of σ are near zero.
+        if at_rest(data, load).is_none()
+            && at_rest(&Dataset { observed: IndexMap::new(), ..data.clone() }, load).is_some()
+        {
+            return None;
+        }
         let asked = models.iter().chain(&further);
         let asked = asked.filter(|m| m.law.responses.contains(load) && !m.law.in_logarithms());
         let of_all = constants(asked, load, data, settings)?;
@@ -86,7 +92,10 @@ fn constants<'a>(
 ) -> Option<Vec<Constant>> {
     let text = IndexMap::from([(load.to_owned(), "zero_of_the_load".to_owned())]);
     let constant = regress(&ForceLaw::formulas("constant", &text, data).ok()?, data, settings).ok()?;
+    let laws: Vec<&ModelFit> = laws.collect();
+    let is_plain = laws.iter().all(|law| law.whitened.is_none() && !law.is_weighted());
     let mut out = laws
+        .into_iter()
         .map(|law| {
             let wide = widened(law, &constant, load, data, settings)?;
             let (along, u) = (wide.along[(0, 0)], wide.covariance[(0, 0)].sqrt());
@@ -97,6 +106,10 @@ fn constants<'a>(
             Some(Constant { law: law.law.name.clone(), p, value, sigma, dof: component.dof })
         })
         .collect::<Option<Vec<Constant>>>()?;
+    // Weighted or whitened rows have a σ of their own.
+    if !is_plain {
+        return Some(out);
+    }
     let best = out.iter().min_by(|a, b| a.sigma.total_cmp(&b.sigma)).map(|c| (c.sigma, c.dof))?;
     let is_left = |c: &Constant| f_upper((c.sigma / best.0).powi(2), c.dof, best.1) > CONTRADICTED;
     out.retain(is_left);
@@ -114,8 +127,8 @@ fn of_constants(of_all: &[Constant], load: &str, level: f64, data: &Dataset) -> 
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(c.value), high.max(c.value)));
         let text = format!(
-            "{load}: beside every law ({}) there is a constant of {} ({}){}: the load cell was not zeroed, or the rig has friction{}, and intervals do not \
-             cover that. Subtract the reading at rest, declare its error ([[source.uncertainty]], quantity = \"{load}\", shared = \"campaign\"), or fit it (a law with a constant, [[identify.model]])",
+            "{load}: with every law ({}) a constant of {} is significant ({}){}: the load cell was not zeroed, or the rig has friction{}; the intervals do not \
+             cover this. Subtract the reading at rest, declare its error ([[source.uncertainty]], quantity = \"{load}\", shared = \"campaign\"), or fit it (a law with a constant, [[identify.model]])",
             of_all.iter().map(|c| c.law.as_str()).collect::<Vec<_>>().join(", "),
             between(low, high, &unit),
             p_equation(largest.p),
@@ -132,7 +145,7 @@ fn of_constants(of_all: &[Constant], load: &str, level: f64, data: &Dataset) -> 
         return None;
     }
     let text = format!(
-        "{load}: {} and none at rest do not tell a zero of the load cell from another law: beside {} a constant of {} {unit} is significant ({}), beside {} it is not ({}). Record the load at rest",
+        "{load}: {}, none at rest, cannot distinguish a load-cell offset from a different law: with {} a constant of {} {unit} is significant ({}), with {} it is not ({}). Record the load at rest",
         counted(data.rows, "row", "rows"),
         least.law,
         significant(least.value, 2),
@@ -152,7 +165,11 @@ fn between(low: f64, high: f64, unit: &str) -> String {
 fn at_rest(data: &Dataset, load: &str) -> Option<(f64, usize)> {
     let (speed, loads) = (data.values("speed")?, data.values(load)?);
     let moves = moving(speed, AT_REST);
-    let rest: Vec<f64> = (0..data.rows).filter(|i| !moves.contains(i)).map(|i| loads[i]).collect();
+    let mut is_rest = vec![true; data.rows];
+    for i in moves {
+        is_rest[i] = false;
+    }
+    let rest: Vec<f64> = (0..data.rows).filter(|&i| is_rest[i] && data.observes(load, i)).map(|i| loads[i]).collect();
     (!rest.is_empty()).then(|| (rest.iter().sum::<f64>() / rest.len() as f64, rest.len()))
 }
 

@@ -363,7 +363,7 @@ fn a_value_that_bounds_move_has_no_interval_of_another_value() {
 
 /// Inertia and drag cancel near 0.78 m/s of a body that slows down: these rows are small by the law, and in no other unit. Rows in gram-force are refused all the same.
 #[test]
-fn rows_in_which_inertia_and_drag_cancel_are_no_other_unit() {
+fn rows_in_which_inertia_and_drag_cancel_are_not_taken_for_another_unit() {
     let folder = tempfile::tempdir().unwrap();
     let law = "[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n[identify]\n[[identify.model]]\nname = \"free\"\nf_x = \"-A*v_x_dot - X_uu*v_x*abs(v_x)\"\n";
     std::fs::write(folder.path().join("c.toml"), format!("{HEAD}{law}")).unwrap();

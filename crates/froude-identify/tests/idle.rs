@@ -117,7 +117,7 @@ fn quiet_readings_at_rest_do_not_narrow_an_interval() {
 }
 
 #[test]
-fn an_empty_cell_that_says_something_is_refused_with_its_place() {
+fn an_empty_cell_of_a_needed_quantity_is_rejected_with_its_place() {
     let head = "v_x [m/s],v_y [m/s],f_x [N],f_y [N]\n0.1,0,-0.2,0\n";
     for (row, column) in [("0.2,,-0.4,-0.3", "v_y [m/s]"), ("0.2,0.1,,", "f_x [N]")] {
         let said = found(&format!("{head}{row}\n"), QUADRATIC).unwrap_err();

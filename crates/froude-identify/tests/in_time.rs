@@ -78,9 +78,9 @@ fn the_advice_about_rows_in_time_ends() {
     }
 }
 
-/// Every coefficient has an interval, which contains the truth in 93 % of 40 seeds and more, less three standard deviations.
+/// Every coefficient has an interval; over 40 seeds at least 93 % contain the truth, within three standard deviations.
 #[test]
-fn rows_in_time_have_intervals_that_hold() {
+fn serial_intervals_of_rows_in_time_contain_the_truth() {
     let mut held = [0; 7];
     for seed in 0..40 {
         let of = found(&planar(seed), "covariance = \"serial\"\n");

@@ -390,11 +390,11 @@ pub struct Identify {
     pub known: Vec<PriorSpec>,
     /// Covariance of the known coefficients, in their order (SI).
     pub known_covariance: Vec<Vec<f64>>,
-    /// The same of the priors; 0 between those of different estimates.
+    /// Covariance of the priors, in their order (SI); 0 between priors of different estimates.
     pub prior_covariance: Vec<Vec<f64>>,
     /// Units in which values of coefficients are written, for the laws to check.
     pub stated_units: Vec<StatedUnit>,
-    /// `classical`, `HC3`, `cluster` or `blocks`; `None` to choose by the data.
+    /// `classical`, `HC3`, `cluster` or `serial`; `None` to choose by the data.
     pub covariance: Option<String>,
     /// Whether rows are weighted by a variance that is fitted to the residuals (`weights = "fitted"`).
     pub fitted_weights: bool,

@@ -110,24 +110,39 @@ pub(crate) fn read_averaging(
     Ok(out)
 }
 
-/// Findings of logs, each cause once: what differs between two findings of one code in numbers alone is said of the first log.
+/// Findings of logs, without repeats: findings of one code that differ only in numbers are reported for the first log, with the number of other logs.
 fn once(of_logs: Vec<(PathBuf, Finding)>) -> Vec<Finding> {
-    let mut causes: IndexMap<(String, String), (Finding, usize)> = IndexMap::new();
+    let mut causes: IndexMap<(String, Vec<String>), (Finding, Vec<PathBuf>)> = IndexMap::new();
     for (path, finding) in of_logs {
         let text = finding.message.replace(&path.display().to_string(), "");
-        let words: String = text.chars().filter(|c| c.is_alphabetic()).collect();
-        causes.entry((finding.code.clone(), words)).or_insert((finding, 0)).1 += 1;
+        let is_number = |word: &str| word.trim_matches(|c: char| !c.is_ascii_digit()).parse::<f64>().is_ok();
+        let words = text.split_whitespace().filter(|word| word.starts_with(char::is_alphabetic) || !is_number(word));
+        let key = (finding.code.clone(), words.map(str::to_owned).collect());
+        let (_, paths) = causes.entry(key).or_insert((finding, Vec::new()));
+        if !paths.contains(&path) {
+            paths.push(path);
+        }
     }
-    let merged = causes.into_values().map(|(finding, count)| {
-        let others = match count {
-            1 => return finding,
-            2 => "; the same in another log".to_owned(),
-            _ => format!("; the same in {} other logs", count - 1),
+    let merged = causes.into_values().map(|(finding, paths)| {
+        let names: Vec<_> = paths.iter().skip(1).filter_map(|path| path.file_name()).collect();
+        let shown: Vec<_> = names.iter().take(MOST_LOGS_NAMED).map(|name| name.to_string_lossy()).collect();
+        let more = if names.len() > MOST_LOGS_NAMED {
+            format!(" and {} more", names.len() - MOST_LOGS_NAMED)
+        } else {
+            String::new()
+        };
+        let others = if names.is_empty() {
+            String::new()
+        } else {
+            format!("; likewise, with other numbers, {}{more}", shown.join(", "))
         };
         Finding { message: finding.message.clone() + &others, ..finding }
     });
     merged.collect()
 }
+
+/// Logs that are named beside the first one.
+const MOST_LOGS_NAMED: usize = 3;
 
 /// That the times of some logs are counted from their first samples, said once.
 pub(crate) fn of_a_calendar(logs: &[ImportedRun]) -> Option<Finding> {

@@ -12,8 +12,8 @@
 //! - Lifting runs tell k against runs with less weight, once the pulley's loss λ is known: from light weights both ways, or declared.
 //!
 //! Fitted by least squares over all driving runs: s·v_c = a₀ + a₁ sW + a₂ W + a₃ s with a₁ = 1/k, a₂ = λ/k, the declared loss as
-//! a prior of a₂. Friction has a value for each direction, a₀ ± a₃: a rail that is tilted, or wheels that run in, would else go into k (10 % of friction, 3 % of k).
-//! Runs without weight both ways tell a₃. Where they went one way and the weights the other way, a₃ is taken as zero, and a finding says so.
+//! a prior of a₂. Friction has a value for each direction, a₀ ± a₃: otherwise a tilted rail or wheels that run in would bias k (10 % of friction, 3 % of k).
+//! Runs without weight both ways tell a₃. If those ran in one direction and the weights in the other, a₃ is taken as zero, and a finding says so.
 //! Position-dependent friction cancels only if all runs cover the same positions.
 
 use froude_fit::budget::Uncertain;
@@ -84,9 +84,9 @@ pub struct Calibration {
     pub is_pulley_measured: bool,
     /// Friction of the carriage at the creeping speed, N: the mean of both directions.
     pub friction_n: f64,
-    /// By how much friction is larger along +y and smaller along −y, N; `None` where it was moved one way alone, or the runs do not tell.
+    /// By how much friction is larger along +y and smaller along −y, N; `None` if the runs went in one direction only or do not determine it.
     pub one_way_n: Option<Uncertain>,
-    /// Whether runs both ways do not tell friction by direction from the force per volt.
+    /// Whether there are runs in both directions that cannot separate friction by direction from the force per volt.
     pub is_one_way_missed: bool,
     /// Driving runs used.
     pub used: usize,
@@ -247,18 +247,20 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
 /// Place of the part of friction that changes its sign with the direction.
 const ONE_WAY: usize = 3;
 
-/// Least squares of friction, 1/k, λ/k and friction by direction, the declared loss as a prior that light weights both ways sharpen; beside it whether both directions are there and do not tell
-/// friction by direction.
+/// Least squares of friction, 1/k, λ/k and friction by direction, the declared loss as a prior that light weights both ways sharpen; also returns whether runs in both directions fail to
+/// determine friction by direction.
 fn fitted(driving: &[Reading], loss: Uncertain, force_per_volt_n: f64) -> Result<(Fit, bool), DragError> {
     let is_both_ways = [1.0, -1.0].iter().all(|s| driving.iter().any(|r| r.direction == *s));
     let by_direction = |is: bool| fitted_with(driving, loss, force_per_volt_n, is);
     if !is_both_ways {
         return Ok((by_direction(false)?, false));
     }
-    // Without runs to spare the mean of both ways is still better than nothing.
-    let fit = by_direction(true)?;
-    let is_told = fit.coefficients.iter().all(|c| c.value.is_some() && c.standard.is_some());
-    if is_told { Ok((fit, false)) } else { Ok((by_direction(false)?, true)) }
+    // With too few runs, fall back to the mean friction of both directions.
+    let is_told = |fit: &Fit| fit.coefficients.iter().all(|c| c.value.is_some() && c.standard.is_some());
+    match by_direction(true) {
+        Ok(fit) if is_told(&fit) => Ok((fit, false)),
+        _ => Ok((by_direction(false)?, true)),
+    }
 }
 
 fn fitted_with(
@@ -489,9 +491,9 @@ mod tests {
         assert_eq!((heavy.overhauled, heavy.used), (4, 12));
     }
 
-    /// Friction a tenth larger one way: runs without weight both ways tell it, and the force per volt is what it is. Half of the seeds of a calibration without that coefficient missed it.
+    /// Friction a tenth larger one way: runs without weight in both directions determine it, and the force per volt is unbiased.
     #[test]
-    fn friction_that_goes_by_direction_is_no_force_per_volt() {
+    fn direction_dependent_friction_does_not_bias_the_force_per_volt() {
         let scenario = Scenario { one_way: 0.1, ..Scenario::pinned(20.0) };
         let truth = scenario.force_per_volt_n();
         let setup = CalibrationSetup {

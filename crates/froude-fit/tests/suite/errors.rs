@@ -52,8 +52,7 @@ fn numbers_that_are_none() {
     refused(
         &problem,
         &Options::default(),
-        "weight of row 1 is -1; a weight is a relative 1/variance, not negative and finite (0 where the row is \
-         no observation)",
+        "weight of row 1 is -1; a weight is a relative 1/variance, finite and not negative (0 ignores the row)",
     );
 }
 

@@ -126,7 +126,7 @@ pub struct ModelFit {
     pub problem: fit::Problem,
     /// Columns of the other laws on its rows, where these are condensed.
     pub beside: Vec<(String, Mat<f64>)>,
-    /// What declared errors that rows share may do to its rows, a column each.
+    /// Effect of each declared shared error on its rows, one column per error.
     pub declared: Mat<f64>,
     /// The options it was fitted with.
     pub options: fit::Options,
@@ -191,17 +191,20 @@ impl ModelFit {
         fitted.status == fit::Status::Free && (value < low - rounding || value > high + rounding)
     }
 
-    /// The problem with a coefficient for every declared error that rows share: what it leaves is free of them.
+    /// The problem with one more coefficient per declared shared error, known to be zero within its standard uncertainty.
     #[must_use]
-    pub fn clear_of_declared(&self) -> fit::Problem {
+    pub fn clear_of_declared(&self) -> (fit::Problem, fit::Options) {
         let (n, p, k) = (self.problem.n_rows(), self.problem.n_coefficients(), self.declared.ncols());
+        let mut options = self.options.unconstrained();
         if k == 0 || self.declared.nrows() != n {
-            return self.problem.clone();
+            return (self.problem.clone(), options);
         }
+        options.equalities.iter_mut().for_each(|equality| equality.row.resize(p + k, 0.0));
+        options.priors.extend((0..k).map(|error| fit::Prior::new(p + error, 0.0, 1.0)));
         let entry = |i: usize, j: usize| if j < p { self.problem.design[(i, j)] } else { self.declared[(i, j - p)] };
         let mut names = self.problem.names.clone();
         names.extend((0..k).map(|error| format!("declared error {error}")));
-        fit::Problem { design: Mat::from_fn(n, p + k, entry), names, ..self.problem.clone() }
+        (fit::Problem { design: Mat::from_fn(n, p + k, entry), names, ..self.problem.clone() }, options)
     }
 
     /// Whether some rows weigh more than others.

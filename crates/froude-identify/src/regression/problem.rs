@@ -49,7 +49,9 @@ pub(crate) struct OffsetSetups {
 
 pub(crate) fn offset_setups(law: &ForceLaw, data: &Dataset, identify: &Identify) -> OffsetSetups {
     let both_loads = law.responses == ["f_x", "f_y"];
-    if identify.angle_offset != AngleOffset::Estimate || !both_loads {
+    // A row is turned with both of its loads.
+    let is_whole = law.responses.iter().all(|load| !data.observed.contains_key(load));
+    if identify.angle_offset != AngleOffset::Estimate || !both_loads || !is_whole {
         return OffsetSetups { names: Vec::new(), of_row: Vec::new() };
     }
     OffsetSetups { names: distinct(&data.setup), of_row: labels(&data.setup) }

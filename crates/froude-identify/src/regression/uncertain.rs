@@ -100,7 +100,10 @@ impl Uncertainty {
     }
 }
 
-/// The scatter of rows that are correlated in time within each run; `None` where they are too few to tell.
+/// Rows that a run has on average, below which runs are no series.
+const FEWEST_IN_RUN: usize = 4;
+
+/// The scatter of rows that are correlated in time within each run, load by load; `None` if there are too few rows, or if loads share a coefficient.
 pub(crate) fn serial(
     data: &Dataset,
     problem: &fit::Problem,
@@ -110,20 +113,25 @@ pub(crate) fn serial(
     let at = step(fitted);
     let (x, p, n) = (&problem.design, fitted.coefficients.len(), data.rows);
     let left = |i: usize| problem.response[i] - (0..p).map(|j| x[(i, j)] * at[j]).sum::<f64>();
-    let run = labels(&data.run);
+    // Runs of a row or two have no neighbours: the table is one series then.
+    let of_runs = labels(&data.run);
+    let runs = 1 + of_runs.iter().max().copied().unwrap_or(0);
+    let run = if n < FEWEST_IN_RUN * runs { vec![0; n] } else { of_runs };
+    let root = |i: usize| problem.weight.as_ref().map_or(1.0, |w| w[i]).sqrt();
     let (mut covariance, mut dof) = (Mat::zeros(p, p), vec![f64::INFINITY; p]);
     let (mut correlations, mut is_largest) = (Vec::new(), false);
     for (r, load) in problem.components.iter().enumerate() {
         let rows = problem.rows_of(r);
         let of_load: Vec<usize> = (0..p).filter(|&j| rows.iter().any(|&i| x[(i, j)] != 0.0)).collect();
-        // A coefficient of several loads has errors that nobody knows the correlation of.
+        // The correlation between loads is unknown, so a shared coefficient gets no interval.
         let is_shared = |j: &usize| (0..x.nrows()).any(|i| problem.component[i] != r && x[(i, *j)] != 0.0);
         if of_load.iter().any(is_shared) {
             return None;
         }
-        let design = Mat::from_fn(rows.len(), of_load.len(), |i, k| x[(rows[i], of_load[k])]);
-        let sensitivity = Mat::from_fn(of_load.len(), rows.len(), |k, i| fitted.sensitivity[(of_load[k], rows[i])]);
-        let residual: Vec<f64> = rows.iter().map(|&i| left(i)).collect();
+        let design = Mat::from_fn(rows.len(), of_load.len(), |i, k| root(rows[i]) * x[(rows[i], of_load[k])]);
+        let of_row = |k: usize, i: usize| fitted.sensitivity[(of_load[k], rows[i])] / root(rows[i]);
+        let sensitivity = Mat::from_fn(of_load.len(), rows.len(), of_row);
+        let residual: Vec<f64> = rows.iter().map(|&i| root(i) * left(i)).collect();
         let of_rows: Vec<usize> = rows.iter().map(|i| run[i % n]).collect();
         let found = fit::serial::serial(&design, &sensitivity, &residual, &of_rows, errors)?;
         for (a, &j) in of_load.iter().enumerate() {

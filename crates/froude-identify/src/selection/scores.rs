@@ -98,7 +98,8 @@ pub fn range_block(model: &ModelFit, data: &Dataset, block: &RangeBlock) -> Opti
     let mut rmse = Vec::new();
     let mut worst = Vec::new();
     for (r, name) in model.law.responses.iter().enumerate() {
-        let outside: Vec<usize> = (0..n).filter(|&i| !inside(i)).map(|i| r * n + i).collect();
+        let is_outside = |i: &usize| !inside(*i) && data.observes(name, *i);
+        let outside: Vec<usize> = (0..n).filter(is_outside).map(|i| r * n + i).collect();
         if outside.is_empty() {
             return None;
         }

@@ -39,10 +39,10 @@ pub(super) fn finding(campaign: &Campaign, reduced: &Reduced, setup: &Setup, mod
     let delay_s = setup.delay_s.value + lag_s;
     (p < ALARM && delay_s.is_finite()).then(|| {
         let text = format!(
-            "{}: the force is {} by {} s against the motion, beside the declared delay of {} ms ({}): drag and added mass are wrong by that. If a filter or a clock does it, write delay = {{ \
+            "{}: the force {} the motion by {} s beyond the declared delay of {} ms ({}): drag and added mass are biased by this. If a filter or a clock causes it, write delay = {{ \
              value = \"{} ms\", standard = \"{} ms\" }} in [source.accelerated_tow]",
             model.law.name,
-            if lag_s > 0.0 { "late" } else { "early" },
+            if lag_s > 0.0 { "lags" } else { "leads" },
             significant(lag_s.abs(), 2),
             plain(1e3 * setup.delay_s.value, 4),
             p_equation(p),

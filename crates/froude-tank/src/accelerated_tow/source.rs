@@ -10,10 +10,11 @@ use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::Derived;
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{ACCELERATED_TOW, Declared, ImportedRun, Role};
+use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::law::{asked, names};
-use super::reduce::{Body, Mounted, Reduced, Setup, reduce};
+use super::reduce::{Body, FEWEST_RUNS, Mounted, Reduced, Setup, reduce};
 use super::rows::{Rows, TowRun, Way, root_mean_square};
 use super::{lag, page, plan, simulate};
 use crate::logs::{self, Logs};
@@ -25,7 +26,7 @@ pub struct AcceleratedTow;
 const WHY: &str = "drag and added mass are wrong by its size or its sign where one is guessed";
 /// A row whose acceleration is below this part of the largest is one of constant speed.
 const STEADY: f64 = 0.05;
-/// Noise of the acceleration lowers C_A; this part of its standard uncertainty is reported.
+/// Noise in the acceleration lowers C_A; reported if by more than this fraction of its standard uncertainty.
 const ATTENUATED: f64 = 0.5;
 /// Masses by runs in air and by declaration further apart than so many standard uncertainties are reported.
 const APART: f64 = 2.5;
@@ -86,6 +87,7 @@ impl Method for AcceleratedTow {
                 .map(|error| Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}"))),
         );
         findings.extend(driven(&reduced, &setup));
+        findings.extend(few(&reduced));
         let laws = asked(campaign, source, &reduced.data, &setup.axis)?;
         let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial(reduced.of_rows.clone()) };
         if laws.len() > 1 {
@@ -282,25 +284,47 @@ fn driven(reduced: &Reduced, setup: &Setup) -> Option<Finding> {
     })
 }
 
+/// That what changes from run to run is in no interval, of one run or two.
+fn few(reduced: &Reduced) -> Option<Finding> {
+    let n = reduced.runs.len();
+    (n < FEWEST_RUNS).then(|| {
+        let text = format!(
+            "{}: what changes from run to run is not included in the intervals; {FEWEST_RUNS} runs show it, five show it well",
+            counted(n, "run", "runs")
+        );
+        Finding::new(Severity::Warning, "few-runs", text)
+    })
+}
+
 /// What the runs show; `relative` is the standard uncertainty of C_A as part of it.
 fn of_runs(reduced: &Reduced, setup: &Setup, spec: &AcceleratedTowSpec, relative: f64) -> Vec<Finding> {
     let mut out = Vec::new();
+    // The same noise stands in m a; a mass weighed by it comes out too small alike.
+    let factor = |body: usize| {
+        let (mass, added_kg) = (reduced.masses[body], reduced.added_kg[body]);
+        if mass.is_weighed || added_kg <= 0.0 { 1.0 } else { (mass.value_kg + added_kg) / added_kg }
+    };
+    let squares = |rows: &Rows| {
+        let n = rows.acceleration_m_s2.len() as f64;
+        [rows.noise_m_s2.powi(2), root_mean_square(&rows.acceleration_m_s2).powi(2)].map(|square| n * square)
+    };
     let part_of = |(id, body, rows): &(String, usize, Rows)| {
-        let noise = (rows.noise_m_s2 / root_mean_square(&rows.acceleration_m_s2)).powi(2);
-        let (mass, added_kg) = (reduced.masses[*body], reduced.added_kg[*body]);
-        // The same noise stands in m a; a mass weighed by it comes out too small alike.
-        let part =
-            if mass.is_weighed || added_kg <= 0.0 { noise } else { noise * (mass.value_kg + added_kg) / added_kg };
-        (id.clone(), noise, part)
+        let [noise, all] = squares(rows);
+        (id.clone(), noise / all, factor(*body) * noise / all)
     };
     let parts: Vec<(String, f64, f64)> = reduced.runs.iter().map(part_of).collect();
-    let mean = parts.iter().map(|(.., part)| part).sum::<f64>() / parts.len() as f64;
+    // All runs tell one C_A.
+    let sums = reduced.runs.iter().fold([0.0, 0.0], |[noise, all], (_, body, rows)| {
+        let own = squares(rows);
+        [noise + factor(*body) * own[0], all + own[1]]
+    });
+    let mean = sums[0] / sums[1];
     if let Some((id, noise, part)) =
         parts.into_iter().max_by(|a, b| a.2.total_cmp(&b.2)).filter(|_| mean > ATTENUATED * relative)
     {
         let text = format!(
-            "the noise of the acceleration makes C_A{} some {:.2} % too small, which is more than half of its standard uncertainty; most in run {id:?} ({:.2} %, a noise of {:.2} % in the mean \
-             square): write a longer window than {} s in [source.accelerated_tow], or take a finer encoder",
+            "noise in the acceleration makes C_A{} about {:.2} % too small, more than half of its standard uncertainty; the worst run is {id:?} ({:.2} %, with noise of {:.2} % in the mean \
+             square): set a window longer than {} s in [source.accelerated_tow], or use a finer encoder",
             setup.axis,
             1e2 * mean,
             1e2 * part,

@@ -2,8 +2,8 @@
 //!
 //! Least squares follow one such number wherever it leads, so it is refused and not weighed: the motion and the loads of a test are continuous, and a set of runs is of one rig.
 //!
-//! - **A sample** lies further from all others of its channel than a hundred times their range, and at most three do. Channels of few values (a mark, a command) are left alone.
-//! - **A log** has steps of time, or in a motion or a load a range, three hundred times the largest of the others. A smaller range is a quiet run.
+//! - **A sample** lies further from all others of its channel than a hundred times their range, and at most three do, with others before and after. Channels of few values (a mark, a command) are left alone.
+//! - **A log** has steps of time three hundred times the longest of the others. Ranges of loads and motions are not compared: one run may move among many at rest.
 
 use froude_identify::method::MethodError;
 use froude_records::number::{plain, significant};
@@ -17,9 +17,9 @@ const FEW: usize = 3;
 const FEWEST: usize = 20;
 /// Runs that are needed to say what is usual.
 const FEWEST_RUNS: usize = 3;
-/// A log's size over the largest of the others: a prefix is a thousand.
+/// Its steps over the longest of the others: a prefix is a thousand.
 const TIMES: f64 = 300.0;
-/// Units of motions and loads; a temperature may drift in one run alone.
+/// Units of motions and loads; a trigger may be of two samples.
 const OF_TEST: [&str; 6] = ["m", "rad", "N", "N m", "m/s", "rad/s"];
 
 /// Refuses a sample that no other sample of its channel comes near; what a mark leaves out is not asked.
@@ -30,16 +30,22 @@ const OF_TEST: [&str; 6] = ["m", "rad", "N", "N m", "m/s", "rad/s"];
 pub fn check(run: &ImportedRun) -> Result<(), MethodError> {
     let times = &run.log.time_s;
     let is_marked = |i: usize| times.get(i).is_some_and(|t| run.declared.marks.iter().any(|m| m.touches(*t, *t)));
-    let has_rows = |channel: &&Channel| channel.values.len() == times.len();
+    let has_rows =
+        |channel: &&Channel| channel.values.len() == times.len() && OF_TEST.contains(&channel.meaning.unit.as_str());
     for (name, channel) in run.log.channels.iter().filter(|(_, channel)| has_rows(channel)) {
         let mut order: Vec<usize> = (0..channel.values.len()).filter(|i| !is_marked(*i)).collect();
         let value = |i: &usize| channel.values[*i];
         order.sort_by(|a, b| value(a).total_cmp(&value(b)));
         let Some((row, low, high)) = wild(&order.iter().map(value).collect::<Vec<_>>()) else { continue };
         let (row, unit) = (order[row], &channel.meaning.unit);
+        // What a log begins or ends with may be at rest.
+        let is_usual = |i: usize| (low..=high).contains(&channel.values[i]);
+        if !(0..row).any(is_usual) || !(row + 1..times.len()).any(is_usual) {
+            continue;
+        }
         let what = format!(
-            "{name} is {} {unit} at {} s, and between {} and {} {unit} at all other times: no load and no motion jumps so far and back; correct it, or leave it out \
-             ([[marks]] from and to in {})",
+            "{name} is {} {unit} at {} s, but otherwise lies between {} and {} {unit}: no load or motion jumps that far and back; correct the sample, or exclude it \
+             ([[marks]] with from and to in {})",
             significant(channel.values[row], 4),
             plain(times[row], 5),
             significant(low, 3),
@@ -70,7 +76,7 @@ fn wild(sorted: &[f64]) -> Option<(usize, f64, f64)> {
     })
 }
 
-/// Refuses a log whose steps of time, or whose range of a channel, are far larger than those of the other logs.
+/// Refuses a log whose steps of time are far longer than those of the other logs.
 ///
 /// # Errors
 ///
@@ -80,33 +86,10 @@ pub fn compare(runs: &[ImportedRun]) -> Result<(), MethodError> {
         let times = &run.log.time_s;
         Some((times.last()? - times.first()?) / (times.len() as f64 - 1.0).max(1.0)).filter(|step| *step > 0.0)
     };
-    one_of(runs, "the step of its times", "s", &step_s)?;
-    let mut names: Vec<&String> = runs.iter().flat_map(|run| run.log.channels.keys()).collect();
-    names.sort();
-    names.dedup();
-    for name in names {
-        let is_of_test = |unit: &str| OF_TEST.contains(&unit);
-        let measured = |run: &ImportedRun| {
-            let channel = run.log.channels.get(name)?;
-            let [low, high] =
-                channel.values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(*x), h.max(*x)]);
-            is_of_test(&channel.meaning.unit).then_some(high - low)
-        };
-        let unit = runs
-            .iter()
-            .find_map(|run| run.log.channels.get(name))
-            .map_or_else(String::new, |c| c.meaning.unit.to_string());
-        one_of(runs, &format!("the range of {name}"), &unit, &measured)?;
-    }
-    Ok(())
+    one_of(runs, &step_s)
 }
 
-fn one_of(
-    runs: &[ImportedRun],
-    what: &str,
-    unit: &str,
-    size: &dyn Fn(&ImportedRun) -> Option<f64>,
-) -> Result<(), MethodError> {
+fn one_of(runs: &[ImportedRun], size: &dyn Fn(&ImportedRun) -> Option<f64>) -> Result<(), MethodError> {
     let sizes: Vec<(usize, f64)> = runs.iter().enumerate().filter_map(|(k, run)| Some((k, size(run)?))).collect();
     if sizes.len() < FEWEST_RUNS {
         return Ok(());
@@ -116,7 +99,7 @@ fn one_of(
         let largest = others.fold(0.0, f64::max);
         if largest > 0.0 && *own > TIMES * largest {
             let text = format!(
-                "{what} is {} {unit}, and {} {unit} at most in the other {} logs: one log in another unit decides every fit; correct the unit in {}, or take the log out of the folder",
+                "the step of its times is {} s, but at most {} s in the other {} logs: a log in the wrong unit would dominate every fit; correct the unit in {}, or remove the log from the folder",
                 significant(*own, 3),
                 significant(largest, 3),
                 sizes.len() - 1,

@@ -14,8 +14,8 @@ use crate::motion::{Cycles, Motion};
 const STEADY: f64 = 0.02;
 /// A period within this part of a whole number is whole.
 const WHOLE: f64 = 0.02;
-/// Chance of doubting a declaration that is right, over all of them.
-const ALARM: f64 = 0.004;
+/// False-alarm probability, over all declarations.
+const ALARM: f64 = 0.0065;
 /// Of five independent cycles a fifth of the variance repeats; more than this is a misfit.
 const REPEATED: f64 = 0.6;
 
@@ -132,8 +132,10 @@ pub(crate) fn contradicted(fit: &JointFit, declared: &[(String, Uncertain)], che
             0.0 => combined.standard,
             standard => (standard * standard - combined.standard * combined.standard).max(0.0).sqrt(),
         };
-        // Few runs know their scatter, and so the shift, poorly.
-        let p = t_two_sided((found - known.value).abs() / shift, combined.dof);
+        // With few runs the scatter, and hence the shift, is poorly known.
+        // The shift is that of data of u_d = u_p c/√(u_p² − c²); ν = ν_c (u_p/u_d)⁴.
+        let by_data = if known.standard > 0.0 { (shift / combined.standard).powi(4) } else { 1.0 };
+        let p = t_two_sided((found - known.value).abs() / shift, combined.dof * by_data);
         (shift > 0.0 && p * (declared.len() as f64) < ALARM).then(|| {
             warning(
                 "declared-contradicted",
