@@ -281,8 +281,8 @@ fn three_runs_include_what_changes_from_run_to_run() {
 fn with_drag(log: &std::path::Path, part: f64) {
     let rows = std::fs::read_to_string(log).unwrap();
     let head: Vec<&str> = rows.lines().next().unwrap().split(',').collect();
-    let column = |name: &str| head.iter().position(|h| h.contains(name)).unwrap();
-    let (force, position) = (column("force"), column("position"));
+    let column = |name: &str| head.iter().position(|h| *h == name).unwrap();
+    let (force, position) = (column("force"), column("x"));
     let cells: Vec<Vec<f64>> =
         rows.lines().skip(1).map(|l| l.split(',').map(|c| c.parse().unwrap()).collect()).collect();
     let wide = 20;

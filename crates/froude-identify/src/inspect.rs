@@ -8,7 +8,7 @@ use froude_records::estimate::Estimate;
 use froude_records::finding::Finding;
 use froude_records::json::read_estimates;
 use froude_records::run::{Meaning, is_servo_log};
-use froude_records::table::{ColumnData, Table, read_table};
+use froude_records::table::{ColumnData, Table, read_table, read_table_with_blanks};
 use froude_records::text::counted;
 
 use crate::error::IdentifyError;
@@ -138,7 +138,7 @@ impl Inspection {
 ///
 /// Whatever the reader finds.
 pub fn table(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, IdentifyError> {
-    let table = read_table(path, sidecar)?;
+    let table = read_table_with_blanks(path, sidecar)?;
     let campaign = Campaign::of_table(path, sidecar.map(Path::to_owned));
     let reduced = reduce(&campaign, &campaign.sources[0])?;
     let findings = doubts(&campaign, &campaign.sources[0], &reduced);
@@ -288,7 +288,7 @@ fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Ve
                 // What a fit would refuse is refused here, before tank time is spent on it.
                 laws(campaign, source, &reduced.data)?;
                 check_budget(source, &reduced.data)?;
-                out.columns = columns(&read_table(table, source.sidecar.as_deref())?);
+                out.columns = columns(&read_table_with_blanks(table, source.sidecar.as_deref())?);
                 (out.rows, out.kept) = (Some(reduced.n_read), Some(reduced.data.rows));
                 findings = doubts(campaign, source, &reduced);
             }

@@ -54,6 +54,8 @@ pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> (Vec<(String, u
                 && is_beyond_growth(model, data.rows, r, *found)
         };
         let of_all = outlying(model, data.rows, r).filter(is_even);
+        let by =
+            if of_all.is_some() { "of the other rows" } else { "of rows of such a load (the scatter grows with it)" };
         let Some(found) = of_all.or_else(|| by_its_load(model, data, r)) else { continue };
         let Outlying { row, residual, t } = found;
         loads.push((component.clone(), row));
@@ -63,8 +65,8 @@ pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> (Vec<(String, u
             Severity::Warning,
             "outlying-row",
             format!(
-                "{}, {component}: {}{at} lies {}{unit} from the law, {t:.1} standard deviations of the other rows; it is used. Look at what was \
-                 recorded, and leave it out (`keep`) for a reason that you can state",
+                "{}, {component}: {}{at} lies {}{unit} from the law, {t:.1} standard deviations {by}; it is used. Look at what was \
+                 recorded: leave it out (`keep`) for a reason that you can state, or state the result with and without it",
                 model.law.name,
                 data.row_name(row),
                 significant(residual, 3),

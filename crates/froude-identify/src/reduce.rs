@@ -77,8 +77,8 @@ pub fn reduce_table(
         data = data.subset(&unique);
         keep = unique.iter().map(|&i| keep[i]).collect();
     }
-    // Computed loads are zero by symmetry, and errors in variables know every row.
-    if source.kind != SourceKind::Cfd && !campaign.identify.errors_in_variables {
+    // Computed loads are zero by symmetry.
+    if source.kind != SourceKind::Cfd {
         findings.extend(idle::mark(&mut data));
     }
     // The findings about the observations concern those that are fitted.

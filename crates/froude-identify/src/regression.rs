@@ -151,13 +151,20 @@ fn errors_in_variables(
     let place = || format!("source {:?}, model {}", settings.source_name, law.name);
     let has_bounds = options.bounds.iter().any(|b| b.lower.is_finite() || b.upper.is_finite());
     let has_more = !options.inequalities.is_empty() || !options.priors.is_empty() || !options.fixed.is_empty();
-    let is_unobserved = law.responses.iter().any(|load| data.observed.contains_key(load));
-    let has_other = options.loss != fit::Loss::Squares || options.covariance != fit::CovarianceKind::Classical;
-    if has_bounds || has_more || has_other || !options.excluded.is_empty() || is_uneven(problem) || is_unobserved {
+    if let Some(load) = law.responses.iter().find(|load| data.observed.contains_key(*load)) {
         return Err(IdentifyError::Campaign {
             place: place(),
-            what: "errors_in_variables goes with neither bounds, priors, known, fixed or excluded coefficients, dissipative, huber, HC3, cluster, weights, \
-                   std columns, nor empty cells; leave one of them out. Where the terms with the errors have coefficients that are held, leave out errors_in_variables: their errors are scatter then, \
+            what: format!(
+                "errors_in_variables needs loads that were measured in every row, and {load} was not: make a source of each axis that was tested by itself (`keep`)"
+            ),
+        });
+    }
+    let has_other = options.loss != fit::Loss::Squares || options.covariance != fit::CovarianceKind::Classical;
+    if has_bounds || has_more || has_other || !options.excluded.is_empty() || is_uneven(problem) {
+        return Err(IdentifyError::Campaign {
+            place: place(),
+            what: "errors_in_variables goes with neither bounds, priors, known, fixed or excluded coefficients, dissipative, huber, HC3, cluster, weights, nor \
+                   std columns; leave one of them out. Where the terms with the errors have coefficients that are held, leave out errors_in_variables: their errors are scatter then, \
                    and move no other coefficient"
                 .to_owned(),
         });

@@ -72,7 +72,12 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, us
         }
         let load = &model.law.responses[r];
         let mut found = Vec::new();
-        found.extend(serial(model, data, load, residuals, loads));
+        let alike = serial(model, data, load, residuals, loads);
+        // The others take rows for independent, and mean nothing where they are not.
+        if let Some(alike) = alike {
+            out.push((load.clone(), alike));
+            continue;
+        }
         // One row that lies apart is that, and no scatter that grows: the others are asked.
         let apart = outlying.iter().find(|(of, _)| of == load).map(|(_, row)| *row);
         found.extend(uneven(model, data, load, (&without(residuals, apart, n), predicted), loads));
@@ -116,13 +121,14 @@ pub(crate) fn declares_groups(model: &ModelFit) -> bool {
 
 /// The same where the fit does not hold them.
 fn has_declared_groups(model: &ModelFit) -> bool {
-    model.whitened.is_none() && declares_groups(model)
+    model.whitened.is_none() && declares_groups(model) && model.declared.ncols() == 0
 }
 
 /// Residuals that are alike from one row to the next.
 fn serial(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, loads: f64) -> Option<Finding> {
-    // Clusters and rows in time hold that already; under HC3 errors are not of one size, which the test assumes.
-    if !matches!(model.scatter, Scatter::Classical) || model.is_in_time(data) || has_declared_groups(model) {
+    // Clusters and rows in time hold that already. HC3 does not: there errors are not of one size, which the test assumes, and only what is plain is reported.
+    let is_asked = matches!(model.scatter, Scatter::Classical | Scatter::Hc3);
+    if !is_asked || model.is_in_time(data) || has_declared_groups(model) {
         return None;
     }
     let (statistic, p) = if data.sample.is_some() {
@@ -134,7 +140,8 @@ fn serial(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
         let statistic = Form::Steps.statistic(&residuals.residual)?;
         (statistic, 1.0 - above(Form::Steps, residuals.q.as_ref(), statistic)?)
     };
-    (p < ALARM_OF_FEW / loads).then(|| {
+    let level = if matches!(model.scatter, Scatter::Hc3) { 0.1 * ALARM_OF_FEW } else { ALARM_OF_FEW };
+    (p < level / loads).then(|| {
         let text = format!(
             "{}, {load}: residuals of successive rows are alike (Durbin–Watson {statistic:.2}, 2 where independent, {}): intervals assume \
              independent rows and are too narrow. {}; a law that follows the drift removes it",
@@ -255,11 +262,16 @@ fn offset(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
             let text = format!(
                 "{}, {load}: offsets from {by} to {by} are larger than the scatter within (F({}, {}) = {f:.1}, {}), and no error of a {by} is \
                  declared: intervals take its rows for independent and are too narrow. Declare it ([[source.uncertainty]], shared = \"{shared}\"), estimate it \
-                 (group = \"{by}\", group_offset = \"estimate\"), or take each {by} for one observation (group = \"{by}\", covariance = \"cluster\")",
+                 (group = \"{by}\", group_offset = \"estimate\"), or {}",
                 model.law.name,
                 dof[0],
                 dof[1].round(),
-                p_equation(p)
+                p_equation(p),
+                if count >= FEWEST_CLUSTERS {
+                    format!("take each {by} for one observation (group = \"{by}\", covariance = \"cluster\")")
+                } else {
+                    format!("record more of them: {count} are too few for covariance = \"cluster\"")
+                }
             );
             return Some(Finding::new(Severity::Warning, "setup-offset", text));
         }

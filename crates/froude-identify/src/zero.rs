@@ -16,7 +16,8 @@ use indexmap::IndexMap;
 use crate::dataset::{Dataset, unit_text};
 use crate::law::ForceLaw;
 use crate::lint::motion::{AT_REST, moving};
-use crate::regression::{ModelFit, Settings, regress};
+use crate::motions;
+use crate::regression::{ModelFit, Scatter, Settings, regress};
 use crate::selection::widened;
 use crate::source::models::{Drift, axes, polynomial, power_laws};
 
@@ -55,7 +56,9 @@ pub(crate) fn findings(
     data: &Dataset,
     settings: Settings<'_>,
 ) -> Vec<Finding> {
-    if further.is_empty() {
+    // Where rows follow each other in time, a constant beside rows as if independent is no sign of an offset.
+    let is_serial = matches!(settings.scatter, Scatter::Serial(_));
+    if further.is_empty() || (motions::is_in_time(data) && !is_serial) {
         return Vec::new();
     }
     let is_same = |law: &ForceLaw, of: &ForceLaw| law.name == of.name && law.responses == of.responses;
@@ -128,7 +131,7 @@ fn of_constants(of_all: &[Constant], load: &str, level: f64, data: &Dataset) -> 
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(c.value), high.max(c.value)));
         let text = format!(
             "{load}: with every law ({}) a constant of {} is significant ({}){}: the load cell was not zeroed, or the rig has friction{}; the intervals do not \
-             cover this. Subtract the reading at rest, declare its error ([[source.uncertainty]], quantity = \"{load}\", shared = \"campaign\"), or fit it (a law with a constant, [[identify.model]])",
+             cover this. {}, or give every law a constant ([[identify.model]] with {load} = \"F_0 + …\")",
             of_all.iter().map(|c| c.law.as_str()).collect::<Vec<_>>().join(", "),
             between(low, high, &unit),
             p_equation(largest.p),
@@ -138,6 +141,11 @@ fn of_constants(of_all: &[Constant], load: &str, level: f64, data: &Dataset) -> 
                 counted(n, "row", "rows")
             )),
             if load == "f_x" { "" } else { ", or the body is not in line" },
+            if rest.is_some() {
+                format!("Subtract the reading at rest (column `zero_before_{load}`)")
+            } else {
+                format!("Record the load at rest and subtract it (column `zero_before_{load}`)")
+            },
         );
         return Some(Finding::new(Severity::Warning, "load-at-rest", text));
     }

@@ -112,37 +112,36 @@ pub(crate) fn read_averaging(
 
 /// Findings of logs, without repeats: findings of one code that differ only in numbers are reported for the first log, with the number of other logs.
 fn once(of_logs: Vec<(PathBuf, Finding)>) -> Vec<Finding> {
-    let mut causes: IndexMap<(String, Vec<String>), (Finding, Vec<PathBuf>)> = IndexMap::new();
+    let mut causes: IndexMap<(String, Vec<String>), Vec<(PathBuf, Finding)>> = IndexMap::new();
     for (path, finding) in of_logs {
         let text = finding.message.replace(&path.display().to_string(), "");
         let is_number = |word: &str| word.trim_matches(|c: char| !c.is_ascii_digit()).parse::<f64>().is_ok();
         let words = text.split_whitespace().filter(|word| word.starts_with(char::is_alphabetic) || !is_number(word));
         let key = (finding.code.clone(), words.map(str::to_owned).collect());
-        let (_, paths) = causes.entry(key).or_insert((finding, Vec::new()));
-        if !paths.contains(&path) {
-            paths.push(path);
-        }
+        causes.entry(key).or_default().push((path, finding));
     }
-    let merged = causes.into_values().map(|(finding, paths)| {
-        let names: Vec<_> = paths.iter().skip(1).filter_map(|path| path.file_name()).collect();
-        let shown: Vec<_> = names.iter().take(MOST_LOGS_NAMED).map(|name| name.to_string_lossy()).collect();
-        let more = if names.len() > MOST_LOGS_NAMED {
-            format!(" and {} more", names.len() - MOST_LOGS_NAMED)
-        } else {
-            String::new()
+    let merged = causes.into_values().flat_map(|of_cause| {
+        let mut names: Vec<_> =
+            of_cause.iter().filter_map(|(path, _)| path.file_name().map(std::ffi::OsStr::to_owned)).collect();
+        names.dedup();
+        if names.len() < MANY_LOGS {
+            return of_cause.into_iter().map(|(_, finding)| finding).collect::<Vec<_>>();
+        }
+        let shown: Vec<_> = names[1..MANY_LOGS].iter().map(|name| name.to_string_lossy()).collect();
+        let more =
+            if names.len() > MANY_LOGS { format!(" and {} more", names.len() - MANY_LOGS) } else { String::new() };
+        let first = of_cause.into_iter().next().map(|(_, finding)| finding);
+        let add = |f: Finding| Finding {
+            message: format!("{}; likewise, with other numbers, {}{more}", f.message, shown.join(", ")),
+            ..f
         };
-        let others = if names.is_empty() {
-            String::new()
-        } else {
-            format!("; likewise, with other numbers, {}{more}", shown.join(", "))
-        };
-        Finding { message: finding.message.clone() + &others, ..finding }
+        first.map(add).into_iter().collect()
     });
     merged.collect()
 }
 
-/// Logs that are named beside the first one.
-const MOST_LOGS_NAMED: usize = 3;
+/// Logs from which on one finding stands for all; so many are named.
+const MANY_LOGS: usize = 4;
 
 /// That the times of some logs are counted from their first samples, said once.
 pub(crate) fn of_a_calendar(logs: &[ImportedRun]) -> Option<Finding> {
