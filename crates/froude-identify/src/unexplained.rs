@@ -28,3 +28,22 @@ pub fn unexplained(estimate: &Estimate) -> Vec<Finding> {
     })
     .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recommended_law_that_leaves_most_of_a_load_is_reported() {
+        let mut estimate = Estimate { recommended: true, ..Estimate::default() };
+        let codes = |estimate: &Estimate| unexplained(estimate).into_iter().map(|f| f.code).collect::<Vec<_>>();
+        for (left, code) in
+            [(0.03, None), (0.49, None), (0.64, Some("mostly-unexplained")), (1.2, Some("no-better-than-nothing"))]
+        {
+            estimate.diagnostics.relative_residual.insert("f_x".to_owned(), left);
+            assert_eq!(codes(&estimate), code.into_iter().map(str::to_owned).collect::<Vec<_>>(), "{left}");
+        }
+        estimate.recommended = false;
+        assert!(codes(&estimate).is_empty());
+    }
+}

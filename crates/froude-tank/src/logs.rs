@@ -332,3 +332,26 @@ pub(crate) fn distinct(findings: Vec<Finding>) -> Vec<Finding> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 36 logs whose steps are coarser than their noise are one finding; what is of another channel, or of few logs, stands by itself.
+    #[test]
+    fn one_cause_in_many_logs_is_one_finding() {
+        let of = |k: usize, channel: &str| {
+            let path = PathBuf::from(format!("runs/{k}.csv"));
+            let text = format!("{}: {channel} is read in steps of 0.{k} N", path.display());
+            (path, Finding::new(Severity::Warning, "quantised", text))
+        };
+        let many = (1..=36).map(|k| of(k, "f_1")).chain((1..=2).map(|k| of(k, "f_2")));
+        let found = once(many.collect());
+        assert_eq!(found.len(), 3, "{found:?}");
+        assert_eq!(
+            found[0].message,
+            "runs/1.csv: f_1 is read in steps of 0.1 N; likewise, with other numbers, 2.csv, 3.csv, 4.csv and 32 more"
+        );
+        assert!(!found[1].message.contains("likewise") && found[2].message.starts_with("runs/2.csv: f_2"), "{found:?}");
+    }
+}

@@ -149,7 +149,7 @@ fn an_error_of_the_inertia_is_one_of_lambda_1() {
     assert!((value(&fit, "lambda_3") / LAMBDAS[2] - 1.0).abs() < 1e-6);
 }
 
-/// Runs in air find the inertia, whatever was declared as exact; a declared one that is 10 % off, eight standard uncertainties of theirs, is said, and one that is right is not.
+/// Runs in air find the inertia, whatever was declared as exact; a declared one that is 20 % off is said, 24 standard uncertainties of theirs with two degrees of freedom, and one that is right is not.
 #[test]
 fn an_exact_inertia_that_runs_in_air_contradict_is_said() {
     let mut planned = gait(7.0);
@@ -164,8 +164,8 @@ fn an_exact_inertia_that_runs_in_air_contradict_is_said() {
         all.into_iter().filter(|f| f.code == "declared-contradicted").map(|f| f.message).collect::<Vec<_>>()
     };
     assert_eq!(contradicted(INERTIA), Vec::<String>::new());
-    let text = contradicted(1.1 * INERTIA);
-    assert!(text.len() == 1 && text[0].contains("inertia is declared as 0.00374"), "{text:?}");
+    let text = contradicted(1.2 * INERTIA);
+    assert!(text.len() == 1 && text[0].contains("inertia is declared as 0.00408"), "{text:?}");
 }
 
 /// Turning the axis round changes no coefficient: both angle and torque change their sign.
