@@ -24,6 +24,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number::p_equation;
 
 use crate::dataset::{Dataset, distinct, labels};
+use crate::motions;
 use crate::regression::{ModelFit, Scatter};
 
 /// Chance that a code warns of a sound table, over all loads of the law.
@@ -73,9 +74,11 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, us
         let load = &model.law.responses[r];
         let mut found = Vec::new();
         let alike = serial(model, data, load, residuals, loads);
-        // The others take rows for independent, and mean nothing where they are not.
-        if let Some(alike) = alike {
-            out.push((load.clone(), alike));
+        let is_series = alike.is_some() && motions::is_in_time(data);
+        found.extend(alike);
+        // The others take rows for independent, and mean nothing where these follow each other in time. Elsewhere an offset of a setup may be what makes rows alike.
+        if is_series {
+            out.extend(found.into_iter().map(|finding| (load.clone(), finding)));
             continue;
         }
         // One row that lies apart is that, and no scatter that grows: the others are asked.
