@@ -527,15 +527,11 @@ fn parquet_and_mcap_are_read_as_csv_is() {
             Column { name: name.to_owned(), data: ColumnData::Number { dimension: unit.dimension, unit, si } }
         };
         let path = parquet.path().join(format!("runs/t{u}.parquet"));
-        let table = Table {
-            path: path.clone(),
-            columns: vec![column("t", "s", 0), column("u", "m/s", 1), column("fx", "N", 2)],
-            n_rows: rows.len(),
-            line_of_row: (1..=rows.len()).collect(),
-            sidecar: None,
-            left_out: Vec::new(),
-            blank: Vec::new(),
-        };
+        let table = Table::of(
+            path.clone(),
+            vec![column("t", "s", 0), column("u", "m/s", 1), column("fx", "N", 2)],
+            (1..=rows.len()).collect(),
+        );
         prepare_table(&table, &path).unwrap().take_place().unwrap();
         let sidecar = sidecar()
             .replace("\nt = ", "\n\"t [s]\" = ")

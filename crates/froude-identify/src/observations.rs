@@ -93,15 +93,7 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, IdentifyEr
         ColumnData::Number { si, .. } => si.iter().all(|x| x.is_finite()),
         ColumnData::Text(_) => true,
     });
-    Ok(Table {
-        path: file_name(&source.name).into(),
-        columns,
-        n_rows: data.rows,
-        line_of_row: data.line.clone(),
-        sidecar: None,
-        left_out: Vec::new(),
-        blank,
-    })
+    Ok(Table { blank, n_rows: data.rows, ..Table::of(file_name(&source.name).into(), columns, data.line.clone()) })
 }
 
 /// `observations-` and the source's name.

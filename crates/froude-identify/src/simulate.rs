@@ -230,15 +230,7 @@ pub fn table(data: &Dataset, source: &Source) -> Result<Table, IdentifyError> {
             });
         }
     }
-    Ok(Table {
-        path,
-        columns,
-        n_rows: data.rows,
-        line_of_row: data.line.clone(),
-        sidecar: None,
-        left_out: Vec::new(),
-        blank: Vec::new(),
-    })
+    Ok(Table { n_rows: data.rows, ..Table::of(path, columns, data.line.clone()) })
 }
 
 /// A unit that is written here; one that did not parse would be written as SI.

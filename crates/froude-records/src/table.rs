@@ -65,6 +65,13 @@ impl Column {
 }
 
 impl Table {
+    /// A table that was made and not read: `line_of_row` has an entry for each row.
+    #[must_use]
+    pub const fn of(path: PathBuf, columns: Vec<Column>, line_of_row: Vec<usize>) -> Self {
+        let n_rows = line_of_row.len();
+        Self { path, columns, n_rows, line_of_row, sidecar: None, left_out: Vec::new(), blank: Vec::new() }
+    }
+
     /// Numbers of a column in SI, when it has the dimension asked for.
     ///
     /// # Errors

@@ -142,15 +142,7 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         for name in ["t.csv", "t.parquet"] {
             let path = folder.path().join(name);
-            let table = Table {
-                path: path.clone(),
-                columns: columns.clone(),
-                n_rows: rows.len(),
-                line_of_row: (2..2 + rows.len()).collect(),
-                sidecar: None,
-                left_out: Vec::new(),
-                blank: Vec::new(),
-            };
+            let table = Table::of(path.clone(), columns.clone(), (2..2 + rows.len()).collect());
             if name == "t.csv" { write_csv(&table, &path).unwrap() } else { write_parquet(&table, &path).unwrap() }
             let read = read_table(&path, None).unwrap();
             prop_assert_eq!(&read.columns, &columns);

@@ -108,18 +108,6 @@ fn a_negative_zero_is_written_as_zero() {
     let path = folder.path().join("t.csv");
     let data = ColumnData::Number { unit: Unit::one(), dimension: Dimension::ONE, si: vec![-0.0, -1.5] };
     let columns = vec![Column { name: "x".to_owned(), data }];
-    write_csv(
-        &Table {
-            path: path.clone(),
-            columns,
-            n_rows: 2,
-            line_of_row: vec![2, 3],
-            sidecar: None,
-            left_out: Vec::new(),
-            blank: Vec::new(),
-        },
-        &path,
-    )
-    .unwrap();
+    write_csv(&Table::of(path.clone(), columns, vec![2, 3]), &path).unwrap();
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "x [1]\n0\n-1.5\n");
 }

@@ -393,15 +393,7 @@ impl Prediction {
         let first = predicted.rows.iter().take(data.rows);
         let outside = first.map(|row| if row.outside.is_empty() { "no".to_owned() } else { row.outside.join(" ") });
         columns.push(Column { name: "outside".to_owned(), data: ColumnData::Text(outside.collect()) });
-        Table {
-            path: path.to_owned(),
-            columns,
-            n_rows: data.rows,
-            line_of_row: data.line.clone(),
-            sidecar: None,
-            left_out: Vec::new(),
-            blank: Vec::new(),
-        }
+        Table { n_rows: data.rows, ..Table::of(path.to_owned(), columns, data.line.clone()) }
     }
 
     /// The same for a program.

@@ -123,9 +123,9 @@ mod tests {
     use crate::units::{Dimension, Unit};
 
     fn table(time_s: &[f64], first_row: usize) -> Table {
-        Table {
-            path: "a.parquet".into(),
-            columns: vec![Column {
+        Table::of(
+            "a.parquet".into(),
+            vec![Column {
                 name: "time".to_owned(),
                 data: ColumnData::Number {
                     unit: Unit::si(Dimension::TIME),
@@ -133,12 +133,8 @@ mod tests {
                     si: time_s.to_vec(),
                 },
             }],
-            n_rows: time_s.len(),
-            line_of_row: (first_row + 1..=first_row + time_s.len()).collect(),
-            sidecar: None,
-            left_out: Vec::new(),
-            blank: Vec::new(),
-        }
+            (first_row + 1..=first_row + time_s.len()).collect(),
+        )
     }
 
     fn through(time_s: &[f64]) -> Result<(TimeSteps, Vec<Gap>, Vec<usize>), RecordError> {

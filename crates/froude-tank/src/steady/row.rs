@@ -50,13 +50,5 @@ pub fn table(folder: &Path, rows: &[Row]) -> Table {
         }
     }
     let n_rows = rows.len();
-    Table {
-        path: folder.to_owned(),
-        columns,
-        n_rows,
-        line_of_row: (1..=n_rows).collect(),
-        sidecar: None,
-        left_out: Vec::new(),
-        blank: Vec::new(),
-    }
+    Table::of(folder.to_owned(), columns, (1..=n_rows).collect())
 }

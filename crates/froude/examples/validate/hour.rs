@@ -135,15 +135,11 @@ fn log(root: &Path, folder: &Path, periods: usize) -> Result<usize, Box<dyn Erro
         Ok(Column { name: name.to_owned(), data: ColumnData::Number { dimension: unit.dimension, unit, si } })
     };
     let values = [trace.time_s, trace.angle_rad, trace.force_n].into_iter().chain(extra);
-    let table = Table {
-        path: folder.join("runs/001.parquet"),
-        columns: named.into_iter().zip(values).map(column).collect::<Result<_, _>>()?,
-        n_rows: rows,
-        line_of_row: Vec::new(),
-        sidecar: None,
-        left_out: Vec::new(),
-        blank: Vec::new(),
-    };
+    let table = Table::of(
+        folder.join("runs/001.parquet"),
+        named.into_iter().zip(values).map(column).collect::<Result<_, _>>()?,
+        (1..=rows).collect(),
+    );
     std::fs::create_dir(folder.join("runs"))?;
     prepare_table(&table, &table.path)?.take_place()?;
     let declared = |header: &str, name: &str, unit: &str| {

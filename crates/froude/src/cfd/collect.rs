@@ -231,15 +231,7 @@ fn table(rows: &[Row], numerical: &Numerical, path: &Path) -> Table {
     }
     columns.push(number("iterations", "1", Dimension::ONE, &|r| r.outcome.iterations as f64));
     let line_of_row = (2..2 + rows.len()).collect();
-    Table {
-        path: path.to_owned(),
-        columns,
-        n_rows: rows.len(),
-        line_of_row,
-        sidecar: None,
-        left_out: Vec::new(),
-        blank: Vec::new(),
-    }
+    Table::of(path.to_owned(), columns, line_of_row)
 }
 
 impl Collected {

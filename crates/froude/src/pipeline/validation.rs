@@ -111,14 +111,6 @@ fn table(flows: &[&ComparedFlow], of: Dimension, result: &SourceResult, name: &s
         },
         number("u_val", of, &ComparedFlow::u_validation),
     ]);
-    let table = Table {
-        path: PathBuf::from(name),
-        columns,
-        n_rows: flows.len(),
-        line_of_row: (2..2 + flows.len()).collect(),
-        sidecar: None,
-        left_out: Vec::new(),
-        blank: Vec::new(),
-    };
+    let table = Table::of(PathBuf::from(name), columns, (2..2 + flows.len()).collect());
     Ok(csv_bytes(&table)?)
 }

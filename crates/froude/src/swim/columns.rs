@@ -41,13 +41,5 @@ pub(super) fn table(moments: &[Moment], is_driven: bool, path: &Path) -> Table {
         "J",
         all(&|m| m.state.work_j - m.state.loss_j - m.friction_j - (m.energy_j - energy)),
     );
-    Table {
-        path: path.to_owned(),
-        columns,
-        n_rows: moments.len(),
-        line_of_row: (1..=moments.len()).collect(),
-        sidecar: None,
-        left_out: Vec::new(),
-        blank: Vec::new(),
-    }
+    Table::of(path.to_owned(), columns, (1..=moments.len()).collect())
 }

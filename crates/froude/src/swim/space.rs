@@ -186,15 +186,7 @@ fn table(moments: &[SpatialMoment], path: &Path) -> Table {
     put("energy_kinetic", "J", &|m| m.energy_j[0]);
     put("energy_potential", "J", &|m| m.energy_j[1] - lowest);
     put("energy_residual", "J", &|m| m.state.work_j - m.state.loss_j - (all(m) - first));
-    Table {
-        path: path.to_owned(),
-        columns,
-        n_rows: moments.len(),
-        line_of_row: (1..=moments.len()).collect(),
-        sidecar: None,
-        left_out: Vec::new(),
-        blank: Vec::new(),
-    }
+    Table::of(path.to_owned(), columns, (1..=moments.len()).collect())
 }
 
 impl SpatialSwum {

@@ -267,13 +267,5 @@ pub(super) fn table(rows: &[Row], path: &Path) -> Table {
     let status = rows.iter().map(|row| row.status.name().to_owned()).collect();
     columns.push(Column { name: "status".to_owned(), data: ColumnData::Text(status) });
     let line_of_row = (1..=rows.len()).collect();
-    Table {
-        path: path.to_owned(),
-        columns,
-        n_rows: rows.len(),
-        line_of_row,
-        sidecar: None,
-        left_out: Vec::new(),
-        blank: Vec::new(),
-    }
+    Table::of(path.to_owned(), columns, line_of_row)
 }
