@@ -45,7 +45,7 @@ pub use crate::regression::fitted::{Condensed, ModelFit, Scatter, Settings, Weig
 pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result<ModelFit, IdentifyError> {
     let mut job = Job::new(law, data, settings)?;
     let mut findings = Vec::new();
-    let mut options = options(law, &job.specs, settings);
+    let mut options = options(law, &job.specs, settings)?;
     let (mut problem, mut fitted) = job.solve(&options, &mut findings)?;
     if settings.identify.fitted_weights {
         for _ in 0..fitted_weights::ROUNDS {
@@ -216,34 +216,39 @@ pub(crate) fn known_of<'a>(identify: &'a Identify, law: &ForceLaw) -> impl Itera
 }
 
 /// The priors of a law, with the covariance of those that are of one record.
-fn priors(identify: &Identify, law: &ForceLaw, position: &dyn Fn(&str) -> Option<usize>) -> Vec<fit::Prior> {
+///
+/// # Errors
+///
+/// A covariance that none can be.
+fn priors(
+    identify: &Identify,
+    law: &ForceLaw,
+    position: &dyn Fn(&str) -> Option<usize>,
+) -> Result<Vec<fit::Prior>, IdentifyError> {
     let is_meant = |prior: &PriorSpec| prior.model.as_ref().is_none_or(|model| *model == law.name);
     let meant = identify.prior.iter().enumerate().filter(|(_, prior)| is_meant(prior));
-    let is_excluded = |prior: &PriorSpec| identify.exclude.contains(&prior.coefficient);
-    let is_fixed = |prior: &PriorSpec| {
-        let is_known = known_of(identify, law).any(|(_, known)| known.coefficient == prior.coefficient);
-        is_known || identify.fixed.iter().any(|(name, _)| *name == prior.coefficient)
-    };
-    let meant = meant.filter(|(_, prior)| !is_excluded(prior));
-    let mut meant: Vec<(usize, &PriorSpec, usize)> =
+    let meant: Vec<(usize, &PriorSpec, usize)> =
         meant.filter_map(|(k, prior)| Some((k, prior, position(&prior.coefficient)?))).collect();
-    // The others are given what is fixed.
-    meant.sort_by_key(|(_, prior, _)| !is_fixed(prior));
     let indices: Vec<usize> = meant.iter().map(|(.., index)| *index).collect();
     let values: Vec<f64> = meant.iter().map(|(_, prior, _)| prior.value).collect();
     let between = |a: usize, b: usize| {
-        let of_records = identify.prior_covariance.get(meant[a].0).map_or(0.0, |row| row[meant[b].0]);
-        if a == b { meant[a].1.standard_uncertainty.powi(2) } else { of_records }
+        let of_records = identify.prior_covariance.get(meant[a].0).and_then(|row| row.get(meant[b].0));
+        if a == b { meant[a].1.standard_uncertainty.powi(2) } else { of_records.copied().unwrap_or(0.0) }
     };
     let covariance = Mat::from_fn(meant.len(), meant.len(), between);
-    let alone = |(_, prior, index): &(usize, &PriorSpec, usize)| {
-        fit::Prior::new(*index, prior.value, prior.standard_uncertainty)
-    };
-    fit::Prior::correlated(&indices, &values, &covariance).unwrap_or_else(|| meant.iter().map(alone).collect())
+    fit::Prior::correlated(&indices, &values, &covariance).ok_or_else(|| IdentifyError::Campaign {
+        place: format!("[identify] prior, model {}", law.name),
+        what: "the records give the priors correlations that no errors can have (their covariance has a negative eigenvalue): take them from one estimate, or write standard_uncertainty"
+            .to_owned(),
+    })
 }
 
 /// Bounds, fixed values, exclusions, priors and constraints by name.
-fn options(law: &ForceLaw, specs: &[CoefficientSpec], settings: Settings<'_>) -> fit::Options {
+///
+/// # Errors
+///
+/// See [`priors`].
+fn options(law: &ForceLaw, specs: &[CoefficientSpec], settings: Settings<'_>) -> Result<fit::Options, IdentifyError> {
     let identify = settings.identify;
     let position = |name: &str| specs.iter().position(|s| s.name == name);
     let is_drag = law.factor_symbols().is_some();
@@ -261,10 +266,10 @@ fn options(law: &ForceLaw, specs: &[CoefficientSpec], settings: Settings<'_>) ->
             }
         })
         .collect();
-    fit::Options {
+    Ok(fit::Options {
         observations: settings.condensed.map(|c| c.observations.clone()).unwrap_or_default(),
         bounds,
-        priors: priors(identify, law, &position),
+        priors: priors(identify, law, &position)?,
         fixed: (identify.fixed.iter().map(|(name, value)| (name, *value)))
             .chain(known_of(identify, law).map(|(_, known)| (&known.coefficient, known.value)))
             .filter_map(|(name, value)| Some((position(name)?, value)))
@@ -273,5 +278,5 @@ fn options(law: &ForceLaw, specs: &[CoefficientSpec], settings: Settings<'_>) ->
         loss: identify.huber.map_or(fit::Loss::Squares, |k| fit::Loss::Huber { k }),
         covariance: settings.scatter.of_residuals(),
         ..fit::Options::default()
-    }
+    })
 }
