@@ -2,7 +2,7 @@
 //!
 //! A row says nothing of a load that was not recorded there; counted as an observation it would narrow every interval of that load. There are three cases:
 //!
-//! - a load whose cell is empty; the motion along or about its axis may be empty too, and is none then;
+//! - a load whose cell is empty; the cell of the motion along or about its axis may also be empty, which means no motion;
 //! - a load that is exactly 0 in every row in which its own axis does not move and another one does: a measured load is never exactly that. Such rows are not observations of that load, under any law;
 //! - rows in which every law predicts zero for any coefficients (at rest, for example) and whose loads scatter less than the others (F, 1 % over the loads; classical fits without weights only).
 //!   They determine no coefficient and are left out of σ.

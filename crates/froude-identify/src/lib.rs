@@ -48,6 +48,8 @@ pub mod seam;
 pub mod select;
 pub mod selection;
 pub mod simulate;
+#[cfg(test)]
+mod small_tables;
 pub mod source;
 pub mod table;
 mod tare;

@@ -187,29 +187,21 @@ fn along(model: &ModelFit, residuals: &[Residuals], load: usize, shape: &[f64]) 
 mod tests {
     use std::fmt::Write as _;
 
-    use froude_records::campaign::read_campaign;
     use rand_distr::{Distribution, StandardNormal};
     use rand_pcg::Pcg64;
 
-    use crate::source::identify_source;
+    use crate::small_tables;
 
     /// What is said of a law that lacks something, of 24 speeds with errors of 0.3 N beside a load of some 40.
     fn said(truth: impl Fn(f64) -> f64, keys: &str) -> Vec<String> {
-        let folder = tempfile::tempdir().unwrap();
         let mut rng = Pcg64::new(2, 0);
-        let mut text = "speed [m/s],f_x [N]\n".to_owned();
+        let mut rows = String::new();
         for i in 0..24 {
             let u = 0.3 + 0.07 * f64::from(i);
             let z: f64 = StandardNormal.sample(&mut rng);
-            let _ = writeln!(text, "{u},{}", -truth(u) + 0.3 * z);
+            let _ = writeln!(rows, "{u},{}", -truth(u) + 0.3 * z);
         }
-        std::fs::write(folder.path().join("t.csv"), text).unwrap();
-        let campaign =
-            format!("schema = 1\nname = \"a\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n{keys}");
-        std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
-        let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
-        let found = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
-        found.findings.into_iter().filter(|f| f.code == "lack-of-fit").map(|f| f.message).collect()
+        small_tables::said(&rows, keys, &["lack-of-fit"])
     }
 
     const LAW: &str = "models = [\"linear_quadratic\"]\n";

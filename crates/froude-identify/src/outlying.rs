@@ -177,22 +177,13 @@ fn is_beyond_growth(model: &ModelFit, n: usize, r: usize, found: Outlying) -> bo
 mod tests {
     use std::fmt::Write as _;
 
-    use froude_records::campaign::read_campaign;
     use rand_distr::{Distribution, StandardNormal};
     use rand_pcg::Pcg64;
 
-    use crate::source::identify_source;
+    use crate::small_tables::said;
 
-    /// What is said of outlying rows of a table.
     fn found(rows: &str, keys: &str) -> Vec<String> {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("t.csv"), format!("speed [m/s],f_x [N]\n{rows}")).unwrap();
-        let campaign =
-            format!("schema = 1\nname = \"a\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n{keys}");
-        std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
-        let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
-        let found = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
-        found.findings.into_iter().filter(|f| f.code == "outlying-row").map(|f| f.message).collect()
+        said(rows, keys, &["outlying-row"])
     }
 
     /// 12 U² with a scatter of σ N and of a part of the load, and one row by so many times its own σ too large.
@@ -218,8 +209,8 @@ mod tests {
         // Of five rows, a hundred times apart.
         assert_eq!(found(&table(1, 5, 1, [0.05, 0.0], (2, 100.0)), QUADRATIC).len(), 1);
         for keys in ["", QUADRATIC, FITTED] {
-            let told = found(&table(2, 7, 4, [0.0, 0.017], (2, 10.0)), keys);
-            assert!(told.len() == 1 && told[0].contains("line 4 (0.4 m/s)"), "{keys}: {told:?}");
+            let named = found(&table(2, 7, 4, [0.0, 0.017], (2, 10.0)), keys);
+            assert!(named.len() == 1 && named[0].contains("line 4 (0.4 m/s)"), "{keys}: {named:?}");
         }
     }
 
@@ -229,9 +220,9 @@ mod tests {
         for (speeds, repeats) in [(5, 1), (8, 1), (7, 4)] {
             for scatter in [[0.3, 0.0], [0.0, 0.02], [0.05, 0.02]] {
                 for keys in [QUADRATIC, FITTED] {
-                    let is_told = |seed: &u128| !found(&table(*seed, speeds, repeats, scatter, NONE), keys).is_empty();
-                    let told = (0..400).filter(is_told).count();
-                    assert!(told <= 7, "{speeds} speeds {repeats} times, {scatter:?}, {keys}: {told} of 400");
+                    let is_named = |seed: &u128| !found(&table(*seed, speeds, repeats, scatter, NONE), keys).is_empty();
+                    let alarms = (0..400).filter(is_named).count();
+                    assert!(alarms <= 7, "{speeds} speeds {repeats} times, {scatter:?}, {keys}: {alarms} of 400");
                 }
             }
         }

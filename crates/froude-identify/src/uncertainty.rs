@@ -184,7 +184,7 @@ const MOST_GROUPS: usize = 50;
 /// Largest number of rows for which [`directions`] are computed.
 const MOST_ROWS: usize = 10_000;
 
-/// Effect of each declared shared error on the responses: one column per error over all rows, for one standard uncertainty. Errors of single rows have no column; above [`MOST_ROWS`] rows there are none.
+/// Effect of each declared shared error on the responses: one column per error over all rows, scaled to one standard uncertainty. Errors of single rows have no column; above [`MOST_ROWS`] rows there are none.
 ///
 /// # Errors
 ///

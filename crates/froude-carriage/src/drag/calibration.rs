@@ -420,6 +420,16 @@ mod tests {
         s
     }
 
+    fn setup(scenario: &Scenario) -> CalibrationSetup {
+        CalibrationSetup {
+            ideal_force_per_volt_n: scenario.ideal_force_per_volt_n,
+            ideal_relative: 0.02,
+            weight_relative: 0.0,
+            pulley_loss: PULLEY_LOSS,
+            steady: SteadySettings::default(),
+        }
+    }
+
     fn calibrated(
         scenario: &Scenario,
         weights: &[f64],
@@ -427,13 +437,7 @@ mod tests {
     ) -> Result<Calibration, DragError> {
         let logged = scenario.calibration_runs(weights, 4, 1);
         let runs: Vec<_> = logged.iter().map(Logged::view).filter(keep).collect();
-        let setup = CalibrationSetup {
-            ideal_force_per_volt_n: scenario.ideal_force_per_volt_n,
-            ideal_relative: 0.02,
-            weight_relative: 0.0,
-            pulley_loss: PULLEY_LOSS,
-            steady: SteadySettings::default(),
-        };
+        let setup = setup(scenario);
         calibrate(&runs, &setup)
     }
 
@@ -496,13 +500,7 @@ mod tests {
     fn direction_dependent_friction_does_not_bias_the_force_per_volt() {
         let scenario = Scenario { one_way: 0.1, ..Scenario::pinned(20.0) };
         let truth = scenario.force_per_volt_n();
-        let setup = CalibrationSetup {
-            ideal_force_per_volt_n: scenario.ideal_force_per_volt_n,
-            ideal_relative: 0.02,
-            weight_relative: 0.0,
-            pulley_loss: PULLEY_LOSS,
-            steady: SteadySettings::default(),
-        };
+        let setup = setup(&scenario);
         let covered = (1..=100).filter(|seed| {
             let logged = scenario.calibration_runs(&[0.0, 1.0, 10.0], 4, *seed);
             let runs: Vec<_> = logged.iter().map(Logged::view).collect();
@@ -513,6 +511,7 @@ mod tests {
             let [low, high] = found.interval_95;
             low <= truth && truth <= high
         });
+        // 95 % less three standard deviations.
         assert!(covered.count() >= 89);
         // Without weight one way, with weight the other way.
         let one = quiet().calibration_runs(&[0.0, 10.0], 4, 1);

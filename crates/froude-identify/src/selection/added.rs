@@ -261,24 +261,19 @@ mod tests {
     use rand_pcg::Pcg64;
 
     use crate::result::SourceResult;
+    use crate::small_tables::identified;
     use crate::source::identify_source;
 
     /// The default laws of a table of so many speeds, with more keys of the campaign.
     fn found(n: u32, truth: impl Fn(f64) -> f64, sigma: f64, seed: u128, keys: &str) -> SourceResult {
-        let folder = tempfile::tempdir().unwrap();
         let mut rng = Pcg64::new(seed, 0);
-        let mut text = "speed [m/s],f_x [N]\n".to_owned();
+        let mut rows = String::new();
         for i in 0..n {
             let u = 0.2 + 1.4 * f64::from(i) / f64::from(n - 1);
             let z: f64 = StandardNormal.sample(&mut rng);
-            let _ = writeln!(text, "{u},{}", -truth(u) + sigma * z);
+            let _ = writeln!(rows, "{u},{}", -truth(u) + sigma * z);
         }
-        std::fs::write(folder.path().join("t.csv"), text).unwrap();
-        let campaign =
-            format!("schema = 1\nname = \"a\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n{keys}");
-        std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
-        let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
-        identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap()
+        identified(&rows, keys)
     }
 
     fn test<'a>(of: &'a SourceResult, law: &str, other: &str) -> &'a AddedTerms {

@@ -1,0 +1,21 @@
+//! Small tables for tests: written, read as a campaign's source, identified.
+
+use crate::result::SourceResult;
+use crate::source::identify_source;
+
+/// The result of rows of speed and drag under more keys of the campaign.
+pub(crate) fn identified(rows: &str, keys: &str) -> SourceResult {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), format!("speed [m/s],f_x [N]\n{rows}")).unwrap();
+    let campaign =
+        format!("schema = 1\nname = \"a\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n{keys}");
+    std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
+    let campaign = froude_records::campaign::read_campaign(&folder.path().join("c.toml")).unwrap();
+    identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap()
+}
+
+/// What its findings of some codes say.
+pub(crate) fn said(rows: &str, keys: &str, codes: &[&str]) -> Vec<String> {
+    let found = identified(rows, keys).findings.into_iter();
+    found.filter(|f| codes.contains(&f.code.as_str())).map(|f| f.message).collect()
+}
