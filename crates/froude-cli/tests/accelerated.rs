@@ -246,7 +246,8 @@ fn a_force_that_is_late_is_found_and_declaring_it_removes_the_finding() {
     assert_eq!(lag(folder.path()), None, "after {delay}");
 }
 
-/// Drag that changes by 2 % from run to run: three runs cover the truth in 94 % less three standard deviations, where their rows alone did in about half. With two, a finding says what is missing.
+/// With drag that varies by 2 % from run to run, the intervals of three runs contain the truth in at least 94 % of campaigns, within three standard deviations. For one run a finding reports
+/// that this variation is missing.
 #[test]
 fn three_runs_include_what_changes_from_run_to_run() {
     let plan = [ONE[0], ONE[1], ("still        = \"5 s\"", "still        = \"5 s\"\nrepeats      = 3")];

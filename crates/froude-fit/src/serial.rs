@@ -31,7 +31,8 @@ use crate::distribution::{dof_of_factor, root, t_two_sided};
 
 /// A correlation time of more than this part of the longest run is not told from what the law fits.
 const LONGEST: f64 = 0.3;
-/// The same of rows that are the samples themselves.
+/// The same of rows that are the samples themselves. Few rows tell a slow error badly: of sixteen whose errors follow each other by 0.8, and two coefficients, 95 % intervals hold 83 % with
+/// 0.3 and 93 % with this.
 const LONGEST_OF_SAMPLES: f64 = 1.5;
 /// Points of the mixture.
 const POINTS: usize = 48;
@@ -247,7 +248,6 @@ fn mixture(
     columns.extend(residuals.iter().cloned());
     let dof = (n - free.len()) as f64;
     let longest = run.chunk_by(|a, b| a == b).map(<[usize]>::len).max().unwrap_or(1);
-    // Rows that are the samples are few, and may be in any order: what they tell of a slow error decides.
     let part = if errors.window == RowWindow::single() { LONGEST_OF_SAMPLES } else { LONGEST };
     let largest = (-1.0 / (part * longest as f64)).exp();
     let white = errors.white.as_ref().map(|(window, standard)| (window.correlation(0.0), standard * standard));

@@ -9,7 +9,7 @@ use froude_identify::method::MethodError;
 use froude_records::number::{plain, significant};
 use froude_records::run::{Channel, ImportedRun};
 
-/// Distance from all others, over their range.
+/// Distance from all other samples, as a multiple of their range.
 const BEYOND: f64 = 100.0;
 /// Samples that may be wild at once.
 const FEW: usize = 3;
@@ -17,7 +17,7 @@ const FEW: usize = 3;
 const FEWEST: usize = 20;
 /// Runs that are needed to say what is usual.
 const FEWEST_RUNS: usize = 3;
-/// Its steps over the longest of the others: a prefix is a thousand.
+/// Ratio to the longest step of the other logs; a wrong prefix gives a thousand.
 const TIMES: f64 = 300.0;
 /// Units of motions and loads; a trigger may be of two samples.
 const OF_TEST: [&str; 6] = ["m", "rad", "N", "N m", "m/s", "rad/s"];
@@ -64,7 +64,7 @@ fn wild(sorted: &[f64]) -> Option<(usize, f64, f64)> {
     if n < FEWEST + FEW || is_few_values() {
         return None;
     }
-    // Cuts of k values below and m above.
+    // Cuts of k values below and m above; the first cuts nothing.
     let mut cuts = (0..=FEW).flat_map(|k| (0..=FEW - k).map(move |m| (k, n - 1 - m))).skip(1);
     cuts.find_map(|(low, high)| {
         let range = sorted[high] - sorted[low];

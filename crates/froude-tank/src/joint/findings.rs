@@ -15,7 +15,7 @@ const STEADY: f64 = 0.02;
 /// A period within this part of a whole number is whole.
 const WHOLE: f64 = 0.02;
 /// False-alarm probability, over all declarations.
-const ALARM: f64 = 0.0065;
+const ALARM: f64 = 0.004;
 /// Of five independent cycles a fifth of the variance repeats; more than this is a misfit.
 const REPEATED: f64 = 0.6;
 
