@@ -92,7 +92,8 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     let mut out = Vec::new();
     let (outlying, rows) = outlying_rows(model, data);
     let scatter = scatter_tests::findings(model, data, &outlying);
-    out.extend(scatter.iter().map(|(_, finding)| finding.clone()));
+    let is_assumed = |finding: &Finding| finding.code != "uneven-scatter" || model.is_of_one_sigma();
+    out.extend(scatter.iter().map(|(_, finding)| finding.clone()).filter(is_assumed));
     out.extend(misfit::findings(model, data, d, (&scatter, &outlying)));
     out.extend(decided_by_one(model, data));
     out.extend(added_mass_sign(model, data));

@@ -38,7 +38,7 @@ use crate::reduce::{kept_rows, left_out, observed, one_unit, zero_drift};
 use crate::regression::{Condensed, ModelFit, Scatter, Settings, regress};
 use crate::result::{ReadFile, SourceResult};
 use crate::seam::{Reduced, conclude};
-use crate::source::handed::{merges_motions, no_budget, of_table, scatter};
+use crate::source::handed::{TABLE, merges_motions, no_budget, of_table, scatter};
 use crate::source::{check_budget, laws};
 use crate::{columns, diagnosis, dissipation, lint, motions, validity};
 
@@ -240,12 +240,12 @@ fn reduced(
     findings.extend(seconds.findings(facts, ends, &laws));
     check_budget(source, ends)?;
     findings.extend(columns::unused(ends, campaign, source, &laws));
-    let scatter = scatter(campaign, source, ends, &mut findings)?;
+    let scatter = scatter(campaign, source, TABLE, ends, &mut findings)?;
     findings.push(in_chunks(facts, sample));
     let mut files = vec![ReadFile::new(source.input.path().to_owned(), "table")];
     files.extend(table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar")));
     let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
-    let out = of_table(campaign, source, "table", sample.clone(), laws);
+    let out = of_table(campaign, source, TABLE, sample.clone(), laws);
     Ok(Reduced { n_read: facts.n_read, scatter, validity, findings, files, ..out })
 }
 

@@ -89,7 +89,7 @@ struct Shape {
 
 /// The loads in which a shape can be looked for.
 fn shapes(model: &ModelFit, data: &Dataset) -> Vec<Shape> {
-    let is_plain = matches!(model.scatter, Scatter::Classical)
+    let is_plain = matches!(model.scatter, Scatter::Classical | Scatter::Runs)
         && model.whitened.is_none()
         && !model.in_variables
         && !model.law.in_logarithms()

@@ -292,7 +292,7 @@ fn law(model: &ModelFit, data: &Dataset, constants: IndexMap<String, Measured>) 
 /// The independent groups behind a scatter that counts them.
 fn clusters(model: &ModelFit, data: &Dataset) -> Option<Clusters> {
     match &model.scatter {
-        Scatter::Classical | Scatter::Hc3 | Scatter::Serial(_) => None,
+        Scatter::Classical | Scatter::Runs | Scatter::Hc3 | Scatter::Serial(_) => None,
         Scatter::Cluster => {
             data.group.as_ref().map(|_| Clusters { by: data.grouped_by.word().to_owned(), n: data.clusters() })
         }

@@ -7,6 +7,7 @@ mod held;
 mod job;
 pub(crate) mod known;
 mod problem;
+pub(crate) mod runs;
 pub(crate) mod uncertain;
 
 use faer::Mat;

@@ -73,7 +73,10 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, us
         }
         let load = &model.law.responses[r];
         let mut found = Vec::new();
-        let alike = serial(model, data, load, residuals, loads);
+        // One row that lies apart is that, and no scatter that grows: the others are asked.
+        let apart = outlying.iter().find(|(of, _)| of == load).map(|(_, row)| *row);
+        let grows = uneven(model, data, load, (&without(residuals, apart, n), predicted), loads);
+        let alike = serial(model, data, load, (residuals, grows.is_some()), loads);
         let is_series = alike.is_some() && motions::is_in_time(data);
         found.extend(alike);
         // The others take rows for independent, and mean nothing where these follow each other in time. Elsewhere an offset of a setup may be what makes rows alike.
@@ -81,9 +84,7 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, us
             out.extend(found.into_iter().map(|finding| (load.clone(), finding)));
             continue;
         }
-        // One row that lies apart is that, and no scatter that grows: the others are asked.
-        let apart = outlying.iter().find(|(of, _)| of == load).map(|(_, row)| *row);
-        found.extend(uneven(model, data, load, (&without(residuals, apart, n), predicted), loads));
+        found.extend(grows);
         found.extend(offset(model, data, load, residuals, loads));
         out.extend(found.into_iter().map(|finding| (load.clone(), finding)));
     }
@@ -128,9 +129,15 @@ fn has_declared_groups(model: &ModelFit) -> bool {
 }
 
 /// Residuals that are alike from one row to the next.
-fn serial(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, loads: f64) -> Option<Finding> {
-    // Clusters and rows in time hold that already. HC3 does not: there errors are not of one size, which the test assumes, and only what is plain is reported.
-    let is_asked = matches!(model.scatter, Scatter::Classical | Scatter::Hc3);
+fn serial(
+    model: &ModelFit,
+    data: &Dataset,
+    load: &str,
+    (residuals, is_uneven): (&Residuals, bool),
+    loads: f64,
+) -> Option<Finding> {
+    // Clusters and rows in time hold that already. HC3 and runs do not: where errors are not of one size, which the test assumes, only what is plain is reported.
+    let is_asked = matches!(model.scatter, Scatter::Classical | Scatter::Runs | Scatter::Hc3);
     if !is_asked || model.is_in_time(data) || has_declared_groups(model) {
         return None;
     }
@@ -143,7 +150,8 @@ fn serial(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
         let statistic = Form::Steps.statistic(&residuals.residual)?;
         (statistic, 1.0 - above(Form::Steps, residuals.q.as_ref(), statistic)?)
     };
-    let level = if matches!(model.scatter, Scatter::Hc3) { 0.1 * ALARM_OF_FEW } else { ALARM_OF_FEW };
+    let is_unequal = matches!(model.scatter, Scatter::Hc3) || matches!(model.scatter, Scatter::Runs) && is_uneven;
+    let level = if is_unequal { 0.1 * ALARM_OF_FEW } else { ALARM_OF_FEW };
     (p < level / loads).then(|| {
         let text = format!(
             "{}, {load}: residuals of successive rows are alike (Durbin–Watson {statistic:.2}, 2 where independent, {}): intervals assume \
@@ -175,8 +183,8 @@ fn uneven(
     (residuals, predicted): (&Residuals, &[f64]),
     loads: f64,
 ) -> Option<Finding> {
-    // Variances from each residual, or each cluster, assume nothing of the kind.
-    if !matches!(model.scatter, Scatter::Classical) {
+    // Variances from each residual, or each cluster, assume nothing of the kind. Of runs it is looked for too: shapes of a misfit take even scatter for granted.
+    if !matches!(model.scatter, Scatter::Classical | Scatter::Runs) {
         return None;
     }
     let n = data.rows;

@@ -16,6 +16,7 @@ use crate::law::ForceLaw;
 use crate::regression::{ModelFit, Settings, regress};
 use crate::result::{NotFitted, SourceResult};
 use crate::selection::{Recommendation, Score, added_terms, leave_one_out, range_block, recommend};
+use crate::source::handed::TABLE;
 use crate::{bootstrap, diagnosis, idle, record, uncertainty, zero};
 
 pub use crate::seam::reduced::{Choice, Derived, Reduced, Stated};
@@ -36,7 +37,7 @@ pub fn fit(mut reduced: Reduced, identify: &Identify, progress: &dyn Fn(&str)) -
         fitted.collect()
     };
     let mut fitted = each(&reduced);
-    if reduced.stated.method == "table" {
+    if reduced.stated.method == TABLE {
         let models: Vec<&ModelFit> = fitted.iter().filter_map(|result| result.as_ref().ok()).collect();
         let quiet = idle::mark_quiet(&models, &mut reduced.data);
         if !quiet.is_empty() {

@@ -12,7 +12,7 @@ use crate::law::ForceLaw;
 use crate::reduce::{Observations, reduce};
 use crate::regression::Scatter;
 use crate::seam::{Choice, Reduced, fit};
-use crate::source::handed::{merges_motions, no_budget, of_table, scatter};
+use crate::source::handed::{TABLE, merges_motions, no_budget, of_table, scatter};
 use crate::{columns, diagnosis, lint, motions, validity, zero};
 
 pub use crate::result::{NotFitted, ReadFile, SourceResult};
@@ -36,7 +36,7 @@ pub fn identify_source(
     {
         return Ok(result);
     }
-    identify_observations(campaign, source, reduce(campaign, source)?, "table", progress)
+    identify_observations(campaign, source, reduce(campaign, source)?, TABLE, progress)
 }
 
 /// The same of observations that a method called `method` has reduced to the rows of a table.
@@ -62,7 +62,7 @@ pub fn identify_observations(
     if merges_motions(campaign, source) {
         findings.extend(motions::merge(&mut observations.data, &laws));
     }
-    let scatter = scatter(campaign, source, &observations.data, &mut findings)?;
+    let scatter = scatter(campaign, source, method, &observations.data, &mut findings)?;
     let observations = Observations { findings: [observations.findings, findings].concat(), ..observations };
     identify_laws(
         campaign,
@@ -125,7 +125,7 @@ fn reduced(
     findings.extend(no_budget(campaign, source, &shared_errors).filter(|_| !has_budget));
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));
-    let beside_zero = if method == "table" { zero::laws(source, &data) } else { Vec::new() };
+    let beside_zero = if method == TABLE { zero::laws(source, &data) } else { Vec::new() };
     let out = of_table(campaign, source, method, data, laws);
     Ok(Reduced { beside_zero, n_read, scatter, choice, errors: shared_errors, validity, findings, files, ..out })
 }

@@ -285,6 +285,8 @@ pub struct JointFit {
     pub fitted: Vec<Fitted>,
     /// What was left out in turn: `run` or `cycle`.
     pub by: &'static str,
+    /// Whether the scatter includes what changes from run to run.
+    pub has_runs: bool,
     /// How many of them.
     pub clusters: usize,
     /// Whether their scatter is divided by its mean at equal errors, and has its degrees of freedom.

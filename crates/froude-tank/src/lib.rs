@@ -4,6 +4,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod accelerated_tow;
+mod between_runs;
 pub mod conditioning;
 pub mod decay;
 pub mod excited_response;

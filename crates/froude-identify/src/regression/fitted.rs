@@ -11,6 +11,7 @@ use froude_records::finding::Finding;
 use crate::dataset::{Dataset, GroupedBy};
 use crate::law::{CoefficientSpec, ForceLaw};
 use crate::regression::generalised::Whitened;
+use crate::regression::runs;
 use crate::uncertainty::{SharedError, coverage_factor};
 
 /// Fewest degrees of freedom of an interval by clusters; two equal ones less one would have one.
@@ -34,6 +35,8 @@ pub enum Weight {
 pub enum Scatter {
     /// The residuals: independent, one σ a load.
     Classical,
+    /// The residuals: independent, each row a run that errs by a part of its load beside one σ.
+    Runs,
     /// The residuals: independent, of any variance.
     Hc3,
     /// The residuals, correlated in the groups of the data.
@@ -53,7 +56,7 @@ impl Scatter {
     /// What the residuals are asked for.
     pub(crate) const fn of_residuals(&self) -> fit::CovarianceKind {
         match self {
-            Self::Classical | Self::Serial(_) | Self::Replicates { .. } => fit::CovarianceKind::Classical,
+            Self::Classical | Self::Runs | Self::Serial(_) | Self::Replicates { .. } => fit::CovarianceKind::Classical,
             Self::Hc3 => fit::CovarianceKind::Hc3,
             Self::Cluster => fit::CovarianceKind::Cr3,
         }
@@ -233,7 +236,17 @@ impl ModelFit {
             Scatter::Cluster => {
                 matches!(data.grouped_by, GroupedBy::Run | GroupedBy::Motion) && data.rows >= 2 * data.clusters()
             }
-            Scatter::Classical | Scatter::Hc3 | Scatter::Replicates { .. } => false,
+            Scatter::Classical | Scatter::Runs | Scatter::Hc3 | Scatter::Replicates { .. } => false,
+        }
+    }
+
+    /// Whether its intervals assume that the rows of a load scatter alike.
+    #[must_use]
+    pub fn is_of_one_sigma(&self) -> bool {
+        match self.scatter {
+            Scatter::Classical => true,
+            Scatter::Runs => !self.budget.first().is_some_and(|part| part.name.starts_with(runs::NAME)),
+            Scatter::Hc3 | Scatter::Cluster | Scatter::Serial(_) | Scatter::Replicates { .. } => false,
         }
     }
 

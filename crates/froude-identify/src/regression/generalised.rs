@@ -47,7 +47,7 @@ pub(crate) fn generalised(
     fitted: &mut fit::Fit,
 ) -> Result<Option<Whitened>, IdentifyError> {
     let is_meant = settings.kind != SourceKind::Cfd
-        && matches!(settings.scatter, Scatter::Classical)
+        && matches!(settings.scatter, Scatter::Classical | Scatter::Runs)
         && settings.condensed.is_none()
         && !law.is_nonlinear()
         && options.loss == fit::Loss::Squares

@@ -13,6 +13,7 @@ use crate::law::ForceLaw;
 use crate::regression::fitted::{Scatter, Settings};
 use crate::regression::known;
 use crate::regression::problem::step;
+use crate::regression::runs::between_runs;
 use crate::uncertainty::{Linearised, contributions, scatter};
 
 /// Type A and type B of all coefficients of a fit.
@@ -63,7 +64,9 @@ impl Uncertainty {
                 Some(replicates::together(name, sets).filter(|part| part.dof.len() == p))
             }
             Scatter::Serial(errors) => Some(serial(data, problem, fitted, errors)),
-            Scatter::Classical | Scatter::Hc3 | Scatter::Cluster => None,
+            // What is declared of runs is weighed already.
+            Scatter::Runs if !in_variables && !is_whitened => between_runs(law, data, problem, fitted).map(Some),
+            Scatter::Runs | Scatter::Classical | Scatter::Hc3 | Scatter::Cluster => None,
         };
         // Where replicates, or rows in time, tell no scatter nothing does: the residuals as if they were independent are not asked.
         let is_known = |c: &fit::FitCoefficient| match &replicates {

@@ -24,6 +24,7 @@ use froude_records::comparison::AddedTerms;
 use crate::dataset::Dataset;
 use crate::law::{ForceLaw, Kind};
 use crate::regression::known;
+use crate::regression::runs::between_runs;
 use crate::regression::uncertain::serial;
 use crate::regression::{ModelFit, Scatter, Settings};
 use crate::uncertainty::{Linearised, contributions};
@@ -113,13 +114,19 @@ pub(crate) fn widened(
     let gamma: Vec<f64> = fitted.coefficients[p..].iter().map(|c| c.value).collect::<Option<_>>()?;
     let dof =
         fitted.coefficients[p..].iter().map(|c| c.dof).try_fold(f64::INFINITY, |least, dof| Some(least.min(dof?)))?;
+    let fewest = |part: Part| {
+        let fewest = part.dof[p..].iter().copied().fold(f64::INFINITY, f64::min);
+        (part.covariance, fewest)
+    };
     let (scatter, dof) = match &law.scatter {
-        Scatter::Classical | Scatter::Hc3 | Scatter::Cluster => (fitted.covariance.clone(), dof),
-        Scatter::Serial(errors) => {
-            let part = serial(data, &larger, &fitted, errors)?;
-            let fewest = part.dof[p..].iter().copied().fold(f64::INFINITY, f64::min);
-            (part.covariance, fewest)
+        Scatter::Runs if law.whitened.is_none() && !law.in_variables => {
+            match between_runs(&law.law, data, &larger, &fitted) {
+                Some(part) => fewest(part),
+                None => (fitted.covariance.clone(), dof),
+            }
         }
+        Scatter::Runs | Scatter::Classical | Scatter::Hc3 | Scatter::Cluster => (fitted.covariance.clone(), dof),
+        Scatter::Serial(errors) => fewest(serial(data, &larger, &fitted, errors)?),
         // Replicates have the coefficients of their own law alone.
         Scatter::Replicates { .. } => return None,
     };

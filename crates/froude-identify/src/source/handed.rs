@@ -13,6 +13,9 @@ use crate::regression::Scatter;
 use crate::seam::Reduced;
 use crate::uncertainty::SharedError;
 
+/// The method of rows that are read as they are.
+pub(crate) const TABLE: &str = "table";
+
 /// Observations of a table, with what the campaign states of them.
 pub(crate) fn of_table(
     campaign: &Campaign,
@@ -72,10 +75,12 @@ fn group_not_used(campaign: &Campaign, source: &Source) -> Option<Finding> {
     Some(Finding::new(Severity::Note, "group-not-used", text))
 }
 
-/// The scatter that the campaign asks for, else what suits the source: residuals of a computation are model error, alike within a configuration.
+/// The scatter that the campaign asks for, else what suits the source: rows that a method has reduced from runs err by a part of their load too, and residuals of a computation are model
+/// error, alike within a configuration.
 pub(crate) fn scatter(
     campaign: &Campaign,
     source: &Source,
+    method: &str,
     data: &Dataset,
     findings: &mut Vec<Finding>,
 ) -> Result<Scatter, IdentifyError> {
@@ -92,7 +97,7 @@ pub(crate) fn scatter(
         }
         None if source.kind != SourceKind::Cfd => {
             findings.extend(group_not_used(campaign, source));
-            return Ok(Scatter::Classical);
+            return Ok(if method == TABLE { Scatter::Classical } else { Scatter::Runs });
         }
         None => {}
     }

@@ -24,6 +24,7 @@ use froude_records::run::Declared;
 use super::error::AcceleratedError;
 use super::law::{Channels, data, names};
 use super::rows::{Rows, TowRun, row_errors, rows};
+use crate::between_runs::{BetweenRuns, between_runs};
 
 /// What is declared of body and rig.
 #[derive(Debug, Clone, PartialEq)]
@@ -174,8 +175,7 @@ pub fn reduce(mounted: &[Mounted<'_>], setup: &Setup) -> Option<Reduced> {
     if !is_by_run && n > 0 {
         errors.push(zeros(&load, &of_run, &wet));
     }
-    let between =
-        (!is_by_run && n_runs >= FEWEST_RUNS).then(|| between_runs(&channels, &square, (&of_run, &of_body), &load));
+    let between = (!is_by_run).then(|| of_runs(&channels, &square, (&of_run, &of_body), &load));
     errors.extend(between.flatten());
     let mut data = data(channels, &setup.axis);
     data.group = is_by_run.then(|| data.run.clone());
@@ -206,42 +206,26 @@ fn by_zeros(runs: &[&Rows], squares: f64) -> f64 {
     runs.iter().flat_map(|rows| (0..rows.zero_parts.len()).map(move |k| of_part(rows, k))).sum()
 }
 
-/// Fewest runs that show what changes from run to run.
-pub const FEWEST_RUNS: usize = 3;
-/// The law takes so much of what changes from run to run that the rest is rounding.
-const TAKEN: f64 = 1e-3;
-
-/// The load of each run errs by a part γ of its own, of variance τ²: what a trip, a mount or the wake of the run before does. `None` where the law takes it all.
-///
-/// With c the fitted load of one run, zero elsewhere, and M what the law leaves, ĝ = cᵀMy/cᵀc of each run is A γ, A = cᵀMc′/cᵀc, so that τ² = |ĝ|²/tr K with K = AᵀA and
-/// (tr K)²/tr K² degrees of freedom (Satterthwaite). The noise within the runs is in it too. Of five and more runs it is in their scatter.
-fn between_runs(
+/// What changes from run to run, of three or four runs.
+fn of_runs(
     channels: &Channels,
     square: &[f64],
     (of_run, of_body): (&[usize], &[usize]),
     load: &str,
 ) -> Option<SharedError> {
     let bodies = 1 + of_body.iter().max()?;
-    let left_of =
-        |y: Vec<f64>| Some(fit(&of_first(channels, square, of_body, bodies, y), &Options::default()).ok()?.residuals);
-    let left = left_of(channels.load_n.clone())?;
+    let left_of = |y: &[f64]| {
+        let problem = of_first(channels, square, of_body, bodies, y.to_vec());
+        Some(fit(&problem, &Options::default()).ok()?.residuals)
+    };
+    let left = left_of(&channels.load_n)?;
     let n_runs = 1 + of_run.iter().max()?;
     let part = |r: usize| -> Vec<f64> {
         let fitted = |i: usize| channels.load_n[i] - left[i];
         (0..left.len()).map(|i| if of_run[i] == r { fitted(i) } else { 0.0 }).collect()
     };
     let parts: Vec<Vec<f64>> = (0..n_runs).map(part).collect();
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let left_of_parts = parts.iter().map(|c| left_of(c.clone())).collect::<Option<Vec<_>>>()?;
-    let a = Mat::from_fn(n_runs, n_runs, |r, s| dot(&parts[r], &left_of_parts[s]) / dot(&parts[r], &parts[r]));
-    let k = a.transpose() * &a;
-    let trace: f64 = (0..n_runs).map(|r| k[(r, r)]).sum();
-    let of_square: f64 = (0..n_runs).flat_map(|r| (0..n_runs).map(move |s| (r, s))).map(|at| k[at] * k[at]).sum();
-    let found: f64 = parts.iter().map(|c| (dot(c, &left) / dot(c, c)).powi(2)).sum();
-    if !(trace > TAKEN && found.is_finite()) {
-        return None;
-    }
-    let variance = found / trace;
+    let BetweenRuns { variance, dof } = between_runs(&parts, &left, left_of)?;
     Some(SharedError {
         name: "what changes from run to run".to_owned(),
         key: None,
@@ -250,7 +234,7 @@ fn between_runs(
         shared: "run",
         directions: vec![(load.to_owned(), (0..left.len()).map(|i| parts.iter().map(|c| c[i]).collect()).collect())],
         covariance: (0..n_runs).map(|r| (0..n_runs).map(|s| if r == s { variance } else { 0.0 }).collect()).collect(),
-        dof: trace * trace / of_square,
+        dof,
         limits: None,
         is_of_each_row: false,
     })

@@ -14,9 +14,10 @@ use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::law::{asked, names};
-use super::reduce::{Body, FEWEST_RUNS, Mounted, Reduced, Setup, reduce};
+use super::reduce::{Body, Mounted, Reduced, Setup, reduce};
 use super::rows::{Rows, TowRun, Way, root_mean_square};
 use super::{lag, page, plan, simulate};
+use crate::between_runs::FEWEST_RUNS;
 use crate::logs::{self, Logs};
 use crate::reference;
 

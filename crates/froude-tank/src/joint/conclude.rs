@@ -7,6 +7,9 @@
 //! **Declared errors.** Constants of the equation and gains of angle and load move all rows together: S·J·e with J = ∂f/∂q by differences. A prior's
 //! error moves the coefficients as a shift of its value does.
 //!
+//! **Between runs.** Three and four runs are too few to be clusters, and their cycles are; what the drag changes by from one run to the next is then a variance of its own
+//! ([`crate::between_runs`]).
+//!
 //! # Source
 //!
 //! Bell & McCaffrey (2002) and MacKinnon, Nielsen & Webb (2023) (CR3); JCGM 100:2008 (GUM), 5.1 and G.4.
@@ -14,11 +17,13 @@
 use froude_fit::budget::{Kind, OUTSIDE_95, Part, Shape, combine};
 use froude_fit::faer::Mat;
 use froude_fit::jackknife::{AtEqualErrors, at_equal_errors};
+use froude_fit::propagate::effective_dof;
 use froude_fit::{self as ls, Status};
 
 use super::forecast::inverted;
 use super::solve::{Solved, values};
 use super::{DeclaredError, Equation, JointFit, Problem, Unknown};
+use crate::between_runs::{BetweenRuns, between_runs};
 
 impl<E: Equation> Problem<'_, E> {
     /// Fits all runs together.
@@ -59,6 +64,9 @@ impl<E: Equation> Problem<'_, E> {
         });
         let dof = at_equal.iter().map(|a| a.dof).collect();
         let first = Part { shared: by, dof, ..part(&format!("scatter from {by} to {by}"), Kind::A, scatter, 0.0) };
+        let between = (!by_run).then(|| self.between_runs(&condensed.problem, &fit)).flatten();
+        let has_runs = by_run || between.is_some();
+        let first = between.map_or_else(|| first.clone(), |between| together(&first, &between));
         let parts: Vec<Part> = std::iter::once(first).chain(declared).collect();
         let unknowns = (self.names.iter().zip(&fit.coefficients).enumerate())
             .map(|(j, ((name, unit), c))| Unknown {
@@ -79,6 +87,7 @@ impl<E: Equation> Problem<'_, E> {
             errors,
             fitted,
             by,
+            has_runs,
             clusters,
             is_scaled,
             samples,
@@ -86,6 +95,41 @@ impl<E: Equation> Problem<'_, E> {
             sigma: (squares / samples as f64).sqrt(),
             delay_s: self.delay_s(&values(&fit)),
         })
+    }
+
+    /// What the drag changes by from run to run, where their cycles are the clusters; `None` of too few runs.
+    fn between_runs(&self, problem: &ls::Problem, fit: &ls::Fit) -> Option<Part> {
+        let of_cycle: Vec<usize> =
+            self.runs.iter().enumerate().flat_map(|(r, run)| vec![r; run.motion.cycles.len()]).collect();
+        let of_row: Vec<usize> = problem.cluster.as_deref()?.iter().map(|cycle| of_cycle[*cycle]).collect();
+        let (beta, n) = (unbounded(fit), problem.n_rows());
+        let sum = |i: usize, columns: std::ops::Range<usize>| -> f64 {
+            columns.map(|j| problem.design[(i, j)] * beta[j]).sum()
+        };
+        let part_of_run = |r: usize| -> Vec<f64> {
+            (0..n).map(|i| if of_row[i] == r { sum(i, self.bounded.clone()) } else { 0.0 }).collect()
+        };
+        let parts: Vec<Vec<f64>> =
+            (0..self.runs.len()).map(part_of_run).filter(|c| c.iter().any(|x| *x != 0.0)).collect();
+        let left: Vec<f64> = (0..n).map(|i| problem.response[i] - sum(i, 0..beta.len())).collect();
+        // What is held takes nothing of a load, and what is known beforehand draws to zero.
+        let held = self.held().into_iter().map(|(j, _)| j);
+        let about_zero = |(_, prior): (String, ls::Prior)| ls::Prior { value: 0.0, ..prior };
+        let options = ls::Options {
+            excluded: self.excluded().into_iter().chain(held).collect(),
+            priors: self.known().into_iter().map(about_zero).collect(),
+            ..ls::Options::default()
+        };
+        let left_of = |y: &[f64]| {
+            let of = ls::Problem { response: y.to_vec(), ..problem.clone() };
+            Some(ls::fit(&of, &options).ok()?.residuals)
+        };
+        let BetweenRuns { variance, dof } = between_runs(&parts, &left, left_of)?;
+        let p = self.names.len();
+        let moved = |c: &Vec<f64>, j: usize| (0..n).map(|i| fit.sensitivity[(j, i)] * c[i]).sum::<f64>();
+        let moves: Vec<Vec<f64>> = parts.iter().map(|c| (0..p).map(|j| moved(c, j)).collect()).collect();
+        let covariance = Mat::from_fn(p, p, |i, j| variance * moves.iter().map(|m| m[i] * m[j]).sum::<f64>());
+        Some(part(" and, of the drag, from run to run", Kind::A, covariance, dof))
     }
 
     /// CR3 of the fit at equal errors; `None` where that cannot be told.
@@ -119,6 +163,18 @@ impl<E: Equation> Problem<'_, E> {
         let none = AtEqualErrors { ratio: 1.0, dof: f64::INFINITY };
         let of = |j: usize| free[..named].iter().position(|k| *k == j).map_or(none, |i| found[i]);
         Some((0..self.names.len()).map(of).collect())
+    }
+}
+
+/// Two scatters that are independent, as one.
+fn together(first: &Part, other: &Part) -> Part {
+    let variances = |j: usize| [(first, j), (other, j)].map(|(part, j)| (part.covariance[(j, j)], part.dof[j]));
+    let p = first.dof.len();
+    Part {
+        name: format!("{}{}", first.name, other.name),
+        covariance: &first.covariance + &other.covariance,
+        dof: (0..p).map(|j| effective_dof(&variances(j))).collect(),
+        ..first.clone()
     }
 }
 

@@ -155,11 +155,11 @@ pub(crate) fn contradicted(fit: &JointFit, declared: &[(String, Uncertain)], che
 
 /// Too few runs to see what changes from one to the next.
 pub(crate) fn few_runs(fit: &JointFit) -> Option<Finding> {
-    (fit.by == "cycle").then(|| {
+    (!fit.has_runs).then(|| {
         warning(
             "few-runs",
             format!(
-                "{}: what changes from run to run is not included in the intervals, which are from {}; five runs show it",
+                "{}: what changes from run to run is not included in the intervals, which are from {}; three runs show it",
                 fit.law,
                 counted(fit.clusters, "cycle", "cycles")
             ),

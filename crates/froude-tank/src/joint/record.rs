@@ -40,7 +40,12 @@ pub(crate) fn type_a(fit: &JointFit) -> TypeA {
         names: fit.unknowns.iter().map(|u| u.name.clone()).collect(),
         matrix: rows(&scatter.covariance),
         dof: scatter.dof.iter().map(|d| Some(*d).filter(|d| d.is_finite())).collect(),
-        kind: format!("CR3{scaled}, {} {}s", fit.clusters, fit.by),
+        kind: format!(
+            "CR3{scaled}, {} {}s{}",
+            fit.clusters,
+            fit.by,
+            if fit.by == "cycle" && fit.has_runs { ", and the drag of each run" } else { "" }
+        ),
     }
 }
 

@@ -42,6 +42,8 @@ pub struct Planned {
     pub swing: Swing,
     /// Samples a second.
     pub rate_hz: f64,
+    /// What this run has of the law's drag \[-\]; 1 where nothing changes from run to run.
+    pub of_drag: f64,
 }
 
 /// A run with its log.
@@ -95,7 +97,7 @@ pub fn planned(source: &Source, setup: &Setup) -> Vec<Planned> {
                                 periods: block.periods,
                             };
                             let id = format!("{:03}", out.len() + 1);
-                            out.push(Planned { id, body, swing, rate_hz: block.rate_hz });
+                            out.push(Planned { id, body, swing, rate_hz: block.rate_hz, of_drag: 1.0 });
                         }
                     }
                 }
@@ -239,7 +241,7 @@ pub fn simulated(
             delay_s,
         };
         let swing = Swing { flow_m_s: run.swing.flow_m_s * flow, ..run.swing };
-        let drag_n = |v: [f64; 2]| truth.drag_n(body.n_links, density, v);
+        let drag_n = |v: [f64; 2]| run.of_drag * truth.drag_n(body.n_links, density, v);
         let mut trace =
             rig.swing(swing, sensor, &drag_n, seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1));
         trace.angle_rad.iter_mut().for_each(|x| *x *= angle);

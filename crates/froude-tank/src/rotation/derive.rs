@@ -236,6 +236,7 @@ mod tests {
             errors: Vec::new(),
             fitted: Vec::new(),
             by: "run",
+            has_runs: true,
             clusters: 9,
             is_scaled: true,
             samples: 0,

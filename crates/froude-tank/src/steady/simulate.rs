@@ -57,6 +57,7 @@ impl Simulated {
 }
 
 /// The run matrix and the truth of a source.
+#[derive(Debug, Clone)]
 pub struct Plan {
     /// Settings, a row per run.
     pub data: Dataset,
@@ -64,6 +65,8 @@ pub struct Plan {
     pub law: ForceLaw,
     /// Its coefficients.
     pub values: Vec<f64>,
+    /// What each run has of the law's loads \[-\]: a trip, a mount, the wake of the run before. Empty where nothing changes from run to run.
+    pub of_run: Vec<f64>,
 }
 
 /// Reads the plan of a source with its truth.
@@ -76,7 +79,7 @@ pub fn plan_of(campaign: &Campaign, source: &Source) -> Result<Plan, MethodError
     own.sources = vec![source.clone()];
     let data = planned(&own, source)?;
     let (law, values) = truth(&own, &data)?;
-    Ok(Plan { data, law, values })
+    Ok(Plan { data, law, values, of_run: Vec::new() })
 }
 
 /// Loads of the law in one row of settings at another speed and angle, N.
@@ -86,8 +89,9 @@ pub fn loads_at(plan: &Plan, row: usize, speed_m_s: f64, angle_rad: f64) -> Vec<
     at.put("speed", vec![speed_m_s], Dimension::SPEED);
     at.put("angle", vec![angle_rad], Dimension::ONE);
     at.velocity_from_speed_and_angle();
-    let names = &plan.law.responses;
-    plan.law.predict(&at, &plan.values).unwrap_or_else(|_| vec![f64::NAN; names.len()])
+    let loads = plan.law.predict(&at, &plan.values).unwrap_or_else(|_| vec![f64::NAN; plan.law.responses.len()]);
+    let factor = plan.of_run.get(row).copied().unwrap_or(1.0);
+    loads.into_iter().map(|f| factor * f).collect()
 }
 
 /// The logs of all planned runs; the same seed gives the same logs.

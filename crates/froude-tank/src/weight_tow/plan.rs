@@ -56,7 +56,7 @@ fn at_the_speeds(plan: &Plan, reduced: &[Reduced]) -> Plan {
     let mut data = plan.data.clone();
     data.put("speed", reduced.iter().map(|r| r.point.speed_m_s).collect(), Dimension::SPEED);
     data.velocity_from_speed_and_angle();
-    Plan { data, law: plan.law.clone(), values: plan.values.clone() }
+    Plan { data, law: plan.law.clone(), values: plan.values.clone(), of_run: Vec::new() }
 }
 
 /// The intervals to expect of the coefficients of the planned law.

@@ -32,6 +32,7 @@ const USUAL_SCALE_M: f64 = 1.2e-3;
 const FASTEST_M_S: f64 = 50.0;
 
 /// The planned runs with their truth.
+#[derive(Debug, Clone)]
 pub struct Weights {
     /// Settings at the terminal speeds, the law and its coefficients.
     pub plan: Plan,
@@ -121,7 +122,7 @@ pub fn weights_of(campaign: &Campaign, source: &Source) -> Result<Weights, Metho
     let (law, values) = truth(&alone, &data)?;
     let weight_n = data.values("speed").unwrap_or_default().to_vec();
     let angle = data.values("angle").unwrap_or_default().to_vec();
-    let plan = Plan { data: data.clone(), law, values };
+    let plan = Plan { data: data.clone(), law, values, of_run: Vec::new() };
     let mut speeds = Vec::new();
     for row in 0..plan.data.rows {
         let pull = weight_n[row] - spec.friction_n.value;

@@ -49,6 +49,33 @@ pub fn covers(
     claims.tank_intervals += if is_judged { each.len() } else { 0 };
 }
 
+/// What each run has of a law's loads where these change by 2 % from run to run.
+pub fn factors(runs: usize, seed: u64) -> Vec<f64> {
+    let mut rng = rand_pcg::Pcg64::new(u128::from(seed), 229);
+    (0..runs).map(|_| 1.0 + FROM_RUN_TO_RUN * crate::coverage::normal(&mut rng)).collect()
+}
+
+const FROM_RUN_TO_RUN: f64 = 0.02;
+
+/// A line about the same intervals where the drag changes by 2 % from run to run: each covers 94 % or more, but for three binomial deviations.
+pub fn between_runs(
+    claims: &mut Claims,
+    section: &'static str,
+    campaigns: &str,
+    each: &[(String, Count)],
+    is_whole: bool,
+) {
+    let words = each.iter().map(|(name, c)| format!("{name} {:.1} %", 100.0 * c.rate()));
+    let holds = each.iter().all(|(_, c)| c.z_score(0.94) >= -3.0);
+    claims.holds(
+        section,
+        &format!("the same, drag 2 % from run to run, {campaigns}: cover"),
+        "94 % or more each, less three binomial deviations",
+        words.collect::<Vec<_>>().join(", "),
+        is_whole && holds,
+    );
+}
+
 /// The family of a whole page is the one that its limit is of.
 pub fn whole(claims: &mut Claims) {
     let found = claims.tank_intervals;

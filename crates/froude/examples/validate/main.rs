@@ -1,6 +1,6 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
-//! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
+//! `validate --short` runs what the pipeline runs; `--full` runs 2,000 to 20,000 repetitions per coverage case and writes
 //! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, predict, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-moved, cfd-campaign, clocks,
 //! dynamic, potential, facets, intervals, lints, power, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
@@ -149,13 +149,13 @@ fn main() -> ExitCode {
             hour::all(claims, &root, if full { 720 } else { 24 })?;
         }
         if wants("steady") {
-            steady::all(claims, &root, if full { 20_000 } else { 60 })?;
+            steady::all(claims, &root, if full { 4_000 } else { 60 })?;
         }
         if wants("weights") {
             weights::all(claims, &root, if full { 2_000 } else { 30 })?;
         }
         if wants("accelerated") {
-            accelerated::all(claims, &root, if full { 20_000 } else { 40 })?;
+            accelerated::all(claims, &root, if full { 4_000 } else { 40 })?;
         }
         if wants("excited") {
             excited::all(claims, &root, &shared, if full { 2_000 } else { 40 })?;
@@ -185,7 +185,7 @@ fn main() -> ExitCode {
             family::whole(claims);
         }
         if wants("intervals") {
-            intervals::all(claims, &root, if full { FULL_REPETITIONS as u64 } else { 200 })?;
+            intervals::all(claims, &root, if full { 4_000 } else { 200 })?;
         }
         if wants("lints") {
             lints::clean(claims, if full { 10_000 } else { 200 })?;

@@ -17,7 +17,7 @@ use froude::records::campaign::{Campaign, Identify, SensorSpec, Source, read_cam
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
-use crate::family::{Bar, campaigns_of, covers};
+use crate::family::{Bar, between_runs, campaigns_of, covers, factors};
 
 const SECTION: &str = "Forced oscillation: Table 4 by its twin";
 const C_A: f64 = 1.277;
@@ -330,29 +330,10 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
             .collect();
         let plan = expected(case, &case.setup, &sensors, &Identify::default())?;
         let seeds = campaigns_of(factor == 1.0, seeds);
-        let fits: Vec<(OscillationFit, Vec<f64>)> = (0..seeds)
-            .into_par_iter()
-            .filter_map(|seed| {
-                let truth = drawn(case, seed as u64);
-                let logged = simulated(&case.planned, &case.setup, &truth, &sensors, 1 + seed as u64);
-                let runs: Vec<OscillationRun<'_>> =
-                    logged.iter().map(froude::methods::tank::oscillation::simulate::Simulated::view).collect();
-                let found = motions(&runs, &case.setup)
-                    .and_then(|m| fit(&runs, &m, &case.setup, &case.f4, &Identify::default()));
-                let found = found.ok()?;
-                let truths = found.unknowns.iter().map(|u| true_value(&truth, &u.name)).collect();
-                Some((found, truths))
-            })
-            .collect();
-        let mut counts = vec![Count::default(); plan.expected.len()];
-        for (fit, truths) in &fits {
-            for (j, u) in fit.unknowns.iter().enumerate() {
-                let interval = u.value.zip(u.combined).map(|(value, c)| c.interval(value));
-                counts[j].add(interval.is_some_and(|[low, high]| (low..=high).contains(&truths[j])));
-            }
-        }
+        let fits: Vec<(OscillationFit, Vec<f64>)> =
+            (0..seeds).into_par_iter().filter_map(|seed| one(case, &case.planned, &sensors, seed as u64)).collect();
         let is_judged = factor == 1.0;
-        let named: Vec<(String, Count)> = plan.expected.iter().map(|e| e.name.clone()).zip(counts).collect();
+        let named = covered(&fits);
         covers(
             claims,
             SECTION,
@@ -409,7 +390,44 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
             },
         );
     }
+    let fits: Vec<(OscillationFit, Vec<f64>)> = (0..seeds as u64)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let of_run = factors(case.planned.len(), seed);
+            let planned: Vec<Planned> =
+                case.planned.iter().zip(of_run).map(|(run, of_drag)| Planned { of_drag, ..run.clone() }).collect();
+            one(case, &planned, case.sensors(), seed)
+        })
+        .collect();
+    between_runs(claims, SECTION, &format!("{seeds} campaigns of 18 runs"), &covered(&fits), fits.len() == seeds);
     Ok(())
+}
+
+/// One campaign of these runs, with the true value of each unknown.
+fn one(case: &Case, planned: &[Planned], sensors: &[SensorSpec], seed: u64) -> Option<(OscillationFit, Vec<f64>)> {
+    let truth = drawn(case, seed);
+    let logged = simulated(planned, &case.setup, &truth, sensors, 1 + seed);
+    let runs: Vec<OscillationRun<'_>> =
+        logged.iter().map(froude::methods::tank::oscillation::simulate::Simulated::view).collect();
+    let found =
+        motions(&runs, &case.setup).and_then(|m| fit(&runs, &m, &case.setup, &case.f4, &Identify::default())).ok()?;
+    let truths = found.unknowns.iter().map(|u| true_value(&truth, &u.name)).collect();
+    Some((found, truths))
+}
+
+/// How often the interval of each unknown holds its truth.
+fn covered(fits: &[(OscillationFit, Vec<f64>)]) -> Vec<(String, Count)> {
+    let Some((first, _)) = fits.first() else { return Vec::new() };
+    let of = |j: usize| {
+        let mut count = Count::default();
+        for (fit, truths) in fits {
+            let unknown = &fit.unknowns[j];
+            let interval = unknown.value.zip(unknown.combined).map(|(value, c)| c.interval(value));
+            count.add(interval.is_some_and(|[low, high]| (low..=high).contains(&truths[j])));
+        }
+        count
+    };
+    first.unknowns.iter().enumerate().map(|(j, unknown)| (unknown.name.clone(), of(j))).collect()
 }
 
 /// Buoyancies and delay drawn about what is declared, and known to the test; the twin draws radius and masses itself.

@@ -16,7 +16,7 @@ use indexmap::IndexMap;
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
-use crate::family::{Bar, campaigns_of, covers};
+use crate::family::{Bar, between_runs, campaigns_of, covers, factors};
 
 /// The coefficients of a fit: of twenty thousand, nothing else is kept.
 pub type Fitted = IndexMap<String, Coefficient>;
@@ -42,6 +42,17 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
             .collect();
         judge(claims, SECTION, &forecast, &fits, (words, "56 tows", factor == 1.0, seeds));
     }
+    let seeds = seeds.min(2_000);
+    let fits: Vec<Fitted> = (0..seeds as u64)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let plan = Plan { of_run: factors(plan.data.rows, seed), ..plan.clone() };
+            one(&campaign, &source, &plan, sensors, seed).ok()
+        })
+        .collect();
+    let truths = expected(&plan, &source, sensors)?.into_iter().map(|e| (e.name, e.value));
+    let each = covered(truths, &fits);
+    between_runs(claims, SECTION, &format!("{seeds} campaigns of 56 tows"), &each, fits.len() == seeds);
     Ok(())
 }
 
@@ -68,6 +79,19 @@ fn one(
     let observations = reduce_table(campaign, source, &table(source.input.path(), &rows), Vec::new())?;
     let mut result = identify_observations(campaign, source, observations, "steady", &|_| {})?;
     Ok(result.estimates.remove(0).coefficients)
+}
+
+/// How often the interval of each coefficient holds its truth.
+pub fn covered(truths: impl Iterator<Item = (String, f64)>, fits: &[Fitted]) -> Vec<(String, Count)> {
+    let of = |name: &str, truth: f64| {
+        let mut count = Count::default();
+        for fit in fits {
+            let interval = fit.get(name).and_then(|c| c.interval_95);
+            count.add(interval.is_some_and(|[low, high]| (low..=high).contains(&truth)));
+        }
+        count
+    };
+    truths.map(|(name, truth)| (name.clone(), of(&name, truth))).collect()
 }
 
 /// Coverage of the intervals, and the errors of the seeds beside the forecast.

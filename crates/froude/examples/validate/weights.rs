@@ -14,7 +14,7 @@ use froude::identify::reduce::reduce_table;
 use froude::identify::source::identify_observations;
 use froude::methods::tank::steady::plan::Expected;
 use froude::methods::tank::steady::row::{Row, table};
-use froude::methods::tank::steady::simulate::loads_at;
+use froude::methods::tank::steady::simulate::{Plan, loads_at};
 use froude::methods::tank::weight_tow::plan::{exact, expected};
 use froude::methods::tank::weight_tow::reduce::{Reduced, reduce};
 use froude::methods::tank::weight_tow::simulate::{Weights, simulated, weights_of};
@@ -27,8 +27,8 @@ use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 use crate::coverage::{normal, problem_of};
-use crate::family::campaigns_of;
-use crate::steady::{Fitted, judge};
+use crate::family::{between_runs, campaigns_of, factors};
+use crate::steady::{Fitted, covered, judge};
 
 const SECTION: &str = "Weight-driven rig: tracks in pixels by their twin";
 
@@ -53,8 +53,8 @@ impl Case {
         self.campaign.simulate.as_ref().map_or(&[], |s| &s.sensors)
     }
 
-    fn one(&self, sensors: &[SensorSpec], seed: u64) -> Result<Fitted, Box<dyn Error + Send + Sync>> {
-        let logged = simulated(&self.weights, &self.spec, sensors, &self.source.uncertainty, 1 + seed);
+    fn of(&self, weights: &Weights, sensors: &[SensorSpec], seed: u64) -> Result<Fitted, Box<dyn Error + Send + Sync>> {
+        let logged = simulated(weights, &self.spec, sensors, &self.source.uncertainty, 1 + seed);
         let mut rows = Vec::new();
         let mut reduced: Vec<Reduced> = Vec::new();
         for run in &logged {
@@ -76,7 +76,7 @@ impl Case {
     }
 
     fn fits(&self, sensors: &[SensorSpec], seeds: usize) -> Vec<Fitted> {
-        (0..seeds).into_par_iter().filter_map(|seed| self.one(sensors, seed as u64).ok()).collect()
+        (0..seeds).into_par_iter().filter_map(|seed| self.of(&self.weights, sensors, seed as u64).ok()).collect()
     }
 
     fn forecast(&self, sensors: &[SensorSpec]) -> Result<Vec<Expected>, Box<dyn Error>> {
@@ -99,6 +99,18 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
         let fits = case.fits(&sensors, seeds);
         judge(claims, SECTION, &forecast, &fits, (words, "78 runs", factor == 1.0, seeds));
     }
+    let sensors = case.sensors();
+    let fits: Vec<Fitted> = (0..seeds as u64)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let plan = &case.weights.plan;
+            let plan = Plan { of_run: factors(plan.data.rows, seed), ..plan.clone() };
+            let weights = Weights { plan, ..case.weights.clone() };
+            case.of(&weights, sensors, seed).ok()
+        })
+        .collect();
+    let each = covered(case.forecast(sensors)?.into_iter().map(|e| (e.name, e.value)), &fits);
+    between_runs(claims, SECTION, &format!("{seeds} campaigns of 78 runs"), &each, fits.len() == seeds);
     errors_of_speed(claims, root, seeds)
 }
 
