@@ -7,6 +7,7 @@ use froude_control::status::Phase;
 use froude_hydro::fluid;
 use froude_identify::method::MethodError;
 use froude_identify::runs::{files, of_method, refuse_others};
+use froude_identify::wild;
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Campaign, Fluid, read_campaign};
 use froude_records::finding::{Finding, Severity};
@@ -100,6 +101,14 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
             Seen::LeftOut(why) => out.findings.push(why),
             Seen::Whole(log) => {
                 complete.add(file, &log.meta);
+                if let Some(what) = wild::sample(&log, &[]) {
+                    let text = format!(
+                        "{}: left out: {what}; look at the sensor and its cable, and tow the run again",
+                        log.meta.id
+                    );
+                    out.findings.push(Finding::new(Severity::Warning, "run-left-out", text));
+                    continue;
+                }
                 members.push(Member::of(file, &log.meta)?);
                 doubts.extend(log.doubts.iter().cloned());
                 for gap in &log.lost {

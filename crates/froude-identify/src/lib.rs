@@ -59,6 +59,7 @@ pub mod unexplained;
 pub mod validation;
 pub mod validity;
 mod verdict;
+pub mod wild;
 mod zero;
 
 pub use error::IdentifyError;

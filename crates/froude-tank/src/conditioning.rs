@@ -4,7 +4,7 @@
 //! |-------------|-------------|--------------------------------------------------------------------------------------------------------|
 //! | `read`      | –           | columns by unit and sign (done by the importer)                                                        |
 //! | `times`     | [`times`]   | times of a calendar are counted from the first sample of the log                                        |
-//! | –           | [`wild`]    | a sample orders of magnitude away from all others is refused                                            |
+//! | –           | [`froude_identify::wild`] | a sample orders of magnitude away from all others is refused                                            |
 //! | `clock`, `delay`, `filter` | [`align`] | stamps of another clock, and late ones, as times of the log                               |
 //! | `clipped`   | [`clipped`] | readings at the end of the range, or flat at an extreme, are marked                                    |
 //! | `resampled` | [`align`]   | channels whose stamps moved, by a cubic spline at the rows of the log; rows without data are cut        |
@@ -22,9 +22,9 @@ pub mod loads;
 pub mod resolution;
 pub mod stretches;
 pub mod times;
-pub mod wild;
 
 use froude_identify::method::MethodError;
+use froude_identify::wild;
 use froude_records::run::ImportedRun;
 use froude_records::run::step::Step;
 
@@ -47,11 +47,28 @@ pub fn condition(run: &mut ImportedRun, method: &str) -> Result<(), MethodError>
     times::from_the_first_sample(run);
     run.findings.extend(stretches::astray(&run.log, &run.declared.marks));
     resolution::check(run);
-    wild::check(run)?;
+    if let Some(what) = wild::sample(&run.log, &run.declared.marks) {
+        let sidecar = run.log.path.with_extension("toml");
+        let advice = format!("correct the sample, or exclude it ([[marks]] with from and to in {})", sidecar.display());
+        return Err(MethodError::input(&run.log.path, format!("{what}; {advice}")));
+    }
     let stamps = align::stamps(run, method);
     clipped::mark(run, &stamps);
     align::resample(run, &stamps)?;
     loads::of_cell(run)?;
     loads::in_body(run)?;
     stretches::cut(run, method)
+}
+
+/// Refuses a log whose steps of time are far longer than those of the others.
+///
+/// # Errors
+///
+/// The first such log, with both numbers.
+pub fn of_one_rig(runs: &[ImportedRun]) -> Result<(), MethodError> {
+    let Some((k, what)) = wild::steps(&runs.iter().map(|run| &run.log).collect::<Vec<_>>()) else { return Ok(()) };
+    let path = &runs[k].log.path;
+    let sidecar = path.with_extension("toml");
+    let advice = format!("correct the unit in {}, or remove the log from the folder", sidecar.display());
+    Err(MethodError::input(path, format!("{what}; {advice}")))
 }

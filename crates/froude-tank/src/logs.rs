@@ -105,7 +105,7 @@ pub(crate) fn read_averaging(
         out.runs.push(log);
     }
     out.findings.extend(once(of_logs));
-    conditioning::wild::compare(&out.runs)?;
+    conditioning::of_one_rig(&out.runs)?;
     out.findings.extend(of_a_calendar(&out.runs));
     Ok(out)
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::conditioning::{condition, wild};
+use crate::conditioning::{condition, of_one_rig};
 use crate::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, Restoring, RunSummary};
 use crate::decay::{envelope, output_error, plan, record, releases};
 use crate::logs;
@@ -279,7 +279,7 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
         }
         out.logs.push(log);
     }
-    wild::compare(&out.logs)?;
+    of_one_rig(&out.logs)?;
     out.findings.extend(logs::of_a_calendar(&out.logs));
     Ok(out)
 }

@@ -1,0 +1,121 @@
+//! Samples and logs that are orders of magnitude away from all others: a dropped bit, a lost decimal point, a time in milliseconds.
+//!
+//! Least squares follow one such number wherever it leads, so it is named and not weighed: the motion and the loads of a test are continuous, and a set of runs is of one rig.
+//!
+//! - **A sample** lies further from all others of its channel than a hundred times their range, and at most three do, with others before and after. Channels of few values (a mark, a command) are left alone.
+//! - **A log** has steps of time three hundred times the longest of the others. Ranges of loads and motions are not compared: one run may move among many at rest.
+
+use froude_records::number::{plain, significant};
+use froude_records::run::marks::Mark;
+use froude_records::run::{Channel, RunLog};
+
+/// Distance from all other samples, as a multiple of their range.
+const BEYOND: f64 = 100.0;
+/// Samples that may be wild at once.
+const FEW: usize = 3;
+/// Fewest samples, and fewest distinct values, that a range is taken from.
+const FEWEST: usize = 20;
+/// Runs that are needed to say what is usual.
+const FEWEST_RUNS: usize = 3;
+/// Ratio to the longest step of the other logs; a wrong prefix gives a thousand.
+const TIMES: f64 = 300.0;
+/// Units of motions and loads; a trigger may be of two samples.
+const OF_TEST: [&str; 6] = ["m", "rad", "N", "N m", "m/s", "rad/s"];
+
+/// What is said of a sample that no other sample of its channel comes near, with its time; what a mark leaves out is not asked.
+#[must_use]
+pub fn sample(log: &RunLog, marks: &[Mark]) -> Option<String> {
+    let times = &log.time_s;
+    let is_marked = |i: usize| times.get(i).is_some_and(|t| marks.iter().any(|m| m.touches(*t, *t)));
+    let has_rows =
+        |channel: &&Channel| channel.values.len() == times.len() && OF_TEST.contains(&channel.meaning.unit.as_str());
+    log.channels.iter().filter(|(_, channel)| has_rows(channel)).find_map(|(name, channel)| {
+        let of_rows = channel.values.iter().enumerate().filter(|(i, _)| !is_marked(*i));
+        let (row, low, high) = wild(of_rows.map(|(i, value)| (i, *value)).collect())?;
+        // What a log begins or ends with may be at rest.
+        let is_usual = |i: usize| (low..=high).contains(&channel.values[i]);
+        let is_between = (0..row).any(is_usual) && (row + 1..times.len()).any(is_usual);
+        is_between.then(|| {
+            let unit = &channel.meaning.unit;
+            format!(
+                "{name} is {} {unit} at {} s, but otherwise lies between {} and {} {unit}: no load or motion jumps that far and back",
+                significant(channel.values[row], 4),
+                plain(times[row], 5),
+                significant(low, 3),
+                significant(high, 3)
+            )
+        })
+    })
+}
+
+/// The row of the wildest of values, and the range of those that are not wild.
+fn wild(mut values: Vec<(usize, f64)>) -> Option<(usize, f64, f64)> {
+    let n = values.len();
+    if n < FEWEST + FEW {
+        return None;
+    }
+    // Of all values those at either end are enough: no sorting of a long log.
+    let by_value = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
+    values.select_nth_unstable_by(FEW, by_value);
+    values[FEW + 1..].select_nth_unstable_by(n - 2 * FEW - 2, by_value);
+    values[..FEW].sort_by(by_value);
+    values[n - FEW..].sort_by(by_value);
+    let at = |i: usize| values[i].1;
+    // Cuts of k values below and m above; the first cuts nothing.
+    let mut cuts = (0..=FEW).flat_map(|k| (0..=FEW - k).map(move |m| (k, n - 1 - m))).skip(1);
+    let found = cuts.find_map(|(low, high)| {
+        let range = at(high) - at(low);
+        let far = |x: f64| x > BEYOND * range && range > 0.0;
+        let below = low == 0 || far(at(low) - at(low - 1));
+        let above = high == n - 1 || far(at(high + 1) - at(high));
+        let place = if high < n - 1 { n - 1 } else { 0 };
+        (below && above).then_some((values[place].0, at(low), at(high)))
+    })?;
+    let mut all: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
+    all.sort_by(f64::total_cmp);
+    (all.windows(2).filter(|pair| pair[0] != pair[1]).count() >= FEWEST).then_some(found)
+}
+
+/// What is said of a log whose steps of time are far longer than those of the other logs, and which it is.
+#[must_use]
+pub fn steps(logs: &[&RunLog]) -> Option<(usize, String)> {
+    let step_s = |log: &RunLog| {
+        let times = &log.time_s;
+        Some((times.last()? - times.first()?) / (times.len() as f64 - 1.0).max(1.0)).filter(|step| *step > 0.0)
+    };
+    let sizes: Vec<(usize, f64)> = logs.iter().enumerate().filter_map(|(k, log)| Some((k, step_s(log)?))).collect();
+    if sizes.len() < FEWEST_RUNS {
+        return None;
+    }
+    sizes.iter().find_map(|(k, own)| {
+        let others = sizes.iter().filter(|(other, _)| other != k).map(|(_, size)| *size);
+        let largest = others.fold(0.0, f64::max);
+        (largest > 0.0 && *own > TIMES * largest).then(|| {
+            let text = format!(
+                "the step of its times is {} s, but at most {} s in the other {} logs: a log in the wrong unit would dominate every fit",
+                significant(*own, 3),
+                significant(largest, 3),
+                sizes.len() - 1
+            );
+            (*k, text)
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_sample_of_a_million_newtons_is_wild_and_a_peak_is_not() {
+        let motion = |peak: f64| -> Vec<(usize, f64)> {
+            (0..200).map(|i| (i, if i == 7 { peak } else { (0.1 * i as f64).sin() })).collect()
+        };
+        for peak in [1e6, -1e6] {
+            assert_eq!(wild(motion(peak)).map(|(row, ..)| row), Some(7));
+        }
+        assert_eq!(wild(motion(40.0)), None);
+        // A mark: one sample of another value than all others.
+        assert_eq!(wild((0..200).map(|i| (i, f64::from(u8::from(i == 7)))).collect()), None);
+    }
+}
