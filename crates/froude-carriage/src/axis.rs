@@ -9,6 +9,7 @@ use froude_fit::distribution::coverage_factor;
 use froude_fit::series::mean;
 use froude_identify::method::MethodError;
 use froude_identify::source::ReadFile;
+use froude_identify::wild;
 use froude_records::estimate::{Estimate, OWN};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
@@ -145,10 +146,14 @@ pub fn of_table(
 ) -> Result<AxisModels, MethodError> {
     let imported = import_run(path, sidecar)?;
     let log = &imported.log;
+    if let Some(what) = wild::sample(log, &imported.declared.marks) {
+        return Err(MethodError::input(path, format!("{what}; correct the sample, or cut the log there")));
+    }
     let servo = servo_log(log)?;
     // The mean step, as the chunks of a long log have it.
     let rate_hz = servo.rate_hz().map_err(MethodError::refused)?;
-    let fit = |friction| identify_servo(&servo, &log_chain(gain.n_v, rate_hz, friction)).map_err(MethodError::refused);
+    let fit =
+        |friction| identify_servo(&servo, &Chain::of_log(gain.n_v, rate_hz, friction)).map_err(MethodError::refused);
     let rigid = asked.iter().filter_map(|model| Some((model.friction()?, fit(friction_of(*model)))));
     let (models, not_fitted) = each(rigid);
     let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
@@ -185,11 +190,6 @@ fn friction_of(model: AxisModel) -> Friction {
     }
 }
 
-/// The pinned chain of a record at 1 kHz, scaled with the record's rate.
-fn log_chain(force_per_volt_n_v: f64, rate_hz: f64, friction: Friction) -> Chain {
-    Chain { corner_hz: 0.1 * rate_hz, ..Chain::new(force_per_volt_n_v, friction) }
-}
-
 /// What a sidecar says that a volt of the command is, N/V.
 ///
 /// # Errors
@@ -215,6 +215,9 @@ fn reported(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
     for model in models {
         for text in &model.report.findings {
             findings.push(Finding::new(Severity::Warning, "servo", format!("{}: {text}", model.name)));
+        }
+        for text in &model.report.excitation {
+            findings.push(Finding::new(Severity::Warning, "weak-excitation", format!("{}: {text}", model.name)));
         }
     }
     findings

@@ -23,6 +23,7 @@
 pub mod chain;
 mod cluster;
 mod error;
+mod excitation;
 pub mod flexible;
 pub mod friction;
 mod gauss_newton;

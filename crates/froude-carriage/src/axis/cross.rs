@@ -16,7 +16,8 @@ use froude_records::page::{DocumentSection, TextTable};
 use froude_records::run::import_run;
 
 use super::source::Servo;
-use super::{AxisModel, force_per_volt_n_v, friction_of, log_chain, servo_log};
+use super::{AxisModel, force_per_volt_n_v, friction_of, servo_log};
+use crate::servo::Chain;
 
 /// The error of one model.
 struct Cross {
@@ -46,7 +47,7 @@ pub fn held_against(
     for estimate in estimates {
         let model = AxisModel::ALL.into_iter().find(|model| model.name() == estimate.method.name);
         let Some(model) = model.filter(|model| Servo::OF_LOGS.contains(&model.name())) else { continue };
-        let chain = log_chain(force_per_volt_n_v, rate_hz, friction_of(model));
+        let chain = Chain::of_log(force_per_volt_n_v, rate_hz, friction_of(model));
         let rows = chain.rows(&log).map_err(MethodError::refused)?;
         // Of a rig the friction may have no offset.
         let value = |label: &str| {

@@ -18,12 +18,12 @@ use froude_records::table::Table;
 use froude_records::units::Dimension;
 
 use super::page::with_declared;
-use super::{AxisModel, friction_of, log_chain, one_excitation};
+use super::{AxisModel, friction_of, one_excitation};
 use crate::runs::implausible;
 use crate::servo::log::{is_even, rate_of};
 use crate::servo::report::negative;
 use crate::servo::scale::ForcePerVolt;
-use crate::servo::{LongReport, LongServo, ServoCoefficient, ServoError, record};
+use crate::servo::{Chain, LongReport, LongServo, ServoCoefficient, ServoError, record};
 
 /// Whether a log has more rows than are kept.
 pub(super) fn is_long(path: &Path) -> bool {
@@ -121,7 +121,7 @@ pub(super) fn of_table(
     let rate_hz = clock.rate_hz().map_err(MethodError::refused)?;
     let rigid = asked.iter().filter_map(|model| Some((model.friction()?, friction_of(*model))));
     let mut under_way = rigid
-        .map(|(words, friction)| Ok((words, LongServo::new(&log_chain(gain.n_v, rate_hz, friction), rate_hz)?)))
+        .map(|(words, friction)| Ok((words, LongServo::new(&Chain::of_log(gain.n_v, rate_hz, friction), rate_hz)?)))
         .collect::<Result<Vec<_>, ServoError>>()
         .map_err(MethodError::refused)?;
     for_each_chunk(path, sidecar, &mut |table| {
@@ -149,6 +149,11 @@ pub(super) fn of_table(
         let doubts: Vec<String> = negative(&coefficients).collect();
         let said = doubts.iter().map(|text| Finding::new(Severity::Warning, "servo", format!("{words}: {text}")));
         out.findings.extend(said);
+        let weak = report
+            .excitation
+            .iter()
+            .map(|text| Finding::new(Severity::Warning, "weak-excitation", format!("{words}: {text}")));
+        out.findings.extend(weak);
         let mut estimate = record::long(name, words, (&report, &coefficients), &doubts, gain);
         kind.clone_into(&mut estimate.kind);
         tables.push(with_declared(coefficient_table(words, &report, &coefficients), Some(&estimate)));
@@ -164,14 +169,15 @@ pub(super) fn of_table(
 fn coefficients(report: &LongReport) -> Vec<ServoCoefficient> {
     let coverage = coverage_factor(0.95, report.dof);
     let of = |(j, (name, unit)): (usize, &(String, &'static str))| {
-        let (value, half) = (report.coefficients[j], coverage * report.hac[j]);
+        let hac_std = if report.is_told[j] { report.hac[j] } else { f64::NAN };
+        let (value, half) = (report.coefficients[j], coverage * hac_std);
         ServoCoefficient {
             name: name.clone(),
             unit,
             value,
             classical_std: report.classical[j],
-            hac_std: report.hac[j],
-            block_std: report.hac[j],
+            hac_std,
+            block_std: hac_std,
             interval: [value - half, value + half],
         }
     };

@@ -21,6 +21,11 @@ use crate::servo::interval::IntervalOptions;
 use crate::servo::log::ServoLog;
 use crate::servo::rows::Rows;
 
+/// Rows of a log a second, Hz: noise of the position counts with the fifth power of their rate, and a rigid axis needs no more.
+const ROW_RATE_HZ: f64 = 50.0;
+/// Most that the filter of a row may see of samples near rest and reversal.
+pub(crate) const MOST_NEAR_REST: f64 = 0.2;
+
 /// How a record is made into rows, and what is fitted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
@@ -34,6 +39,10 @@ pub struct Chain {
     pub decimation: usize,
     /// Dropped at each end, s.
     pub trim_s: f64,
+    /// Whether a sample's command acts until the next one, as that of a digital drive does: the force at a sample is then the mean of what acts before and after it.
+    pub is_held: bool,
+    /// Whether samples near rest and reversal are left out, where the direction of friction is not known: taken out of both sides before the decimation, with rows that have little else.
+    pub is_moving: bool,
     /// Friction law.
     pub friction: Friction,
     /// How intervals are made.
@@ -50,9 +59,39 @@ impl Chain {
             corner_hz: 100.0,
             decimation: 10,
             trim_s: 0.2,
+            is_held: false,
+            is_moving: false,
             friction,
             intervals: IntervalOptions::default(),
         }
+    }
+
+    /// For any log: the position's corner at a tenth of its rate, some fifty rows a second, a command that is held, and no rows near rest and reversal.
+    #[must_use]
+    pub fn of_log(force_per_volt_n_v: f64, rate_hz: f64, friction: Friction) -> Self {
+        let decimation = ((rate_hz / ROW_RATE_HZ).round() as usize).max(10);
+        Self {
+            corner_hz: 0.1 * rate_hz,
+            decimation,
+            is_held: true,
+            is_moving: true,
+            ..Self::new(force_per_volt_n_v, friction)
+        }
+    }
+
+    /// 1 for samples that are so close to rest or reversal that the position's filter sees it: |v| ≤ 2|a|/corner.
+    pub(crate) fn near_rest(&self, motion: &Motion) -> Vec<f64> {
+        let reach_s = 2.0 / self.corner_hz;
+        let is_near = |(v, a): (&f64, &f64)| f64::from(u8::from(v.abs() <= reach_s * a.abs()));
+        motion.velocity_m_s.iter().zip(&motion.acceleration_m_s2).map(is_near).collect()
+    }
+
+    /// The force of commands, `before` being that of the sample before the first.
+    pub(crate) fn force_n(&self, command_v: &[f64], before: Option<f64>) -> Vec<f64> {
+        let g = self.force_per_volt_n_v;
+        let held = |i: usize| if i > 0 { command_v[i - 1] } else { before.unwrap_or(command_v[0]) };
+        let of = |i: usize| if self.is_held { 0.5 * g * (held(i) + command_v[i]) } else { g * command_v[i] };
+        (0..command_v.len()).map(of).collect()
     }
 
     /// How rows are made of a record at `rate_hz`, in words.
@@ -60,12 +99,14 @@ impl Chain {
     pub fn words(&self, rate_hz: f64) -> String {
         format!(
             "position through a zero-phase Butterworth low-pass of order {} at {} Hz and differentiated twice; rows decimated by {} from {} Hz \
-             after an anti-alias filter, without {} s at each end",
+             after an anti-alias filter, without {} s at each end{}{}",
             self.filter_order,
             plain(self.corner_hz, 3),
             self.decimation,
             plain(rate_hz, 4),
-            plain(self.trim_s, 3)
+            plain(self.trim_s, 3),
+            if self.is_moving { " and without those near rest and reversal" } else { "" },
+            if self.is_held { "; the command acts until the next one" } else { "" }
         )
     }
 
@@ -90,9 +131,22 @@ impl Chain {
     pub fn rows(&self, log: &ServoLog) -> Result<Rows, ServoError> {
         let rate_hz = log.rate_hz()?;
         let motion = self.motion(&log.position_m, rate_hz)?;
-        let force_n: Vec<f64> = log.command_v.iter().map(|u| self.force_per_volt_n_v * u).collect();
+        let force_n = self.force_n(&log.command_v, None);
         let regressors = self.regressors(&motion, log.load_n.as_deref())?;
-        self.decimated(&log.time_s, &force_n, regressors, rate_hz)
+        if !self.is_moving {
+            return self.decimated(&log.time_s, &force_n, regressors, rate_hz);
+        }
+        let near = self.near_rest(&motion);
+        let moving = |x: &[f64]| x.iter().zip(&near).map(|(x, near)| x * (1.0 - near)).collect::<Vec<f64>>();
+        let regressors = regressors.into_iter().map(|r| Regressor { values: moving(&r.values), ..r }).collect();
+        let rows = self.decimated(&log.time_s, &moving(&force_n), regressors, rate_hz)?;
+        let near = decimate::decimate(&near, self.decimation)?;
+        let trim = (near.len() - rows.force_n.len()) / 2;
+        let moving: Vec<usize> = (0..rows.force_n.len()).filter(|i| near[trim + i] <= MOST_NEAR_REST).collect();
+        if moving.len() < rows.columns.len() + 2 {
+            return Err(ServoError::AtRest { rows: moving.len(), needed: rows.columns.len() + 2 });
+        }
+        Ok(rows.chosen(&moving))
     }
 
     /// Columns at the full rate: inertia, then friction.

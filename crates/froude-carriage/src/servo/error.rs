@@ -44,6 +44,17 @@ pub enum ServoError {
         needed: usize,
     },
 
+    /// A motion that is all rest and reversal.
+    #[error(
+        "{rows} of the rows are away from rest and reversal, and {needed} are needed: the axis hardly moves, or turns all the time; record a longer or a slower motion"
+    )]
+    AtRest {
+        /// Rows that move.
+        rows: usize,
+        /// Rows that are needed.
+        needed: usize,
+    },
+
     /// A setting that cannot be.
     #[error("{what} is {found}; {must}")]
     Setting {

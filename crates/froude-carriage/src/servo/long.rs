@@ -23,8 +23,9 @@ use froude_fit::stream::{Accumulator, Shape};
 use froude_signal::butterworth;
 use froude_signal::stream::{Decimator, Differences, Link, ZeroPhase};
 
-use crate::servo::chain::{Chain, Motion};
+use crate::servo::chain::{Chain, MOST_NEAR_REST, Motion};
 use crate::servo::error::ServoError;
+use crate::servo::excitation::{Column, Weak, weak};
 use crate::servo::interval::diagonal_roots;
 use crate::servo::regression::{inverse_gram, solve};
 
@@ -57,6 +58,10 @@ pub struct LongReport {
     pub relative_force_error: f64,
     /// Least and largest value of each regressor.
     pub ranges: Vec<[f64; 2]>,
+    /// Which motion would tell what this one does not; those coefficients have no interval.
+    pub excitation: Vec<String>,
+    /// Whether the motion tells each coefficient.
+    pub is_told: Vec<bool>,
     /// How the rows of the regression were made, in words.
     pub preparation: String,
     /// Rows of the regression.
@@ -103,13 +108,22 @@ pub struct LongServo {
     motion: Motion,
     /// Load on the guides of those samples.
     load_n: Vec<f64>,
+    /// Force of the samples whose motion is not yet complete.
+    force_n: Vec<f64>,
+    /// The command before the next one.
+    before_v: Option<f64>,
     force: Decimator,
+    /// How close to rest and reversal samples are, where rows near these are left out.
+    near_rest: Decimator,
     columns: Vec<Decimator>,
     decimated: Decimated,
     rows: Accumulator,
     windows: Windows,
-    /// Sum of the squares of the force.
+    /// Sum of the squares of the force, and of each column.
     squares_n2: f64,
+    squares: Vec<f64>,
+    /// Rows that were fitted.
+    fitted: usize,
     ranges: Vec<[f64; 2]>,
 }
 
@@ -117,6 +131,7 @@ pub struct LongServo {
 #[derive(Debug, Clone)]
 struct Decimated {
     force_n: Vec<f64>,
+    near_rest: Vec<f64>,
     columns: Vec<Vec<f64>>,
     /// Rows at the record's front that are still to be dropped.
     in_front: usize,
@@ -155,12 +170,22 @@ impl LongServo {
             second: Differences::new(rate_hz.recip())?,
             motion: none,
             load_n: Vec::new(),
+            force_n: Vec::new(),
+            before_v: None,
             force: decimator.clone(),
+            near_rest: decimator.clone(),
             columns: vec![decimator; names.len()],
-            decimated: Decimated { force_n: Vec::new(), columns: vec![Vec::new(); names.len()], in_front: trim },
+            decimated: Decimated {
+                force_n: Vec::new(),
+                near_rest: Vec::new(),
+                columns: vec![Vec::new(); names.len()],
+                in_front: trim,
+            },
             rows: Accumulator::new(Shape { regressors: names.len(), responses: 1 }),
             windows: Windows::new(names.len(), (lag_s * row_rate_hz).round() as usize),
             squares_n2: 0.0,
+            squares: vec![0.0; names.len()],
+            fitted: 0,
             ranges: vec![[f64::INFINITY, f64::NEG_INFINITY]; names.len()],
             chain: chain.clone(),
             names,
@@ -186,8 +211,9 @@ impl LongServo {
             if let Some(load_n) = load_n {
                 self.load_n.extend_from_slice(&load_n[bite.clone()]);
             }
-            let force_n: Vec<f64> = command_v[bite.clone()].iter().map(|u| self.chain.force_per_volt_n_v * u).collect();
-            self.force.push(&force_n, &mut self.decimated.force_n);
+            let command_v = &command_v[bite.clone()];
+            self.force_n.extend(self.chain.force_n(command_v, self.before_v));
+            self.before_v = command_v.last().copied();
             let position = self.motion.position_m.len();
             self.filter.take(&position_m[bite], &mut self.motion.position_m);
             self.differentiate(position);
@@ -214,8 +240,19 @@ impl LongServo {
             acceleration_m_s2: part(acceleration_m_s2),
         };
         let load_n = self.load_n.get(..n).filter(|_| self.chain.friction.is_loaded);
-        let regressors = self.chain.regressors(&motion, load_n)?;
+        let mut regressors = self.chain.regressors(&motion, load_n)?;
         self.load_n.drain(..n.min(self.load_n.len()));
+        let mut force_n: Vec<f64> = self.force_n.drain(..n).collect();
+        let near = self.chain.near_rest(&motion);
+        self.near_rest.push(&near, &mut self.decimated.near_rest);
+        if self.chain.is_moving {
+            let moving = |x: &mut Vec<f64>| x.iter_mut().zip(&near).for_each(|(x, near)| *x *= 1.0 - near);
+            moving(&mut force_n);
+            for regressor in &mut regressors {
+                moving(&mut regressor.values);
+            }
+        }
+        self.force.push(&force_n, &mut self.decimated.force_n);
         let to = self.columns.iter_mut().zip(&mut self.decimated.columns);
         for (regressor, (decimator, column)) in regressors.iter().zip(to) {
             decimator.push(&regressor.values, column);
@@ -225,20 +262,28 @@ impl LongServo {
 
     /// Decimated rows into the fit.
     fn fit(&mut self, kept: usize) -> Result<(), ServoError> {
-        let Decimated { force_n, columns, in_front } = &mut self.decimated;
-        let complete = columns.iter().map(Vec::len).fold(force_n.len(), usize::min);
+        let Decimated { force_n, near_rest, columns, in_front } = &mut self.decimated;
+        let complete = columns.iter().map(Vec::len).fold(force_n.len().min(near_rest.len()), usize::min);
         let ready = complete.saturating_sub(kept);
         let dropped = ready.min(*in_front);
         *in_front -= dropped;
-        let regressors: Vec<&[f64]> = columns.iter().map(|c| &c[dropped..ready]).collect();
-        let response = &force_n[dropped..ready];
+        let is_taken = |i: &usize| !self.chain.is_moving || near_rest[*i] <= MOST_NEAR_REST;
+        let taken: Vec<usize> = (dropped..ready).filter(is_taken).collect();
+        let of = |column: &[f64]| taken.iter().map(|&i| column[i]).collect::<Vec<f64>>();
+        let (kept, response) = (columns.iter().map(|c| of(c)).collect::<Vec<_>>(), of(force_n));
+        let (regressors, response): (Vec<&[f64]>, &[f64]) = (kept.iter().map(Vec::as_slice).collect(), &response);
+        self.fitted += taken.len();
         self.rows.push(&regressors, &[response])?;
         self.windows.push(&regressors, response);
         self.squares_n2 += response.iter().map(|f| f * f).sum::<f64>();
         for (range, column) in self.ranges.iter_mut().zip(&regressors) {
             *range = column.iter().fold(*range, |[low, high], x| [low.min(*x), high.max(*x)]);
         }
+        for (squares, column) in self.squares.iter_mut().zip(&regressors) {
+            *squares += column.iter().map(|x| x * x).sum::<f64>();
+        }
         force_n.drain(..ready);
+        near_rest.drain(..ready);
         for column in columns {
             column.drain(..ready);
         }
@@ -266,10 +311,15 @@ impl LongServo {
         self.second.clone().finish(&mut self.motion.acceleration_m_s2)?;
         self.regress(self.trim)?;
         self.force.clone().finish(&mut self.decimated.force_n);
+        self.near_rest.clone().finish(&mut self.decimated.near_rest);
         for (decimator, column) in self.columns.iter().zip(&mut self.decimated.columns) {
             decimator.clone().finish(column);
         }
         self.fit(self.trim)?;
+        let rows = self.fitted;
+        if rows < needed {
+            return Err(ServoError::AtRest { rows, needed });
+        }
 
         let solution = self.rows.finish().solve(0)?;
         let p = self.names.len();
@@ -280,7 +330,22 @@ impl LongServo {
         let rate_hz = self.rate_hz / self.chain.decimation as f64;
         let covariance = &inverse_gram * middle * &inverse_gram;
         let windows = rows as f64 / (self.windows.lag + 1) as f64;
+        let columns: Vec<Column<'_>> = (0..p)
+            .map(|j| Column {
+                name: &self.names[j].0,
+                value: solution.coefficients[j],
+                classical: solution.standard[j],
+                rms: (self.squares[j] / rows as f64).sqrt(),
+            })
+            .collect();
+        let weak = if self.chain.is_moving {
+            weak(&columns, solution.sigma, rows)
+        } else {
+            Weak { is_told: vec![true; p], ..Weak::default() }
+        };
         Ok(LongReport {
+            excitation: weak.findings,
+            is_told: weak.is_told,
             hac: diagonal_roots(&covariance),
             covariance,
             dof: (1.5 * windows).min(solution.dof),

@@ -9,6 +9,7 @@ use froude_records::text::counted;
 
 use crate::servo::chain::Chain;
 use crate::servo::error::ServoError;
+use crate::servo::excitation::{Column, Weak, weak};
 use crate::servo::interval::{Spread, Whiteness, over_runs, spread, whiteness};
 use crate::servo::log::ServoLog;
 use crate::servo::motor::MotorSide;
@@ -68,6 +69,8 @@ pub struct ServoReport {
     pub runs: Vec<Range<usize>>,
     /// What a reader must know before using the numbers.
     pub findings: Vec<String>,
+    /// Which motion would tell what this one does not; those coefficients have no interval.
+    pub excitation: Vec<String>,
 }
 
 impl ServoReport {
@@ -126,7 +129,10 @@ pub fn identify_servo(columns: &ServoLog, chain: &Chain) -> Result<ServoReport, 
 /// [`ServoError`].
 pub fn of_rows(rows: Rows, chain: &Chain) -> Result<ServoReport, ServoError> {
     let solution = least_squares(&rows)?;
-    let spread = spread(&rows, &solution, &chain.intervals)?;
+    let spread = spread(&rows, &solution, &chain.intervals).map_err(|error| match error {
+        ServoError::TooFewRows { rows, needed } if chain.is_moving => ServoError::AtRest { rows, needed },
+        other => other,
+    })?;
     let whole = 0..rows.force_n.len();
     Ok(reported(rows, vec![whole], &solution, spread, chain))
 }
@@ -205,23 +211,36 @@ fn reported(rows: Rows, runs: Vec<Range<usize>>, solution: &Solution, spread: Sp
     let residuals_n = rows.residuals_n(&solution.coefficients);
     let whiteness = whiteness(&residuals_n, rows.rate_hz);
     let design = Mat::from_fn(rows.force_n.len(), rows.columns.len(), |i, j| rows.columns[j][i]);
+    let n = rows.force_n.len();
+    let columns: Vec<Column<'_>> = (rows.names.iter().enumerate())
+        .map(|(j, (name, _))| Column {
+            name,
+            value: solution.coefficients[j],
+            classical: spread.classical[j],
+            rms: (rows.columns[j].iter().map(|x| x * x).sum::<f64>() / n as f64).sqrt(),
+        })
+        .collect();
+    let weak = if chain.is_moving { weak(&columns, solution.sigma, n) } else { Weak::default() };
     let coefficients: Vec<ServoCoefficient> = (rows.names.iter().enumerate())
         .map(|(j, (name, unit))| {
             let value = solution.coefficients[j];
-            let half = spread.coverage_factor[j] * spread.blocks[j];
+            let is_told = weak.is_told.get(j).is_none_or(|told| *told);
+            let block_std = if is_told { spread.blocks[j] } else { f64::NAN };
+            let half = spread.coverage_factor[j] * block_std;
             ServoCoefficient {
                 name: name.clone(),
                 unit,
                 value,
                 classical_std: spread.classical[j],
                 hac_std: spread.hac[j],
-                block_std: spread.blocks[j],
+                block_std,
                 interval: [value - half, value + half],
             }
         })
         .collect();
     ServoReport {
         findings: findings(&coefficients, whiteness.as_ref(), &spread),
+        excitation: weak.findings,
         preparation: chain.words(rows.rate_hz * chain.decimation as f64),
         n_rows: rows.force_n.len(),
         rate_hz: rows.rate_hz,

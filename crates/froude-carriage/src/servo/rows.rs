@@ -28,6 +28,11 @@ impl Rows {
     pub fn within(&self, spans_s: &[[f64; 2]]) -> Self {
         let is_in = |t: f64| spans_s.iter().any(|[from, to]| (*from..*to).contains(&t));
         let keep: Vec<usize> = (0..self.time_s.len()).filter(|&i| is_in(self.time_s[i])).collect();
+        self.chosen(&keep)
+    }
+
+    /// Some of the rows.
+    pub(crate) fn chosen(&self, keep: &[usize]) -> Self {
         let of = |column: &[f64]| keep.iter().map(|&i| column[i]).collect::<Vec<f64>>();
         Self {
             rate_hz: self.rate_hz,

@@ -53,6 +53,12 @@ impl Rigid {
         })
     }
 
+    /// Position and speed of a state `[m, m/s]` after `step_s` under a constant command.
+    #[must_use]
+    pub fn after(&self, [position_m, velocity_m_s]: [f64; 2], command_v: f64, step_s: f64) -> [f64; 2] {
+        self.advance(position_m, velocity_m_s, command_v, step_s)
+    }
+
     /// Position and speed after `left_s` under a constant command.
     fn advance(&self, mut position_m: f64, mut velocity_m_s: f64, command_v: f64, mut left_s: f64) -> [f64; 2] {
         let force_n = self.force_per_volt_n_v * command_v - self.offset_n;

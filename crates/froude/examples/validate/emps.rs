@@ -57,6 +57,7 @@ pub fn all(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
         honesty(claims, name, &report, printed);
         prediction(claims, name, &report, &log, &chain)?;
         closed_loop_methods(claims, name, &report, &log, &chain)?;
+        as_any_log(claims, name, &log, &chain, printed)?;
     }
     simulation(claims, &log)
 }
@@ -72,6 +73,29 @@ fn read(root: &Path) -> Result<ServoLog, Box<dyn Error>> {
         reference_m: Some(of("reference_position", Dimension::LENGTH)?),
         load_n: None,
     })
+}
+
+/// As the verb fits any log: samples near rest and reversal left out, the command held from its sample to the next.
+fn as_any_log(
+    claims: &mut Claims,
+    name: &str,
+    log: &ServoLog,
+    chain: &Chain,
+    printed: &[(&str, f64, f64)],
+) -> Result<(), Box<dyn Error>> {
+    let chain = Chain::of_log(FORCE_PER_VOLT_N_V, log.rate_hz()?, chain.friction.clone());
+    let report = identify_servo(log, &chain)?;
+    let mass = printed[0].1;
+    let interval = report.coefficient("M").map_or([f64::NAN; 2], |c| c.interval);
+    let each = report.coefficients.iter().map(|c| format!("{} {:.3} ± {:.3}", c.name, c.value, c.block_std));
+    claims.holds(
+        SECTION,
+        &format!("{name}: as the verb fits any log, without samples near rest and reversal"),
+        "the interval of M holds the published value",
+        format!("{}; force error {:.2} %", each.collect::<Vec<_>>().join(", "), 100.0 * report.relative_force_error),
+        (interval[0]..=interval[1]).contains(&mass),
+    );
+    Ok(())
 }
 
 /// Fit on two of the four periods, predict the force on the other two: the worst of the six choices.
