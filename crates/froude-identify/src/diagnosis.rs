@@ -14,7 +14,7 @@ use crate::law::Kind;
 use crate::outlying::outlying_rows;
 use crate::regression::{ModelFit, Scatter};
 use crate::selection::{Score, aicc};
-use crate::{dissipation, lint, misfit, scatter_tests};
+use crate::{dissipation, lag, lint, misfit, scatter_tests};
 
 /// Condition number of the scaled design above which digits are lost to collinearity (Belsley, Kuh, Welsch 1980: 30).
 const COLLINEAR_ABOVE: f64 = 30.0;
@@ -96,6 +96,7 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     out.extend(scatter.iter().map(|(_, finding)| finding.clone()).filter(is_assumed));
     out.extend(misfit::findings(model, data, d, (&scatter, &outlying)));
     out.extend(decided_by_one(model, data));
+    out.extend(lag::findings(campaign, model, data));
     out.extend(added_mass_sign(model, data));
     out.extend(rows);
     if let Some(c) = d.condition_number

@@ -28,6 +28,7 @@ mod error;
 pub mod formula;
 mod idle;
 pub mod inspect;
+pub mod lag;
 pub mod large;
 pub mod law;
 pub mod lint;
