@@ -1,0 +1,127 @@
+//! Advice is followed: what a finding tells to write is written, and the finding is gone. None of the findings before comes back, so that no advice goes in circles.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use std::fmt::Write as _;
+
+use froude_identify::source::identify_source;
+use froude_records::campaign::read_campaign;
+use froude_records::finding::{Finding, Severity};
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64;
+
+/// Warnings about a table, by keys of its source and of the identification.
+fn warnings(table: &str, source: &str, identify: &str) -> Vec<Finding> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), table).unwrap();
+    let text = format!(
+        "schema = 1\nname = \"a\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n{source}\n[identify]\n{identify}\n"
+    );
+    std::fs::write(folder.path().join("c.toml"), text).unwrap();
+    let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
+    let found = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
+    found.findings.into_iter().filter(|f| f.severity >= Severity::Warning).collect()
+}
+
+/// Keys of the source, those of the identification, and the code that they are written for.
+type Step<'a> = (&'a str, &'a str, &'a str);
+
+/// Writes what each finding tells, in turn: its message names the key, and neither it nor one before it is there afterwards.
+fn follow(table: &str, first: [&str; 2], steps: &[Step<'_>]) {
+    let mut now = warnings(table, first[0], first[1]);
+    let mut gone: Vec<&str> = Vec::new();
+    for (source, identify, code) in steps {
+        let said = now.iter().find(|f| f.code == *code).expect(code);
+        let key = [*identify, *source].into_iter().find_map(|keys| keys.lines().last()).unwrap();
+        assert!(said.message.contains(key), "{code} does not name {key}: {}", said.message);
+        gone.push(code);
+        now = warnings(table, source, identify);
+        assert!(!now.iter().any(|f| gone.contains(&f.code.as_str())), "{code}, {key}: {now:?}");
+    }
+}
+
+fn rng(seed: u128) -> impl FnMut() -> f64 {
+    let mut rng = Pcg64::new(seed, 18);
+    move || StandardNormal.sample(&mut rng)
+}
+
+const QUADRATIC: &str = "models = [\"quadratic\"]";
+
+#[test]
+fn scatter_that_grows_with_the_load() {
+    let mut normal = rng(1);
+    let mut table = "speed [m/s],f_x [N]\n".to_owned();
+    for i in 0..45 {
+        let u = 0.2 + 0.04 * f64::from(i);
+        let _ = writeln!(table, "{u},{}", -12.0 * u * u * (1.0 + 0.03 * normal()));
+    }
+    for advice in ["weights = \"fitted\"", "covariance = \"HC3\""] {
+        follow(&table, ["", QUADRATIC], &[("", &format!("{QUADRATIC}\n{advice}"), "uneven-scatter")]);
+    }
+}
+
+/// Six days with a zero of their own: it is declared, estimated, or each day is one observation.
+#[test]
+fn offsets_of_setups() {
+    let mut normal = rng(2);
+    let mut table = "speed [m/s],setup,f_x [N]\n".to_owned();
+    for day in 0..6 {
+        let zero = 1.5 * normal();
+        for i in 0..8 {
+            let u = 0.3 + 0.2 * f64::from(i);
+            let _ = writeln!(table, "{u},day {day},{}", -12.0 * u * u + zero + 0.2 * normal());
+        }
+    }
+    let zero = "[[source.uncertainty]]\nname = \"zero\"\nquantity = \"f_x\"\nstandard = \"1.5 N\"\nshared = \"setup\"";
+    follow(&table, ["", QUADRATIC], &[(zero, "", "setup-offset")]);
+    let group = "group = \"setup\"";
+    for advice in ["group_offset = \"estimate\"", "covariance = \"cluster\""] {
+        follow(&table, ["", QUADRATIC], &[(group, &format!("{QUADRATIC}\n{advice}"), "setup-offset")]);
+    }
+}
+
+/// A bend that a law lacks: with one more term it is gone.
+#[test]
+fn a_missing_term() {
+    let mut normal = rng(4);
+    let mut table = "speed [m/s],f_x [N]\n".to_owned();
+    for i in 0..30 {
+        let u = 0.3 + 0.06 * f64::from(i);
+        let _ = writeln!(table, "{u},{}", -(4.0 * u + 2.0 * u * u + 4.0 * u.powi(3)) + 0.2 * normal());
+    }
+    let more = "models = [\"long\"]\n[[identify.model]]\nname = \"long\"\nf_x = \"-A*u - B*u*abs(u) - C*u^3\"";
+    let now = warnings(&table, "", "models = [\"linear_quadratic\"]");
+    assert!(now.iter().any(|f| f.code == "lack-of-fit" && f.message.contains("[[identify.model]]")), "{now:?}");
+    assert!(!warnings(&table, "", more).iter().any(|f| f.code == "lack-of-fit"));
+}
+
+/// A row that lies apart is left out by its name.
+#[test]
+fn a_row_that_lies_apart() {
+    let mut normal = rng(5);
+    let mut table = "run,speed [m/s],f_x [N]\n".to_owned();
+    for i in 0..16 {
+        let u = 0.3 + 0.1 * f64::from(i);
+        let slip = if i == 9 { 4.0 } else { 0.0 };
+        let _ = writeln!(table, "r{i},{u},{}", -12.0 * u * u + slip + 0.2 * normal());
+    }
+    let now = warnings(&table, "", QUADRATIC);
+    assert!(now.iter().any(|f| f.code == "outlying-row" && f.message.contains("`keep`")), "{now:?}");
+    let kept = warnings(&table, "keep = \"run != \\\"r9\\\"\"", QUADRATIC);
+    assert!(!kept.iter().any(|f| f.code == "outlying-row"), "{kept:?}");
+}
+
+/// A prior that the data contradict: without it the data say what they say.
+#[test]
+fn a_prior_that_the_data_contradict() {
+    let mut normal = rng(6);
+    let mut table = "speed [m/s],f_x [N]\n".to_owned();
+    for i in 0..16 {
+        let u = 0.3 + 0.1 * f64::from(i);
+        let _ = writeln!(table, "{u},{}", -12.0 * u * u + 0.2 * normal());
+    }
+    let prior = format!(
+        "{QUADRATIC}\n[[identify.prior]]\ncoefficient = \"D_x_II\"\nvalue = \"20 kg/m\"\nstandard_uncertainty = \"1 kg/m\""
+    );
+    assert!(warnings(&table, "", &prior).iter().any(|f| f.code == "prior-contradicted"));
+    assert!(warnings(&table, "", QUADRATIC).is_empty());
+}
