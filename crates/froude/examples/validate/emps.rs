@@ -90,8 +90,8 @@ fn as_any_log(
     let each = report.coefficients.iter().map(|c| format!("{} {:.3} ± {:.3}", c.name, c.value, c.block_std));
     claims.holds(
         SECTION,
-        &format!("{name}: as the verb fits any log, without samples near rest and reversal"),
-        "the interval of M holds the published value",
+        &format!("{name}: as `froude identify` fits a log, without samples near rest and reversal"),
+        "the interval of M contains the published value",
         format!("{}; force error {:.2} %", each.collect::<Vec<_>>().join(", "), 100.0 * report.relative_force_error),
         (interval[0]..=interval[1]).contains(&mass),
     );

@@ -69,7 +69,7 @@ pub fn between_runs(
     let holds = each.iter().all(|(_, c)| c.z_score(0.94) >= -3.0);
     claims.holds(
         section,
-        &format!("the same, drag 2 % from run to run, {campaigns}: cover"),
+        &format!("the same with drag that varies by 2 % from run to run, {campaigns}: coverage"),
         "94 % or more each, less three binomial deviations",
         words.collect::<Vec<_>>().join(", "),
         is_whole && holds,

@@ -17,8 +17,9 @@ use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 use crate::family::{Bar, between_runs, campaigns_of, covers, factors};
+use crate::lints::{Codes, judged as judged_codes, of_scatter};
 
-/// The coefficients of a fit: of twenty thousand, nothing else is kept.
+/// The coefficients of a fit: of thousands, nothing else is kept.
 pub type Fitted = IndexMap<String, Coefficient>;
 
 const SECTION: &str = "Steady tows: raw series by their twin";
@@ -36,10 +37,11 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
         let sensors: Vec<SensorSpec> = sensors.iter().map(louder).collect();
         let forecast = expected(&plan, &source, &sensors)?;
         let seeds = campaigns_of(factor == 1.0, seeds);
-        let fits: Vec<Fitted> = (0..seeds)
+        let (fits, codes): (Vec<Fitted>, Vec<Codes>) = (0..seeds)
             .into_par_iter()
             .filter_map(|seed| one(&campaign, &source, &plan, &sensors, seed as u64).ok())
-            .collect();
+            .unzip();
+        judged_codes(claims, SECTION, &format!("tests of the scatter at {words}, {seeds} sound campaigns"), codes);
         judge(claims, SECTION, &forecast, &fits, (words, "56 tows", factor == 1.0, seeds));
     }
     let seeds = seeds.min(2_000);
@@ -47,7 +49,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
         .into_par_iter()
         .filter_map(|seed| {
             let plan = Plan { of_run: factors(plan.data.rows, seed), ..plan.clone() };
-            one(&campaign, &source, &plan, sensors, seed).ok()
+            one(&campaign, &source, &plan, sensors, seed).ok().map(|(fitted, _)| fitted)
         })
         .collect();
     let truths = expected(&plan, &source, sensors)?.into_iter().map(|e| (e.name, e.value));
@@ -63,7 +65,7 @@ fn one(
     plan: &Plan,
     sensors: &[SensorSpec],
     seed: u64,
-) -> Result<Fitted, Box<dyn Error + Send + Sync>> {
+) -> Result<(Fitted, Codes), Box<dyn Error + Send + Sync>> {
     let spec = source.steady.unwrap_or_default();
     let logged = simulated(plan, source, sensors, &source.uncertainty, 1 + seed);
     let rows = logged.iter().map(|run| {
@@ -78,7 +80,7 @@ fn one(
     let rows: Vec<Row> = rows.collect::<Result<_, SteadyError>>()?;
     let observations = reduce_table(campaign, source, &table(source.input.path(), &rows), Vec::new())?;
     let mut result = identify_observations(campaign, source, observations, "steady", &|_| {})?;
-    Ok(result.estimates.remove(0).coefficients)
+    Ok((result.estimates.remove(0).coefficients, of_scatter(&result.findings)))
 }
 
 /// How often the interval of each coefficient holds its truth.

@@ -28,6 +28,7 @@ use rayon::prelude::*;
 use crate::claims::{Claims, Verdict};
 use crate::coverage::{normal, problem_of};
 use crate::family::{between_runs, campaigns_of, factors};
+use crate::lints::{Codes, judged, of_scatter};
 use crate::steady::{Fitted, covered, judge};
 
 const SECTION: &str = "Weight-driven rig: tracks in pixels by their twin";
@@ -53,7 +54,12 @@ impl Case {
         self.campaign.simulate.as_ref().map_or(&[], |s| &s.sensors)
     }
 
-    fn of(&self, weights: &Weights, sensors: &[SensorSpec], seed: u64) -> Result<Fitted, Box<dyn Error + Send + Sync>> {
+    fn of(
+        &self,
+        weights: &Weights,
+        sensors: &[SensorSpec],
+        seed: u64,
+    ) -> Result<(Fitted, Codes), Box<dyn Error + Send + Sync>> {
         let logged = simulated(weights, &self.spec, sensors, &self.source.uncertainty, 1 + seed);
         let mut rows = Vec::new();
         let mut reduced: Vec<Reduced> = Vec::new();
@@ -72,11 +78,11 @@ impl Case {
         let mut observations = reduce_table(&self.campaign, &own, &table(own.input.path(), &rows), Vec::new())?;
         observations.shared_errors.extend(shared(&reduced, &observations.data.loads()));
         let mut result = identify_observations(&self.campaign, &own, observations, "weight_tow", &|_| {})?;
-        Ok(result.estimates.remove(0).coefficients)
+        Ok((result.estimates.remove(0).coefficients, of_scatter(&result.findings)))
     }
 
-    fn fits(&self, sensors: &[SensorSpec], seeds: usize) -> Vec<Fitted> {
-        (0..seeds).into_par_iter().filter_map(|seed| self.of(&self.weights, sensors, seed as u64).ok()).collect()
+    fn fits(&self, sensors: &[SensorSpec], seeds: usize) -> (Vec<Fitted>, Vec<Codes>) {
+        (0..seeds).into_par_iter().filter_map(|seed| self.of(&self.weights, sensors, seed as u64).ok()).unzip()
     }
 
     fn forecast(&self, sensors: &[SensorSpec]) -> Result<Vec<Expected>, Box<dyn Error>> {
@@ -96,7 +102,8 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
         let sensors: Vec<SensorSpec> = case.sensors().iter().map(louder).collect();
         let forecast = case.forecast(&sensors)?;
         let seeds = campaigns_of(factor == 1.0, seeds);
-        let fits = case.fits(&sensors, seeds);
+        let (fits, codes) = case.fits(&sensors, seeds);
+        judged(claims, SECTION, &format!("tests of the scatter at {words}, {seeds} sound campaigns"), codes);
         judge(claims, SECTION, &forecast, &fits, (words, "78 runs", factor == 1.0, seeds));
     }
     let sensors = case.sensors();
@@ -106,7 +113,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
             let plan = &case.weights.plan;
             let plan = Plan { of_run: factors(plan.data.rows, seed), ..plan.clone() };
             let weights = Weights { plan, ..case.weights.clone() };
-            case.of(&weights, sensors, seed).ok()
+            case.of(&weights, sensors, seed).ok().map(|(fitted, _)| fitted)
         })
         .collect();
     let each = covered(case.forecast(sensors)?.into_iter().map(|e| (e.name, e.value)), &fits);
