@@ -103,7 +103,7 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
                 complete.add(file, &log.meta);
                 if let Some(what) = wild::sample(&log, &[]) {
                     let text = format!(
-                        "{}: left out: {what}; look at the sensor and its cable, and tow the run again",
+                        "{}: left out: {what}; check the sensor and its cable, and repeat the run",
                         log.meta.id
                     );
                     out.findings.push(Finding::new(Severity::Warning, "run-left-out", text));

@@ -1,4 +1,4 @@
-//! Logs of an axis whose parameters are known, by twelve motions, of a drive that holds its command: how many of them get intervals, and how many of these hold.
+//! Simulated logs of an axis with known parameters and a drive that holds its command, for twelve motions: how many have intervals, and how many of these contain the truth.
 
 use std::f64::consts::TAU;
 
@@ -26,7 +26,7 @@ enum Motion {
 }
 
 /// There and back between rest at both ends.
-fn trapezes(t: f64, [speed, acceleration, way, rest]: [f64; 4]) -> [f64; 2] {
+fn trapezoids(t: f64, [speed, acceleration, way, rest]: [f64; 4]) -> [f64; 2] {
     let rise = speed / acceleration;
     let flat = way / speed - rise;
     let moving = 2.0 * rise + flat;
@@ -74,12 +74,12 @@ const MOTIONS: [(&str, Motion); 12] = [
     ("a chirp", Motion::Open(|t| 0.8 * (TAU * (0.5 * t + 0.1125 * t * t)).sin())),
     ("a sine", Motion::Closed(|t| sines(t, &[(0.2, 0.5 * TAU)]))),
     ("three sines", Motion::Closed(|t| sines(t, &[(0.15, 1.3), (0.08, 3.1), (0.03, 7.7)]))),
-    ("trapezes", Motion::Closed(|t| trapezes(t, [0.3, 1.0, 0.5, 0.5]))),
-    ("fast trapezes", Motion::Closed(|t| trapezes(t, [0.8, 3.0, 0.8, 0.3]))),
-    ("slow trapezes", Motion::Closed(|t| trapezes(t, [0.05, 0.5, 0.1, 1.0]))),
+    ("trapezoids", Motion::Closed(|t| trapezoids(t, [0.3, 1.0, 0.5, 0.5]))),
+    ("fast trapezoids", Motion::Closed(|t| trapezoids(t, [0.8, 3.0, 0.8, 0.3]))),
+    ("slow trapezoids", Motion::Closed(|t| trapezoids(t, [0.05, 0.5, 0.1, 1.0]))),
     ("steps", Motion::Closed(|t| [if t.rem_euclid(2.0) < 1.0 { 0.1 } else { 0.0 }, 0.0])),
-    ("one speed both ways", Motion::Closed(|t| trapezes(t, [0.2, 20.0, 0.4, 0.0]))),
-    ("a creep", Motion::Closed(|t| trapezes(t, [0.01, 0.1, 0.02, 0.5]))),
+    ("one speed both ways", Motion::Closed(|t| trapezoids(t, [0.2, 20.0, 0.4, 0.0]))),
+    ("a creep", Motion::Closed(|t| trapezoids(t, [0.01, 0.1, 0.02, 0.5]))),
 ];
 
 /// What a rig records of a motion.
@@ -125,7 +125,7 @@ fn report(motion: &Motion, seed: u64) -> Result<ServoReport, ServoError> {
 const SEEDS: u64 = 40;
 const TRUTHS: [(&str, f64); 3] = [("M", 1.2), ("F_v", 0.35), ("F_c", 0.8)];
 
-/// Of every coefficient, 80 % of the logs have an interval, and 90 % of these hold; the others name the motion that is needed. Of no motion fewer than three quarters hold.
+/// For each coefficient, at least 80 % of the logs have an interval, and at least 90 % of these contain the truth (three quarters for each motion). The other logs name the motion that is needed.
 #[test]
 fn most_motions_get_intervals_and_these_hold() {
     let (mut given, mut held) = ([0; 3], [0; 3]);

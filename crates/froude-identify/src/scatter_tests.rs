@@ -136,7 +136,7 @@ fn serial(
     (residuals, is_uneven): (&Residuals, bool),
     loads: f64,
 ) -> Option<Finding> {
-    // Clusters and rows in time hold that already. HC3 and runs do not: where errors are not of one size, which the test assumes, only what is plain is reported.
+    // Clusters and rows in time already include it; HC3 and runs do not. The test assumes errors of equal size, so only clear cases are reported where they are not.
     let is_asked = matches!(model.scatter, Scatter::Classical | Scatter::Runs | Scatter::Hc3);
     if !is_asked || model.is_in_time(data) || has_declared_groups(model) {
         return None;
@@ -183,7 +183,7 @@ fn uneven(
     (residuals, predicted): (&Residuals, &[f64]),
     loads: f64,
 ) -> Option<Finding> {
-    // Variances from each residual, or each cluster, assume nothing of the kind. Of runs it is looked for too: shapes of a misfit take even scatter for granted.
+    // HC3 and clusters do not assume even scatter. Runs do not either, but they are tested because the search for misfit shapes assumes it.
     if !matches!(model.scatter, Scatter::Classical | Scatter::Runs) {
         return None;
     }

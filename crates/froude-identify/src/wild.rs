@@ -1,8 +1,8 @@
 //! Samples and logs that are orders of magnitude away from all others: a dropped bit, a lost decimal point, a time in milliseconds.
 //!
-//! Least squares follow one such number wherever it leads, so it is named and not weighed: the motion and the loads of a test are continuous, and a set of runs is of one rig.
+//! Least squares follow one such number wherever it leads, so it is reported instead of down-weighted: the motion and the loads of a test are continuous, and the runs of a set come from one rig.
 //!
-//! - **A sample** lies further from all others of its channel than a hundred times their range, and at most three do, with others before and after. Channels of few values (a mark, a command) are left alone.
+//! - **A sample** is wild if it is further from all others of its channel than a hundred times their range. At most three samples may be, with ordinary samples before and after. Channels of few values (a mark, a command) are left alone.
 //! - **A log** has steps of time three hundred times the longest of the others. Ranges of loads and motions are not compared: one run may move among many at rest.
 
 use froude_records::number::{plain, significant};

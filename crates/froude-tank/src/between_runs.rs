@@ -1,6 +1,6 @@
-//! What changes from run to run where runs are too few to be clusters: a trip, a mount or the wake of the run before gives the load of each run a part γ of its own, of variance τ².
+//! Run-to-run variation when the runs are too few to be clusters: a trip, the mount or the wake of the previous run changes the load of each run by a fraction γ, of variance τ².
 //!
-//! With c the load that may change so in one run, zero elsewhere, and M what the law leaves, ĝ = cᵀMy/cᵀc of each run is A γ, A = cᵀMc′/cᵀc, so that τ² = |ĝ|²/tr K with K = AᵀA and
+//! With c the affected load in one run, zero elsewhere, and M the projection onto the residuals of the law, ĝ = cᵀMy/cᵀc of each run is A γ, A = cᵀMc′/cᵀc, so that τ² = |ĝ|²/tr K with K = AᵀA and
 //! (tr K)²/tr K² degrees of freedom (Satterthwaite). The noise within the runs is in it too. Of five and more runs it is in their scatter.
 
 use froude_fit::faer::Mat;
@@ -17,7 +17,7 @@ pub(crate) struct BetweenRuns {
     pub dof: f64,
 }
 
-/// Of the `parts` c of the runs and of what the law leaves of the loads; `left_of` gives what it leaves of any. `None` where there are too few runs, or the law takes it all.
+/// Variance between runs. `parts` are the loads c of the runs, `left` the residuals of the law, and `left_of` returns the residuals for any load. `None` if there are too few runs or the law absorbs the variation.
 pub(crate) fn between_runs(
     parts: &[Vec<f64>],
     left: &[f64],

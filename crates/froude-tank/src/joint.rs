@@ -287,7 +287,7 @@ pub struct JointFit {
     pub by: &'static str,
     /// Whether the scatter includes what changes from run to run.
     pub has_runs: bool,
-    /// How many of them.
+    /// Number of runs or cycles that were left out in turn.
     pub clusters: usize,
     /// Whether their scatter is divided by its mean at equal errors, and has its degrees of freedom.
     pub is_scaled: bool,

@@ -322,7 +322,7 @@ fn held(amplitudes_deg: &[f64], omegas_deg_s: &[f64], part: f64, seeds: u64) -> 
             }
             let logged = simulated(&planned, &setup, &truth, std::slice::from_ref(&noise), 1 + seed);
             let runs: Vec<OscillationRun<'_>> = logged.iter().map(Simulated::view).collect();
-            // Once in some hundred campaigns the delay does not converge: that holds nothing.
+            // In about one of a hundred campaigns the delay does not converge; this counts as a miss.
             fit(&runs, &motions(&runs, &setup).unwrap(), &setup, &drag, &Identify::default()).ok()
         })
         .collect();

@@ -21,9 +21,9 @@ use crate::servo::interval::IntervalOptions;
 use crate::servo::log::ServoLog;
 use crate::servo::rows::Rows;
 
-/// Rows of a log a second, Hz: noise of the position counts with the fifth power of their rate, and a rigid axis needs no more.
+/// Rate of rows from a log, Hz: the effect of position noise grows with the fifth power of this rate, and a rigid axis needs no higher rate.
 const ROW_RATE_HZ: f64 = 50.0;
-/// Most that the filter of a row may see of samples near rest and reversal.
+/// Largest filtered fraction of samples near rest and reversal in a row that is kept.
 pub(crate) const MOST_NEAR_REST: f64 = 0.2;
 
 /// How a record is made into rows, and what is fitted.
@@ -39,9 +39,9 @@ pub struct Chain {
     pub decimation: usize,
     /// Dropped at each end, s.
     pub trim_s: f64,
-    /// Whether a sample's command acts until the next one, as that of a digital drive does: the force at a sample is then the mean of what acts before and after it.
+    /// Whether a command is held until the next sample, as in a digital drive (zero-order hold): the force at a sample is then the mean of the forces before and after it.
     pub is_held: bool,
-    /// Whether samples near rest and reversal are left out, where the direction of friction is not known: taken out of both sides before the decimation, with rows that have little else.
+    /// Whether samples near rest and reversal are left out, because the direction of friction is unknown there: they are set to zero on both sides before decimation, and rows with too many of them are dropped.
     pub is_moving: bool,
     /// Friction law.
     pub friction: Friction,
@@ -105,8 +105,8 @@ impl Chain {
             self.decimation,
             plain(rate_hz, 4),
             plain(self.trim_s, 3),
-            if self.is_moving { " and without those near rest and reversal" } else { "" },
-            if self.is_held { "; the command acts until the next one" } else { "" }
+            if self.is_moving { " and without samples near rest and reversal" } else { "" },
+            if self.is_held { "; each command is held until the next sample" } else { "" }
         )
     }
 

@@ -46,7 +46,7 @@ pub enum ServoError {
 
     /// A motion that is all rest and reversal.
     #[error(
-        "{rows} of the rows are away from rest and reversal, and {needed} are needed: the axis hardly moves, or turns all the time; record a longer or a slower motion"
+        "only {rows} rows are away from rest and reversal, but {needed} are needed: the axis hardly moves or reverses too often; record a longer or slower motion"
     )]
     AtRest {
         /// Rows that move.

@@ -1,8 +1,8 @@
-//! Whether a motion tells the coefficients of an axis; where it does not, another motion is asked for.
+//! Whether a motion determines the coefficients of an axis; if not, a suitable motion is recommended.
 //!
-//! Rows of a log are no designed test. What disturbs an axis moves it too, so that its acceleration and speed follow the disturbance, and least squares take that for inertia and friction: of
-//! a part of 1/R² of a coefficient at most, R the force that it stands for in the rows, apart from the other columns, over what the model leaves. And where speed hardly varies within a
-//! direction, viscous and Coulomb friction are one number.
+//! A log is not a designed test. A disturbance also moves the axis, so acceleration and speed follow it, and least squares attribute it to inertia and friction. The resulting bias is at most
+//! 1/R² of a coefficient. R is the ratio of two forces: that of the coefficient, without what the other columns explain, to the residual. If the speed hardly varies within a direction,
+//! viscous and Coulomb friction cannot be distinguished.
 //!
 //! | coefficient | needed | at least |
 //! |-------------|--------|-------|
@@ -59,8 +59,8 @@ pub(crate) fn weak(columns: &[Column<'_>], sigma_n: f64, n: usize) -> Weak {
     for c in columns.iter().filter(|c| c.name == "M" && !is_told(c)) {
         let of = if is_driven { "M" } else { "M and friction" };
         findings.push(format!(
-            "{of}: the inertia makes {} times the force that the model leaves, and {LEAST_FORCE} are needed; move with larger accelerations (pulses, steps, a sine of 1 Hz and more): no \
-             interval is given",
+            "{of}: no interval is given, because the inertia force is {} times the residual force (at least {LEAST_FORCE} times is needed); move with larger accelerations (pulses, steps, a sine of \
+             1 Hz or more)",
             significant(force(c), 2)
         ));
     }
@@ -69,8 +69,8 @@ pub(crate) fn weak(columns: &[Column<'_>], sigma_n: f64, n: usize) -> Weak {
     if let Some(least) = friction.iter().map(|c| part(c)).reduce(f64::min) {
         let names: Vec<&str> = friction.iter().map(|c| c.name).collect();
         findings.push(format!(
-            "{}: the speed hardly varies within a direction ({} of it, and {LEAST_PART} are needed), so that viscous and Coulomb friction are one number; move at two speeds and more, or \
-             through a range of them (pulses, a sine): no interval is given",
+            "{}: no interval is given, because the speed hardly varies within a direction, so that viscous and Coulomb friction cannot be distinguished (independent part of the column {}, \
+             at least {LEAST_PART} is needed); move at two or more speeds, or through a range of speeds (pulses, a sine)",
             names.join(", "),
             significant(least, 2)
         ));

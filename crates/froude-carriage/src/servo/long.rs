@@ -58,9 +58,9 @@ pub struct LongReport {
     pub relative_force_error: f64,
     /// Least and largest value of each regressor.
     pub ranges: Vec<[f64; 2]>,
-    /// Which motion would tell what this one does not; those coefficients have no interval.
+    /// Coefficients that the motion does not determine, which have no interval, and a motion that would determine them.
     pub excitation: Vec<String>,
-    /// Whether the motion tells each coefficient.
+    /// Whether the motion determines each coefficient.
     pub is_told: Vec<bool>,
     /// How the rows of the regression were made, in words.
     pub preparation: String,

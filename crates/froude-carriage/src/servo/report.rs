@@ -69,7 +69,7 @@ pub struct ServoReport {
     pub runs: Vec<Range<usize>>,
     /// What a reader must know before using the numbers.
     pub findings: Vec<String>,
-    /// Which motion would tell what this one does not; those coefficients have no interval.
+    /// Coefficients that the motion does not determine, which have no interval, and a motion that would determine them.
     pub excitation: Vec<String>,
 }
 

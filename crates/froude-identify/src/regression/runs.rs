@@ -1,12 +1,12 @@
-//! The scatter of rows that are runs: beside noise of one size, each run errs by a part of its load.
+//! Scatter of rows that are runs: each run has an error proportional to its load, in addition to noise of constant size.
 //!
 //! A trip, a mount or the wake of the run before changes a load in proportion to itself, noise does not: σ_i² = a/w_i + b f_i², f the fitted load and w the weight of the row, a and b of each
-//! load and neither below zero. A fit β = S y leaves r = M e with M = 1 − X S, so that E r_i² = Σ_k M_ik² σ_k²; a and b are fitted to the squares r² as to numbers whose deviation goes with
-//! their mean. The covariance is S diag(σ²) Sᵀ. Those of a and b that are not zero are linear in r², so that a variance is V = Σ_i q_i r_i² and has (Satterthwaite)
+//! load and neither below zero. A fit β = S y leaves r = M e with M = 1 − X S, so that E r_i² = Σ_k M_ik² σ_k²; a and b are fitted to the squares r², whose standard deviation is taken as
+//! proportional to their mean. The covariance is S diag(σ²) Sᵀ. Those of a and b that are not zero are linear in r², so that a variance is V = Σ_i q_i r_i² and has (Satterthwaite)
 //!
 //! ν = V² / Σ_ik q_i q_k Σ_ik²,  Σ = M diag(σ²) Mᵀ
 //!
-//! degrees of freedom. Of 56 runs the intervals are as wide as those of one σ where nothing changes from run to run; of five they are twice as wide, as five runs hardly tell.
+//! degrees of freedom. Without run-to-run variation, intervals from 48 runs are 5 % wider than with one σ; from five runs they are twice as wide, because five runs hardly separate a and b.
 //!
 //! # Source
 //!
@@ -25,7 +25,7 @@ use crate::regression::problem::step;
 
 /// How its line of the budget begins.
 pub(crate) const NAME: &str = "scatter of the runs";
-/// Most rows: a matrix of them squared is made.
+/// Most rows: `M` has rows × rows entries.
 const MOST_ROWS: usize = 2000;
 /// Steps of the fit of a and b, and the change at which they end.
 const STEPS: usize = 30;
@@ -91,7 +91,7 @@ pub(crate) fn between_runs(law: &ForceLaw, data: &Dataset, problem: &fit::Proble
             let part = 100.0 * b / mean_square[c].sqrt().max(f64::MIN_POSITIVE);
             let weighted = if problem.weight.is_some() { " at weight 1" } else { "" };
             let (load, unit) = (&problem.components[c], unit_text(data, &problem.components[c]));
-            format!("{load}: {} {unit}{weighted} and {} % of it", significant(a, 2), significant(part, 2))
+            format!("{load}: {} {unit}{weighted} and {} % of the load", significant(a, 2), significant(part, 2))
         })
         .collect();
     Some(Part {
@@ -119,7 +119,7 @@ struct Components {
 }
 
 impl Components {
-    /// `square` = (M∘M) G θ in the mean, weighted by the square of that.
+    /// Fits θ so that `square` has the expectation (M∘M) G θ; the weights are the inverse squares of that expectation.
     fn of(m: &Mat<f64>, g: &Mat<f64>, square: &[f64]) -> Option<Self> {
         let n = square.len();
         let squared = Mat::from_fn(n, n, |i, k| m[(i, k)] * m[(i, k)]);
@@ -149,7 +149,7 @@ impl Components {
         Some(Self { theta, variance, active, of_squares })
     }
 
-    /// θ at the last means; loads that are all of one size have no b of their own.
+    /// θ for the weights of the previous step. If all rows of a load have the same size, b cannot be separated from a and is excluded.
     fn step(z: &Mat<f64>, square: &[f64], mean: &[f64]) -> Option<Vec<f64>> {
         let names = (0..z.ncols()).map(|j| format!("{j}")).collect();
         let problem = fit::Problem {

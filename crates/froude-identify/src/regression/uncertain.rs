@@ -64,7 +64,7 @@ impl Uncertainty {
                 Some(replicates::together(name, sets).filter(|part| part.dof.len() == p))
             }
             Scatter::Serial(errors) => Some(serial(data, problem, fitted, errors)),
-            // What is declared of runs is weighed already.
+            // Declared errors of the runs are already weights of the fit.
             Scatter::Runs if !in_variables && !is_whitened => between_runs(law, data, problem, fitted).map(Some),
             Scatter::Runs | Scatter::Classical | Scatter::Hc3 | Scatter::Cluster => None,
         };

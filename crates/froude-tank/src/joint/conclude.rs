@@ -7,8 +7,8 @@
 //! **Declared errors.** Constants of the equation and gains of angle and load move all rows together: S·J·e with J = ∂f/∂q by differences. A prior's
 //! error moves the coefficients as a shift of its value does.
 //!
-//! **Between runs.** Three and four runs are too few to be clusters, and their cycles are; what the drag changes by from one run to the next is then a variance of its own
-//! ([`crate::between_runs`]).
+//! **Between runs.** Three or four runs are too few to be clusters, so their cycles are used; the run-to-run variation of the drag is then a separate variance
+//! (`crate::between_runs`).
 //!
 //! # Source
 //!
@@ -112,7 +112,7 @@ impl<E: Equation> Problem<'_, E> {
         let parts: Vec<Vec<f64>> =
             (0..self.runs.len()).map(part_of_run).filter(|c| c.iter().any(|x| *x != 0.0)).collect();
         let left: Vec<f64> = (0..n).map(|i| problem.response[i] - sum(i, 0..beta.len())).collect();
-        // What is held takes nothing of a load, and what is known beforehand draws to zero.
+        // Held coefficients explain no part of a load, and priors pull towards zero.
         let held = self.held().into_iter().map(|(j, _)| j);
         let about_zero = |(_, prior): (String, ls::Prior)| ls::Prior { value: 0.0, ..prior };
         let options = ls::Options {
@@ -129,7 +129,7 @@ impl<E: Equation> Problem<'_, E> {
         let moved = |c: &Vec<f64>, j: usize| (0..n).map(|i| fit.sensitivity[(j, i)] * c[i]).sum::<f64>();
         let moves: Vec<Vec<f64>> = parts.iter().map(|c| (0..p).map(|j| moved(c, j)).collect()).collect();
         let covariance = Mat::from_fn(p, p, |i, j| variance * moves.iter().map(|m| m[i] * m[j]).sum::<f64>());
-        Some(part(" and, of the drag, from run to run", Kind::A, covariance, dof))
+        Some(part(" and of the drag from run to run", Kind::A, covariance, dof))
     }
 
     /// CR3 of the fit at equal errors; `None` where that cannot be told.

@@ -44,7 +44,7 @@ pub(crate) fn type_a(fit: &JointFit) -> TypeA {
             "CR3{scaled}, {} {}s{}",
             fit.clusters,
             fit.by,
-            if fit.by == "cycle" && fit.has_runs { ", and the drag of each run" } else { "" }
+            if fit.by == "cycle" && fit.has_runs { ", and variation of the drag from run to run" } else { "" }
         ),
     }
 }

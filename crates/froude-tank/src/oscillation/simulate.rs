@@ -42,7 +42,7 @@ pub struct Planned {
     pub swing: Swing,
     /// Samples a second.
     pub rate_hz: f64,
-    /// What this run has of the law's drag \[-\]; 1 where nothing changes from run to run.
+    /// Factor on the law's drag in this run \[-\]; 1 without run-to-run variation.
     pub of_drag: f64,
 }
 

@@ -65,7 +65,7 @@ pub struct Plan {
     pub law: ForceLaw,
     /// Its coefficients.
     pub values: Vec<f64>,
-    /// What each run has of the law's loads \[-\]: a trip, a mount, the wake of the run before. Empty where nothing changes from run to run.
+    /// Factor on the law's loads in each run \[-\], from a trip, the mount or the wake of the previous run. Empty without run-to-run variation.
     pub of_run: Vec<f64>,
 }
 
