@@ -13,7 +13,7 @@ use froude_identify::wild;
 use froude_records::estimate::{Estimate, OWN};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::run::{BodyState, Declared, Role, RunLog, import_run};
+use froude_records::run::{BodyState, Declared, ImportedRun, Role, RunLog, import_run};
 use froude_records::table::sidecar_of;
 use froude_records::units::Dimension;
 
@@ -25,7 +25,7 @@ use crate::servo::report::{effective, of_runs as of_several};
 use crate::servo::rows::Rows;
 use crate::servo::scale::ForcePerVolt;
 use crate::servo::two_mass::FlexibleReport;
-use crate::servo::{Chain, Friction, ServoCoefficient, ServoReport, identify_servo, record};
+use crate::servo::{Chain, Friction, ServoCoefficient, ServoLog, ServoReport, identify_servo, record};
 use crate::source::file_of;
 use crate::two_masses::{motor_of, pulses, servo_log, two_masses};
 
@@ -144,12 +144,7 @@ pub fn of_table(
     asked: &[AxisModel],
     gain: &ForcePerVolt<'_>,
 ) -> Result<AxisModels, MethodError> {
-    let imported = import_run(path, sidecar)?;
-    let log = &imported.log;
-    if let Some(what) = wild::sample(log, &imported.declared.marks) {
-        return Err(MethodError::input(path, format!("{what}; correct the sample, or cut the log there")));
-    }
-    let servo = servo_log(log)?;
+    let (imported, servo) = read_log(path, sidecar)?;
     // The mean step, as the chunks of a long log have it.
     let rate_hz = servo.rate_hz().map_err(MethodError::refused)?;
     let fit =
@@ -175,10 +170,21 @@ pub fn of_table(
     })
 }
 
+/// A log of another program, in which no sample is far from all others.
+fn read_log(path: &Path, sidecar: Option<&Path>) -> Result<(ImportedRun, ServoLog), MethodError> {
+    let imported = import_run(path, sidecar)?;
+    if let Some(what) = wild::sample(&imported.log, &imported.declared.marks) {
+        return Err(MethodError::input(path, format!("{what}; correct the sample, or cut the log there")));
+    }
+    let servo = servo_log(&imported.log)?;
+    Ok((imported, servo))
+}
+
 /// One log is one excitation: what another would show is in none of its residuals.
 fn one_excitation() -> Finding {
     let text = "the intervals hold for this excitation alone: friction that the model leaves out moves the coefficients from one motion to the next by more than any block \
-                of one log shows; hold the fit against a log of another motion (--validate OTHER)";
+                of one log shows; hold the fit against a log of another motion (--validate OTHER). The drive is taken to follow each command at once and to hold it until the next: a delay of δ lowers F_v \
+                by about M ω² δ at a motion of angular frequency ω";
     Finding::new(Severity::Note, "one-excitation", text.to_owned())
 }
 

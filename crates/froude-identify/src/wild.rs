@@ -6,8 +6,8 @@
 //! - **A log** has steps of time three hundred times the longest of the others. Ranges of loads and motions are not compared: one run may move among many at rest.
 
 use froude_records::number::{plain, significant};
+use froude_records::run::RunLog;
 use froude_records::run::marks::Mark;
-use froude_records::run::{Channel, RunLog};
 
 /// Distance from all other samples, as a multiple of their range.
 const BEYOND: f64 = 100.0;
@@ -25,26 +25,30 @@ const OF_TEST: [&str; 6] = ["m", "rad", "N", "N m", "m/s", "rad/s"];
 /// What is said of a sample that no other sample of its channel comes near, with its time; what a mark leaves out is not asked.
 #[must_use]
 pub fn sample(log: &RunLog, marks: &[Mark]) -> Option<String> {
-    let times = &log.time_s;
-    let is_marked = |i: usize| times.get(i).is_some_and(|t| marks.iter().any(|m| m.touches(*t, *t)));
-    let has_rows =
-        |channel: &&Channel| channel.values.len() == times.len() && OF_TEST.contains(&channel.meaning.unit.as_str());
-    log.channels.iter().filter(|(_, channel)| has_rows(channel)).find_map(|(name, channel)| {
-        let of_rows = channel.values.iter().enumerate().filter(|(i, _)| !is_marked(*i));
-        let (row, low, high) = wild(of_rows.map(|(i, value)| (i, *value)).collect())?;
-        // What a log begins or ends with may be at rest.
-        let is_usual = |i: usize| (low..=high).contains(&channel.values[i]);
-        let is_between = (0..row).any(is_usual) && (row + 1..times.len()).any(is_usual);
-        is_between.then(|| {
-            let unit = &channel.meaning.unit;
-            format!(
-                "{name} is {} {unit} at {} s, but otherwise lies between {} and {} {unit}: no load or motion jumps that far and back",
-                significant(channel.values[row], 4),
-                plain(times[row], 5),
-                significant(low, 3),
-                significant(high, 3)
-            )
-        })
+    log.channels
+        .iter()
+        .find_map(|(name, channel)| sample_of(name, channel.meaning.unit.as_str(), &log.time_s, &channel.values, marks))
+}
+
+/// The same of one channel.
+#[must_use]
+pub fn sample_of(name: &str, unit: &str, times: &[f64], values: &[f64], marks: &[Mark]) -> Option<String> {
+    if values.len() != times.len() || !OF_TEST.contains(&unit) {
+        return None;
+    }
+    let is_marked = |i: usize| marks.iter().any(|m| m.touches(times[i], times[i]));
+    let (row, low, high) = wild((0..values.len()).filter(|i| !is_marked(*i)).map(|i| (i, values[i])).collect())?;
+    // What a log begins or ends with may be at rest.
+    let is_usual = |i: usize| (low..=high).contains(&values[i]);
+    let is_between = (0..row).any(is_usual) && (row + 1..values.len()).any(is_usual);
+    is_between.then(|| {
+        format!(
+            "{name} is {} {unit} at {} s, but otherwise lies between {} and {} {unit}: no load or motion jumps that far and back",
+            significant(values[row], 4),
+            plain(times[row], 5),
+            significant(low, 3),
+            significant(high, 3)
+        )
     })
 }
 

@@ -81,6 +81,51 @@ impl Link for Differences {
     }
 }
 
+/// Second differences as [`crate::differences::second`].
+#[derive(Debug, Clone)]
+pub struct SecondDifferences {
+    square: f64,
+    last: [f64; 2],
+    /// The newest.
+    newest: f64,
+    taken: usize,
+}
+
+impl SecondDifferences {
+    /// Of samples `step_s` apart.
+    ///
+    /// # Errors
+    ///
+    /// [`SignalError::NotPositive`].
+    pub fn new(step_s: f64) -> Result<Self, SignalError> {
+        let square = crate::error::positive("time step (s)", step_s)?.powi(2);
+        Ok(Self { square, last: [0.0; 2], newest: 0.0, taken: 0 })
+    }
+}
+
+impl Link for SecondDifferences {
+    fn take(&mut self, samples: &[f64], out: &mut Vec<f64>) {
+        for &x in samples {
+            let [before, here] = self.last;
+            if self.taken >= 2 {
+                self.newest = (x - 2.0 * here + before) / self.square;
+                // The first sample has that of its neighbour.
+                out.extend(std::iter::repeat_n(self.newest, if self.taken == 2 { 2 } else { 1 }));
+            }
+            self.last = [here, x];
+            self.taken += 1;
+        }
+    }
+
+    fn finish(self, out: &mut Vec<f64>) -> Result<(), SignalError> {
+        if self.taken < 3 {
+            return Err(SignalError::TooShort { what: "a second difference", needed: 3, found: self.taken });
+        }
+        out.push(self.newest);
+        Ok(())
+    }
+}
+
 /// Forward–backward low-pass.
 ///
 /// Samples leave a block and the filter's memory after they came: for order 4 at 100 Hz and 10 kHz some 3,100 and 3,100.

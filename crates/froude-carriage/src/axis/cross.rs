@@ -13,10 +13,9 @@ use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
-use froude_records::run::import_run;
 
 use super::source::Servo;
-use super::{AxisModel, force_per_volt_n_v, friction_of, servo_log};
+use super::{AxisModel, force_per_volt_n_v, friction_of, read_log};
 use crate::servo::Chain;
 
 /// The error of one model.
@@ -39,8 +38,7 @@ pub fn held_against(
     name: &str,
     estimates: &[&Estimate],
 ) -> Result<(Vec<Finding>, DocumentSection), MethodError> {
-    let imported = import_run(path, sidecar)?;
-    let log = servo_log(&imported.log)?;
+    let (imported, log) = read_log(path, sidecar)?;
     let rate_hz = log.rate_hz().map_err(MethodError::refused)?;
     let force_per_volt_n_v = force_per_volt_n_v(path, sidecar)?;
     let mut found = Vec::new();

@@ -10,6 +10,7 @@ use froude_fit::distribution::coverage_factor;
 use froude_identify::answer::Made;
 use froude_identify::large::MOST_KEPT;
 use froude_identify::method::{Found, MethodError};
+use froude_identify::wild;
 use froude_records::chunks::{for_each_chunk, has_more_rows};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
@@ -127,6 +128,10 @@ pub(super) fn of_table(
     for_each_chunk(path, sidecar, &mut |table| {
         let position_m = column(&table, "position", Dimension::LENGTH)?;
         let command_v = column(&table, "command", Dimension::VOLTAGE)?;
+        let times = table.number("time", Dimension::TIME)?;
+        if let Some(what) = wild::sample_of("position", "m", times, position_m, &[]) {
+            return Err(MethodError::input(path, format!("{what}; correct the sample, or cut the log there")));
+        }
         under_way
             .iter_mut()
             .try_for_each(|(_, servo)| servo.push(position_m, command_v, None))
@@ -169,7 +174,7 @@ pub(super) fn of_table(
 fn coefficients(report: &LongReport) -> Vec<ServoCoefficient> {
     let coverage = coverage_factor(0.95, report.dof);
     let of = |(j, (name, unit)): (usize, &(String, &'static str))| {
-        let hac_std = if report.is_told[j] { report.hac[j] } else { f64::NAN };
+        let hac_std = report.hac[j];
         let (value, half) = (report.coefficients[j], coverage * hac_std);
         ServoCoefficient {
             name: name.clone(),

@@ -1,7 +1,7 @@
 //! From a record to the rows of a regression.
 //!
 //! 1. Position through a zero-phase Butterworth low-pass (the command stays as it is).
-//! 2. Speed and acceleration by central differences.
+//! 2. Speed and acceleration by central differences (of a command that is held, acceleration by second differences).
 //! 3. Regressors of the friction law at the full rate, where `sgn` is sharp.
 //! 4. Force **and every regressor** through the same zero-phase FIR decimation: the parallel filter that leaves the
 //!    coefficients where they are, and takes out what lies beyond the filtered band.
@@ -23,6 +23,11 @@ use crate::servo::rows::Rows;
 
 /// Rate of rows from a log, Hz: the effect of position noise grows with the fifth power of this rate, and a rigid axis needs no higher rate.
 const ROW_RATE_HZ: f64 = 50.0;
+/// Least decimation of a log: what is beyond the rows' band is taken out.
+const LEAST_DECIMATION: usize = 4;
+/// Corner of the position's filter for a log, Hz, and its largest part of the log's rate.
+const CORNER_HZ: f64 = 50.0;
+const MOST_CORNER: f64 = 0.25;
 /// Largest filtered fraction of samples near rest and reversal in a row that is kept.
 pub(crate) const MOST_NEAR_REST: f64 = 0.2;
 
@@ -39,7 +44,7 @@ pub struct Chain {
     pub decimation: usize,
     /// Dropped at each end, s.
     pub trim_s: f64,
-    /// Whether a command is held until the next sample, as in a digital drive (zero-order hold): the force at a sample is then the mean of the forces before and after it.
+    /// Whether a command is held until the next sample, as in a digital drive (zero-order hold): the force at a sample is then the mean of the forces before and after it, and the acceleration the second difference that is the same mean.
     pub is_held: bool,
     /// Whether samples near rest and reversal are left out, because the direction of friction is unknown there: they are set to zero on both sides before decimation, and rows with too many of them are dropped.
     pub is_moving: bool,
@@ -66,22 +71,21 @@ impl Chain {
         }
     }
 
-    /// For any log: the position's corner at a tenth of its rate, some fifty rows a second, a command that is held, and no rows near rest and reversal.
+    /// For any log: the position's corner at 50 Hz, some fifty rows a second (both lower where the log has fewer than 200 samples a second), a command that is held, and no rows near rest and reversal.
     #[must_use]
     pub fn of_log(force_per_volt_n_v: f64, rate_hz: f64, friction: Friction) -> Self {
-        let decimation = ((rate_hz / ROW_RATE_HZ).round() as usize).max(10);
         Self {
-            corner_hz: 0.1 * rate_hz,
-            decimation,
+            corner_hz: CORNER_HZ.min(MOST_CORNER * rate_hz),
+            decimation: ((rate_hz / ROW_RATE_HZ).round() as usize).max(LEAST_DECIMATION),
             is_held: true,
             is_moving: true,
             ..Self::new(force_per_volt_n_v, friction)
         }
     }
 
-    /// 1 for samples that are so close to rest or reversal that the position's filter sees it: |v| ≤ 2|a|/corner.
+    /// 1 for samples that are so close to rest or reversal that the position's filter sees it: |v| ≤ |a|/corner.
     pub(crate) fn near_rest(&self, motion: &Motion) -> Vec<f64> {
-        let reach_s = 2.0 / self.corner_hz;
+        let reach_s = self.corner_hz.recip();
         let is_near = |(v, a): (&f64, &f64)| f64::from(u8::from(v.abs() <= reach_s * a.abs()));
         motion.velocity_m_s.iter().zip(&motion.acceleration_m_s2).map(is_near).collect()
     }
@@ -119,7 +123,11 @@ impl Chain {
         let low_pass = butterworth::low_pass(self.filter_order, self.corner_hz, rate_hz)?;
         let position_m = zero_phase::filter(&low_pass, position_m)?;
         let velocity_m_s = differences::central(&position_m, rate_hz.recip())?;
-        let acceleration_m_s2 = differences::central(&velocity_m_s, rate_hz.recip())?;
+        let acceleration_m_s2 = if self.is_held {
+            differences::second(&position_m, rate_hz.recip())?
+        } else {
+            differences::central(&velocity_m_s, rate_hz.recip())?
+        };
         Ok(Motion { position_m, velocity_m_s, acceleration_m_s2 })
     }
 

@@ -1,73 +1,80 @@
-//! Whether a motion determines the coefficients of an axis; if not, a suitable motion is recommended.
+//! Which coefficients of an axis the motion of a log determines, a motion that determines the others, and how far a disturbance may have moved them.
 //!
-//! A log is not a designed test. A disturbance also moves the axis, so acceleration and speed follow it, and least squares attribute it to inertia and friction. The resulting bias is at most
-//! 1/R² of a coefficient. R is the ratio of two forces: that of the coefficient, without what the other columns explain, to the residual. If the speed hardly varies within a direction,
-//! viscous and Coulomb friction cannot be distinguished.
+//! A log is not a designed test. A disturbance n also moves the axis, so that acceleration and speed follow it and least squares attribute it to inertia and friction. Without a loop E(a n) = −σ²/M and
+//! E(v n) = −σ² τ/M, τ its correlation time; a loop makes both smaller. N rows with the covariance C of white residuals are then off by up to
 //!
-//! | coefficient | needed | at least |
+//! b_a = N C_M/M,  b_v = N C_v τ/M
+//!
+//! (C_M, C_v: columns of C). What the disturbance is in a log is unknown, so that each is a rectangular error within ± b, whose variance b bᵀ/3 is added to that of the scatter. It does not become smaller
+//! in longer logs, and neither does b_p, which is 0.2 % of M: filters smear a sudden acceleration across the samples near rest that are left out. b_a of M is M/R², where R is the ratio of two forces: that of the coefficient, without what the other columns explain, to the residual.
+//!
+//! | coefficient | needed for an interval | at least |
 //! |-------------|--------|-------|
-//! | M | R = \|M\| rms(a⊥)/σ | 5 |
-//! | F_v, F_c | the same R of M; rms(x⊥)/rms(x) of their own column | 2; 0.07 |
+//! | all         | R = \|M\| rms(a⊥)/σ of M | 2 |
+//! | F_v, F_c    | rms(x⊥)/rms(x) of their own column: within a direction the speed varies | 0.07 |
 //!
-//! x⊥ is what the other columns leave of a column: rms(x⊥) = σ/(s √n), s the standard deviation of its coefficient with white residuals.
+//! x⊥ is what the other columns leave of a column: rms(x⊥) = σ/(s √N), s the standard deviation of its coefficient with white residuals. 2 τ is the time between rows times the ratio of the variances of F_v by HAC and
+//! with white residuals.
 //!
 //! **Source.** Ljung (1999), System Identification, 13.4 (the bias of a direct method in a loop); Belsley, Kuh & Welsch (1980), 3.2. The limits are ours: twelve motions of a simulated axis
 //! (tests/servo_logs.rs).
 
+use froude_fit::faer::Mat;
+use froude_fit::stream::Solution;
 use froude_records::number::significant;
 
-/// Least force of the inertia over what the model leaves.
-const LEAST_FORCE: f64 = 5.0;
-/// The same for any coefficient: below, the motion is that of the disturbance.
-const LEAST_FORCE_OF_ANY: f64 = 2.0;
+/// Least force of the inertia over what the model leaves: below, the motion is that of the disturbance.
+const LEAST_FORCE: f64 = 2.0;
+/// Part of M by which the preparation of the rows may move it.
+const BY_PREPARATION: f64 = 0.002;
 /// Least part of a column of friction that the other columns do not have.
 const LEAST_PART: f64 = 0.07;
 
-/// A column of the regression with its coefficient.
+/// A column of the regression.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Column<'a> {
     pub name: &'a str,
-    pub value: f64,
-    /// Standard deviation of the coefficient, if residuals were white.
-    pub classical: f64,
-    /// Root mean square of the column.
+    /// Standard deviation of its coefficient by HAC.
+    pub hac: f64,
+    /// Root mean square.
     pub rms: f64,
 }
 
-/// What is wrong with the motion, and which coefficients it does not tell.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Weak {
+/// What is wrong with the motion.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Excitation {
     /// A sentence for each kind of coefficient.
     pub findings: Vec<String>,
-    /// Whether the motion tells each column's coefficient.
-    pub is_told: Vec<bool>,
+    /// Covariance of what the disturbance may have moved; NaN of coefficients that the motion does not determine.
+    pub moved: Mat<f64>,
 }
 
-/// Judges columns of `n` rows, of which the model leaves `sigma_n`.
-pub(crate) fn weak(columns: &[Column<'_>], sigma_n: f64, n: usize) -> Weak {
+/// Judges the `columns` that `solution` was fitted to: `n` rows at `rate_hz`.
+pub(crate) fn excitation(columns: &[Column<'_>], solution: &Solution, n: usize, rate_hz: f64) -> Excitation {
+    let p = columns.len();
     let root = (n as f64).sqrt();
-    let force = |c: &Column<'_>| c.value.abs() / (c.classical * root);
-    let part = |c: &Column<'_>| sigma_n / (c.classical * root * c.rms);
-    let of_inertia = columns.iter().find(|c| c.name == "M").map_or(f64::INFINITY, force);
-    let is_driven = of_inertia >= LEAST_FORCE_OF_ANY;
-    let is_told = |c: &Column<'_>| match c.name {
-        "M" => force(c) >= LEAST_FORCE,
-        name if name.starts_with("F_") => is_driven && part(c) >= LEAST_PART,
+    let left = |j: usize| solution.sigma / (solution.standard[j] * root);
+    let part = |j: usize| left(j) / columns[j].rms;
+    let inertia = columns.iter().position(|c| c.name == "M");
+    let force = inertia.map_or(f64::INFINITY, |j| solution.coefficients[j].abs() * left(j) / solution.sigma);
+    let is_driven = force >= LEAST_FORCE;
+    let is_told = |j: usize| match columns[j].name {
+        "M" => is_driven,
+        name if name.starts_with("F_") => is_driven && part(j) >= LEAST_PART,
         _ => true,
     };
+    let is_told: Vec<bool> = (0..p).map(is_told).collect();
     let mut findings = Vec::new();
-    for c in columns.iter().filter(|c| c.name == "M" && !is_told(c)) {
-        let of = if is_driven { "M" } else { "M and friction" };
+    if !is_driven {
         findings.push(format!(
-            "{of}: no interval is given, because the inertia force is {} times the residual force (at least {LEAST_FORCE} times is needed); move with larger accelerations (pulses, steps, a sine of \
-             1 Hz or more)",
-            significant(force(c), 2)
+            "M and friction: no interval is given, because the inertia force is {} times the residual force (at least {LEAST_FORCE} times is needed); move with larger accelerations (pulses, \
+             steps, a sine of 1 Hz or more)",
+            significant(force, 2)
         ));
     }
-    let friction: Vec<&Column<'_>> =
-        columns.iter().filter(|c| c.name.starts_with("F_") && is_driven && !is_told(c)).collect();
-    if let Some(least) = friction.iter().map(|c| part(c)).reduce(f64::min) {
-        let names: Vec<&str> = friction.iter().map(|c| c.name).collect();
+    let friction: Vec<usize> = (0..p).filter(|j| is_driven && !is_told[*j]).collect();
+    if let Some(least) = friction.iter().map(|j| part(*j)).reduce(f64::min) {
+        let names: Vec<&str> = friction.iter().map(|j| columns[*j].name).collect();
         findings.push(format!(
             "{}: no interval is given, because the speed hardly varies within a direction, so that viscous and Coulomb friction cannot be distinguished (independent part of the column {}, \
              at least {LEAST_PART} is needed); move at two or more speeds, or through a range of speeds (pulses, a sine)",
@@ -75,5 +82,30 @@ pub(crate) fn weak(columns: &[Column<'_>], sigma_n: f64, n: usize) -> Weak {
             significant(least, 2)
         ));
     }
-    Weak { findings, is_told: columns.iter().map(is_told).collect() }
+    let by = inertia.map_or_else(Vec::new, |j| by_disturbance(columns, solution, (j, n as f64), rate_hz).into());
+    let variance = |i: usize, j: usize| by.iter().map(|b| b[i] * b[j]).sum::<f64>() / 3.0;
+    let moved = Mat::from_fn(p, p, |i, j| if is_told[i] && is_told[j] { variance(i, j) } else { f64::NAN });
+    Excitation { findings, moved }
+}
+
+/// b_a, b_v and b_p. Columns of speed that are of one direction have parts by their squares.
+fn by_disturbance(
+    columns: &[Column<'_>],
+    solution: &Solution,
+    (inertia, n): (usize, f64),
+    rate_hz: f64,
+) -> [Vec<f64>; 3] {
+    let p = columns.len();
+    let of_mass = n / solution.coefficients[inertia].abs();
+    let speeds: Vec<usize> = (0..p).filter(|j| columns[*j].name.starts_with("F_v")).collect();
+    let squares: f64 = speeds.iter().map(|j| columns[*j].rms.powi(2)).sum();
+    let by_speed = |i: usize, j: usize| {
+        let time_s = 0.5 * (columns[j].hac / solution.standard[j]).powi(2) / rate_hz;
+        time_s * columns[j].rms.powi(2) / squares * solution.covariance[(i, j)]
+    };
+    [
+        (0..p).map(|i| of_mass * solution.covariance[(i, inertia)]).collect(),
+        (0..p).map(|i| if i == inertia { BY_PREPARATION * solution.coefficients[i] } else { 0.0 }).collect(),
+        (0..p).map(|i| of_mass * speeds.iter().map(|j| by_speed(i, *j)).sum::<f64>()).collect(),
+    ]
 }

@@ -248,5 +248,5 @@ fn long_enough(scores: &[&[f64]], residuals: &[f64]) -> usize {
 }
 
 pub(crate) fn diagonal_roots(m: &Mat<f64>) -> Vec<f64> {
-    (0..m.nrows()).map(|j| m[(j, j)].max(0.0).sqrt()).collect()
+    (0..m.nrows()).map(|j| m[(j, j)].clamp(0.0, f64::INFINITY).sqrt()).collect()
 }

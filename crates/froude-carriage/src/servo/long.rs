@@ -21,11 +21,11 @@ use std::collections::VecDeque;
 use froude_fit::faer::Mat;
 use froude_fit::stream::{Accumulator, Shape};
 use froude_signal::butterworth;
-use froude_signal::stream::{Decimator, Differences, Link, ZeroPhase};
+use froude_signal::stream::{Decimator, Differences, Link, SecondDifferences, ZeroPhase};
 
 use crate::servo::chain::{Chain, MOST_NEAR_REST, Motion};
 use crate::servo::error::ServoError;
-use crate::servo::excitation::{Column, Weak, weak};
+use crate::servo::excitation::{Column, excitation};
 use crate::servo::interval::diagonal_roots;
 use crate::servo::regression::{inverse_gram, solve};
 
@@ -44,7 +44,7 @@ pub struct LongReport {
     pub coefficients: Vec<f64>,
     /// Standard deviations if residuals were white.
     pub classical: Vec<f64>,
-    /// Standard deviations by HAC.
+    /// Standard deviations by HAC, with what a disturbance may have moved; NaN of coefficients that the motion does not determine.
     pub hac: Vec<f64>,
     /// Their covariance.
     pub covariance: Mat<f64>,
@@ -60,8 +60,6 @@ pub struct LongReport {
     pub ranges: Vec<[f64; 2]>,
     /// Coefficients that the motion does not determine, which have no interval, and a motion that would determine them.
     pub excitation: Vec<String>,
-    /// Whether the motion determines each coefficient.
-    pub is_told: Vec<bool>,
     /// How the rows of the regression were made, in words.
     pub preparation: String,
     /// Rows of the regression.
@@ -102,8 +100,8 @@ pub struct LongServo {
     trim: usize,
     taken: usize,
     filter: ZeroPhase,
-    first: Differences,
-    second: Differences,
+    velocity: Differences,
+    acceleration: Acceleration,
     /// Filtered and differentiated, not yet made into regressors; the three end at different samples.
     motion: Motion,
     /// Load on the guides of those samples.
@@ -125,6 +123,39 @@ pub struct LongServo {
     /// Rows that were fitted.
     fitted: usize,
     ranges: Vec<[f64; 2]>,
+}
+
+/// Accelerations as [`Chain::motion`] takes them.
+#[derive(Debug, Clone)]
+enum Acceleration {
+    OfPosition(SecondDifferences),
+    OfVelocity(Differences),
+}
+
+impl Acceleration {
+    fn new(chain: &Chain, rate_hz: f64) -> Result<Self, ServoError> {
+        let step_s = rate_hz.recip();
+        Ok(if chain.is_held {
+            Self::OfPosition(SecondDifferences::new(step_s)?)
+        } else {
+            Self::OfVelocity(Differences::new(step_s)?)
+        })
+    }
+
+    fn take(&mut self, [position_m, velocity_m_s]: [&[f64]; 2], out: &mut Vec<f64>) {
+        match self {
+            Self::OfPosition(differences) => differences.take(position_m, out),
+            Self::OfVelocity(differences) => differences.take(velocity_m_s, out),
+        }
+    }
+
+    fn finish(self, out: &mut Vec<f64>) -> Result<(), ServoError> {
+        match self {
+            Self::OfPosition(differences) => differences.finish(out)?,
+            Self::OfVelocity(differences) => differences.finish(out)?,
+        }
+        Ok(())
+    }
 }
 
 /// Decimated columns that wait for each other, and for the record's end to be far enough away.
@@ -166,8 +197,8 @@ impl LongServo {
             trim,
             taken: 0,
             filter: ZeroPhase::new(low_pass),
-            first: Differences::new(rate_hz.recip())?,
-            second: Differences::new(rate_hz.recip())?,
+            velocity: Differences::new(rate_hz.recip())?,
+            acceleration: Acceleration::new(chain, rate_hz)?,
             motion: none,
             load_n: Vec::new(),
             force_n: Vec::new(),
@@ -225,14 +256,15 @@ impl LongServo {
     /// Differences of the filtered positions from `position` on.
     fn differentiate(&mut self, position: usize) {
         let velocity = self.motion.velocity_m_s.len();
-        self.first.take(&self.motion.position_m[position..], &mut self.motion.velocity_m_s);
-        self.second.take(&self.motion.velocity_m_s[velocity..], &mut self.motion.acceleration_m_s2);
+        let Motion { position_m, velocity_m_s, acceleration_m_s2 } = &mut self.motion;
+        self.velocity.take(&position_m[position..], velocity_m_s);
+        self.acceleration.take([&position_m[position..], &velocity_m_s[velocity..]], acceleration_m_s2);
     }
 
     /// Rows of what is complete; `kept` of them stay, in case the record ends here.
     fn regress(&mut self, kept: usize) -> Result<(), ServoError> {
         let Motion { position_m, velocity_m_s, acceleration_m_s2 } = &mut self.motion;
-        let n = acceleration_m_s2.len();
+        let n = acceleration_m_s2.len().min(velocity_m_s.len());
         let part = |column: &mut Vec<f64>| column.drain(..n).collect::<Vec<f64>>();
         let motion = Motion {
             position_m: part(position_m),
@@ -306,9 +338,9 @@ impl LongServo {
         self.filter.clone().finish(&mut self.motion.position_m)?;
         self.differentiate(position);
         let velocity = self.motion.velocity_m_s.len();
-        self.first.clone().finish(&mut self.motion.velocity_m_s)?;
-        self.second.take(&self.motion.velocity_m_s[velocity..], &mut self.motion.acceleration_m_s2);
-        self.second.clone().finish(&mut self.motion.acceleration_m_s2)?;
+        self.velocity.clone().finish(&mut self.motion.velocity_m_s)?;
+        self.acceleration.take([&[], &self.motion.velocity_m_s[velocity..]], &mut self.motion.acceleration_m_s2);
+        self.acceleration.clone().finish(&mut self.motion.acceleration_m_s2)?;
         self.regress(self.trim)?;
         self.force.clone().finish(&mut self.decimated.force_n);
         self.near_rest.clone().finish(&mut self.decimated.near_rest);
@@ -328,24 +360,20 @@ impl LongServo {
         let middle = Mat::from_fn(p, p, |i, j| dof * middle[i * p + j]);
         let inverse_gram = inverse_gram(&solution);
         let rate_hz = self.rate_hz / self.chain.decimation as f64;
-        let covariance = &inverse_gram * middle * &inverse_gram;
+        let mut covariance = &inverse_gram * middle * &inverse_gram;
+        let hac = diagonal_roots(&covariance);
         let windows = rows as f64 / (self.windows.lag + 1) as f64;
         let columns: Vec<Column<'_>> = (0..p)
-            .map(|j| Column {
-                name: &self.names[j].0,
-                value: solution.coefficients[j],
-                classical: solution.standard[j],
-                rms: (self.squares[j] / rows as f64).sqrt(),
-            })
+            .map(|j| Column { name: &self.names[j].0, hac: hac[j], rms: (self.squares[j] / rows as f64).sqrt() })
             .collect();
-        let weak = if self.chain.is_moving {
-            weak(&columns, solution.sigma, rows)
-        } else {
-            Weak { is_told: vec![true; p], ..Weak::default() }
-        };
+        let mut weak = Vec::new();
+        if self.chain.is_moving {
+            let found = excitation(&columns, &solution, rows, rate_hz);
+            covariance += &found.moved;
+            weak = found.findings;
+        }
         Ok(LongReport {
-            excitation: weak.findings,
-            is_told: weak.is_told,
+            excitation: weak,
             hac: diagonal_roots(&covariance),
             covariance,
             dof: (1.5 * windows).min(solution.dof),
@@ -547,7 +575,16 @@ mod tests {
         let whole = least_squares(&rows).unwrap();
         let residuals = rows.residuals_n(&whole.coefficients);
         let lag_s = chain.intervals.hac_lag_s;
-        let (expected, lag_s) = hac(&rows.columns, &residuals, &inverse_gram(&whole), rows.rate_hz, lag_s);
+        let (mut expected, lag_s) = hac(&rows.columns, &residuals, &inverse_gram(&whole), rows.rate_hz, lag_s);
+        if chain.is_moving {
+            let rms = |x: &[f64]| (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt();
+            let columns: Vec<Column<'_>> = (rows.names.iter().zip(&rows.columns).zip(&expected))
+                .map(|(((name, _), column), hac)| Column { name, hac: *hac, rms: rms(column) })
+                .collect();
+            let moved = excitation(&columns, &whole, rows.force_n.len(), rows.rate_hz).moved;
+            assert!((0..expected.len()).all(|j| moved[(j, j)] > 0.0));
+            expected.iter_mut().enumerate().for_each(|(j, hac)| *hac = hac.hypot(moved[(j, j)].sqrt()));
+        }
 
         let mut servo = LongServo::new(chain, 1000.0).unwrap();
         for start in (0..log.time_s.len()).step_by(cut) {
@@ -571,6 +608,15 @@ mod tests {
         let log = record(false);
         for cut in [997, 10_000, 60_000] {
             compare(&log, &chain, cut);
+        }
+    }
+
+    #[test]
+    fn a_log_of_anyone_gives_what_it_gives_in_memory() {
+        let mut chain = Chain::of_log(6.0, 1000.0, Friction::asymmetric());
+        chain.intervals.hac_lag_s = Some(0.77);
+        for cut in [997, 60_000] {
+            compare(&record(false), &chain, cut);
         }
     }
 

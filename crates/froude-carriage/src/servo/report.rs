@@ -9,8 +9,8 @@ use froude_records::text::counted;
 
 use crate::servo::chain::Chain;
 use crate::servo::error::ServoError;
-use crate::servo::excitation::{Column, Weak, weak};
-use crate::servo::interval::{Spread, Whiteness, over_runs, spread, whiteness};
+use crate::servo::excitation::{Column, excitation};
+use crate::servo::interval::{Spread, Whiteness, diagonal_roots, over_runs, spread, whiteness};
 use crate::servo::log::ServoLog;
 use crate::servo::motor::MotorSide;
 use crate::servo::regression::least_squares;
@@ -207,7 +207,13 @@ pub fn effective(report: &ServoReport, motor: &MotorSide) -> Vec<ServoCoefficien
     .collect()
 }
 
-fn reported(rows: Rows, runs: Vec<Range<usize>>, solution: &Solution, spread: Spread, chain: &Chain) -> ServoReport {
+fn reported(
+    rows: Rows,
+    runs: Vec<Range<usize>>,
+    solution: &Solution,
+    mut spread: Spread,
+    chain: &Chain,
+) -> ServoReport {
     let residuals_n = rows.residuals_n(&solution.coefficients);
     let whiteness = whiteness(&residuals_n, rows.rate_hz);
     let design = Mat::from_fn(rows.force_n.len(), rows.columns.len(), |i, j| rows.columns[j][i]);
@@ -215,32 +221,38 @@ fn reported(rows: Rows, runs: Vec<Range<usize>>, solution: &Solution, spread: Sp
     let columns: Vec<Column<'_>> = (rows.names.iter().enumerate())
         .map(|(j, (name, _))| Column {
             name,
-            value: solution.coefficients[j],
-            classical: spread.classical[j],
+            hac: spread.hac[j],
             rms: (rows.columns[j].iter().map(|x| x * x).sum::<f64>() / n as f64).sqrt(),
         })
         .collect();
-    let weak = if chain.is_moving { weak(&columns, solution.sigma, n) } else { Weak::default() };
+    let mut weak = Vec::new();
+    if chain.is_moving {
+        let found = excitation(&columns, solution, n, rows.rate_hz);
+        spread.covariance += &found.moved;
+        spread.blocks = diagonal_roots(&spread.covariance);
+        for (j, hac) in spread.hac.iter_mut().enumerate() {
+            *hac = hac.hypot(found.moved[(j, j)].sqrt());
+        }
+        weak = found.findings;
+    }
     let coefficients: Vec<ServoCoefficient> = (rows.names.iter().enumerate())
         .map(|(j, (name, unit))| {
             let value = solution.coefficients[j];
-            let is_told = weak.is_told.get(j).is_none_or(|told| *told);
-            let block_std = if is_told { spread.blocks[j] } else { f64::NAN };
-            let half = spread.coverage_factor[j] * block_std;
+            let half = spread.coverage_factor[j] * spread.blocks[j];
             ServoCoefficient {
                 name: name.clone(),
                 unit,
                 value,
                 classical_std: spread.classical[j],
                 hac_std: spread.hac[j],
-                block_std,
+                block_std: spread.blocks[j],
                 interval: [value - half, value + half],
             }
         })
         .collect();
     ServoReport {
         findings: findings(&coefficients, whiteness.as_ref(), &spread),
-        excitation: weak.findings,
+        excitation: weak,
         preparation: chain.words(rows.rate_hz * chain.decimation as f64),
         n_rows: rows.force_n.len(),
         rate_hz: rows.rate_hz,
