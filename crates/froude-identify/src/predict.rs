@@ -155,8 +155,9 @@ fn by_law(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyErro
         let measured = data.values(load).unwrap_or_default();
         let stated = data.values(&format!("std_{load}"));
         // That of a fit in logarithms is a part of the load.
-        let sigma = |force: f64| {
-            estimate.sigma.get(load).map(|s| if law.in_logarithms() { s.value * force.abs() } else { s.value })
+        let sigma = |force: f64| match estimate.run_scatter.get(load) {
+            Some(runs) => Some(runs.constant.value.hypot(runs.part * force)),
+            None => estimate.sigma.get(load).map(|s| if law.in_logarithms() { s.value * force.abs() } else { s.value }),
         };
         let of_sigma = estimate.dof.get(load).copied().flatten().unwrap_or(f64::INFINITY);
         for row in 0..data.rows {

@@ -5,7 +5,7 @@ use froude_fit::budget::{Kind as Evaluation, Part};
 use froude_fit::faer::Mat;
 use froude_records::estimate::{
     Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Interval, Law, Measured, MethodUsed, OWN, Output,
-    SharedError, Signs, Status, TypeA,
+    RunScatter, SharedError, Signs, Status, TypeA,
 };
 use indexmap::IndexMap;
 
@@ -67,6 +67,7 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         clusters: clusters(model, data),
         dof,
         sigma,
+        run_scatter: run_scatter(model, data),
         n_observations: data.observations(),
         derived: stated.derived.iter().filter_map(|d| derived(d, &coefficients)).collect(),
         coefficients,
@@ -161,6 +162,16 @@ fn scatter_by_load(
     };
     let dof = loads.iter().map(|c| (c.name.clone(), Some(dof(c)))).collect();
     (dof, loads.iter().enumerate().filter_map(sigma).collect())
+}
+
+/// Scatter of rows that are runs, by load.
+fn run_scatter(model: &ModelFit, data: &Dataset) -> IndexMap<String, RunScatter> {
+    let sizes = model.run_scatter(data).unwrap_or_default();
+    let of = |(load, [constant, part]): (&fit::ComponentSummary, [f64; 2])| {
+        let constant = Measured { value: constant, unit: unit_text(data, &load.name) };
+        (load.name.clone(), RunScatter { constant, part })
+    };
+    model.fit.components.iter().zip(sizes).map(of).collect()
 }
 
 /// A coefficient times an exact factor.

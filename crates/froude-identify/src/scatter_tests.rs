@@ -244,8 +244,8 @@ fn uneven(
 
 /// An offset of each setup, or each group, that nobody declared.
 fn offset(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, loads: f64) -> Option<Finding> {
-    let is_classical = matches!(model.scatter, Scatter::Classical);
-    if !is_classical || data.sample.is_some() || has_declared_groups(model) || model.whitened.is_some() {
+    let is_of_rows = matches!(model.scatter, Scatter::Classical | Scatter::Runs);
+    if !is_of_rows || data.sample.is_some() || has_declared_groups(model) || model.whitened.is_some() {
         return None;
     }
     let n = data.rows;

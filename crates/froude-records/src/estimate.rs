@@ -73,6 +73,15 @@ pub struct Measured {
     pub unit: String,
 }
 
+/// Scatter of a row that is a run: its variance is `constant` squared plus the square of `part` times the load.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunScatter {
+    /// What is the same at every load.
+    pub constant: Measured,
+    /// Part of the load, 1.
+    pub part: f64,
+}
+
 /// A closed range with its unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Range {
@@ -463,6 +472,9 @@ pub struct Estimate {
     /// Residual standard deviation by load component.
     #[serde(default)]
     pub sigma: IndexMap<String, Measured>,
+    /// By load component, where rows are runs whose scatter grows with the load.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub run_scatter: IndexMap<String, RunScatter>,
     /// Observations used.
     #[serde(default, rename = "n")]
     pub n_observations: usize,

@@ -18,7 +18,7 @@ use crate::comparison::Comparison;
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::estimate::{
     BadUnit, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Interval, Law,
-    NamedCorrelation, SharedError, Status, TypeA, to_si, v1,
+    NamedCorrelation, RunScatter, SharedError, Status, TypeA, to_si, v1,
 };
 use crate::finding::Finding;
 use crate::hash::sha256_of_file;
@@ -395,6 +395,7 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
         clusters: _,
         dof,
         sigma,
+        run_scatter,
         coefficients,
         derived,
         type_a,
@@ -411,6 +412,10 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
         for (name, m) in measured {
             see(&|| format!("{section}.{name}"), m.value);
         }
+    }
+    for (name, RunScatter { constant, part }) in run_scatter {
+        see(&|| format!("run_scatter.{name}.constant"), constant.value);
+        see(&|| format!("run_scatter.{name}.part"), *part);
     }
     see(&|| "interval.level".to_owned(), *level);
     for (name, dof) in dof {

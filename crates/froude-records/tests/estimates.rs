@@ -10,7 +10,7 @@ use froude_records::comparison::{
 use froude_records::estimate::{
     Attitude, Clusters, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, ErrorKind, Estimate,
     EstimateFile, Frame, Interval, Law, Measured, MethodUsed, NamedCorrelation, Output, Range, ReferencePoint,
-    SharedError, Signs, Status, TypeA, keyed,
+    RunScatter, SharedError, Signs, Status, TypeA, keyed,
 };
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::{parse_estimates, read_estimates, write_estimates};
@@ -62,6 +62,7 @@ fn sample() -> EstimateFile {
         clusters: Some(Clusters { by: "configuration".to_owned(), n: 3 }),
         dof: [("f_x".to_owned(), Some(10.0)), ("f_y".to_owned(), None)].into(),
         sigma: [("f_x".to_owned(), measured(0.02, "N"))].into(),
+        run_scatter: [("f_x".to_owned(), RunScatter { constant: measured(0.01, "N"), part: 0.02 })].into(),
         coefficients: [
             ("C_d_I".to_owned(), coefficient(Some(0.4), Status::Free)),
             ("C_f_I".to_owned(), coefficient(None, Status::Undetermined)),

@@ -167,7 +167,8 @@ pub(crate) fn repeats(data: &Dataset) -> Option<Finding> {
         Finding::new(
             Severity::Note,
             "no-repeats",
-            "no setting was repeated: lack of fit cannot be distinguished from scatter".to_owned(),
+            "no setting was repeated: lack of fit cannot be distinguished from scatter; repeat some settings"
+                .to_owned(),
         )
     })
 }

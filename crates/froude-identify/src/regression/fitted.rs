@@ -228,6 +228,15 @@ impl ModelFit {
         Some(sigma * (sum / n).sqrt())
     }
 
+    /// Scatter of each load of rows that are runs, where they have the same weight and their intervals include it.
+    #[must_use]
+    pub(crate) fn run_scatter(&self, data: &Dataset) -> Option<Vec<[f64; 2]>> {
+        let is_of_runs = self.budget.first().is_some_and(|part| part.name.starts_with(runs::NAME));
+        let runs = (is_of_runs && self.problem.weight.is_none())
+            .then(|| runs::between_runs(&self.law, data, &self.problem, &self.fit))?;
+        runs.map(|runs| runs.loads)
+    }
+
     /// Whether its rows follow each other in time, and its scatter knows.
     #[must_use]
     pub fn is_in_time(&self, data: &Dataset) -> bool {

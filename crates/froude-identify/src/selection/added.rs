@@ -119,9 +119,9 @@ pub(crate) fn widened(
         (part.covariance, fewest)
     };
     let (scatter, dof) = match &law.scatter {
-        Scatter::Runs if law.whitened.is_none() && !law.in_variables => {
+        Scatter::Runs if law.whitened.is_none() && !law.in_variables && settings.identify.huber.is_none() => {
             match between_runs(&law.law, data, &larger, &fitted) {
-                Some(part) => fewest(part),
+                Some(runs) => fewest(runs.part),
                 None => (fitted.covariance.clone(), dof),
             }
         }

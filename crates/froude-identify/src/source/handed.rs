@@ -41,12 +41,12 @@ pub(crate) fn no_budget(campaign: &Campaign, source: &Source, stated: &[SharedEr
         let text = if source.kind == SourceKind::Cfd {
             format!(
                 "no uncertainty of the computation is declared: the intervals include the scatter about the law{stated}{known} and nothing else \
-                 (the error of the model form does not appear in the scatter)"
+                 (the error of the model form does not appear in the scatter); declare what is known ([[source.uncertainty]])"
             )
         } else {
             format!(
                 "no uncertainty of an instrument is declared: the intervals include the scatter of the observations{stated}{known} and nothing else \
-                 (a calibration error does not appear in the scatter)"
+                 (a calibration error does not appear in the scatter); declare it ([[source.uncertainty]])"
             )
         };
         Finding::new(Severity::Note, "no-budget", text)

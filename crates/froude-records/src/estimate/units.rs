@@ -5,7 +5,7 @@
 //! | field | a unit other than SI |
 //! | --- | --- |
 //! | `coefficients` | converted: value, unconstrained, standard uncertainty and its parts, interval, rows and columns of `type_a`, rows of every `sensitivity` |
-//! | `refers_to`, `law.constants`, `sigma`, `validity`, `derived`, parameters of `data` steps | converted |
+//! | `refers_to`, `law.constants`, `sigma`, `run_scatter`, `validity`, `derived`, parameters of `data` steps | converted |
 //! | `law.inputs`, `law.outputs` | rejected: a formula is evaluated in SI |
 //! | `comparison` | rejected: it is a result, not an input |
 //! | `errors`, `diagnostics` | no unit in the file: SI of the quantity |
@@ -16,7 +16,7 @@
 use froude_hydro::DragModel;
 use indexmap::IndexMap;
 
-use super::{Coefficient, Derived, Estimate, EstimateFile, Measured, Range};
+use super::{Coefficient, Derived, Estimate, EstimateFile, Measured, Range, RunScatter};
 use crate::table::known_dimension;
 use crate::units::{Dimension, Unit, parse_unit};
 
@@ -120,6 +120,11 @@ fn estimate_to_si(e: &mut Estimate) -> Result<(), BadUnit> {
         let expected = if is_relative { Some(Dimension::ONE) } else { known_dimension(name) };
         let unit = Field { path: &["sigma", name], expected }.converted(&mut m.unit)?;
         m.value = unit.difference_to_si(m.value);
+    }
+    for (name, RunScatter { constant, part: _ }) in &mut e.run_scatter {
+        let field = Field { path: &["run_scatter", name], expected: known_dimension(name) };
+        let unit = field.converted(&mut constant.unit)?;
+        constant.value = unit.difference_to_si(constant.value);
     }
     for (name, range) in &mut e.validity {
         let Range { low, high, unit } = range;

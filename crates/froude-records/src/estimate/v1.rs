@@ -133,6 +133,7 @@ impl From<EstimateV1> for Estimate {
             clusters: None,
             dof: e.dof,
             sigma: e.sigma,
+            run_scatter: IndexMap::new(),
             coefficients: e.coefficients,
             derived: IndexMap::new(),
             type_a,

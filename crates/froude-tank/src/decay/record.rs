@@ -186,6 +186,7 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
         clusters: Some(Clusters { by: "run".to_owned(), n: fit.runs.len() }),
         dof: fit.type_a.iter().map(|a| (load.clone(), Some(a.dof[1]).filter(|d| d.is_finite()))).collect(),
         sigma: IndexMap::new(),
+        run_scatter: IndexMap::new(),
         coefficients: coefficients.collect(),
         derived: IndexMap::new(),
         type_a: fit.type_a.as_ref().map(|a| TypeA {

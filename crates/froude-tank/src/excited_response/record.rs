@@ -117,6 +117,7 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
         clusters: Some(Clusters { by: "run".to_owned(), n: at.used().count() }),
         dof: IndexMap::from([("f_z".to_owned(), dof(0))]),
         sigma: IndexMap::new(),
+        run_scatter: IndexMap::new(),
         coefficients: [0, 1].map(coefficient).into_iter().collect(),
         derived: IndexMap::new(),
         type_a: Some(TypeA {

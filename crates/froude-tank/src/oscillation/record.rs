@@ -98,6 +98,7 @@ pub fn estimate(fit: &OscillationFit, drag: &Drag, context: &Context<'_>, of: Op
         clusters: Some(Clusters { by: fit.by.to_owned(), n: fit.clusters }),
         dof: IndexMap::from([(LOAD.to_owned(), scatter.dof.first().copied().filter(|d| d.is_finite()))]),
         sigma: IndexMap::new(),
+        run_scatter: IndexMap::new(),
         coefficients: record::coefficients(fit, &|name| name == DELAY || name.starts_with(BUOYANCY)),
         derived: IndexMap::new(),
         type_a: Some(record::type_a(fit)),

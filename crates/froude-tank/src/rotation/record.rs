@@ -98,6 +98,7 @@ pub fn estimate(fit: &RotationFit, context: &Context<'_>) -> Estimate {
         clusters: Some(Clusters { by: fit.by.to_owned(), n: fit.clusters }),
         dof: IndexMap::from([(LOAD.to_owned(), fit.parts[0].dof.first().copied().filter(|d| d.is_finite()))]),
         sigma: IndexMap::new(),
+        run_scatter: IndexMap::new(),
         coefficients: record::coefficients(fit, &|name| !LAMBDAS.contains(&name)),
         derived: derived.iter().map(of_derived).collect(),
         type_a: Some(record::type_a(fit)),
