@@ -170,7 +170,7 @@ pub fn of_table(
     })
 }
 
-/// A log of another program, in which no sample is far from all others.
+/// Reads a log from another program; rejects it if a sample is far from all others.
 fn read_log(path: &Path, sidecar: Option<&Path>) -> Result<(ImportedRun, ServoLog), MethodError> {
     let imported = import_run(path, sidecar)?;
     if let Some(what) = wild::sample(&imported.log, &imported.declared.marks) {
@@ -183,7 +183,7 @@ fn read_log(path: &Path, sidecar: Option<&Path>) -> Result<(ImportedRun, ServoLo
 /// One log is one excitation: what another would show is in none of its residuals.
 fn one_excitation() -> Finding {
     let text = "the intervals hold for this excitation alone: friction that the model leaves out moves the coefficients from one motion to the next by more than any block \
-                of one log shows; hold the fit against a log of another motion (--validate OTHER). The drive is taken to follow each command at once and to hold it until the next: a delay of δ lowers F_v \
+                of one log shows; check the fit on a log of another motion (--validate OTHER). The fit assumes that the drive follows each command at once and holds it until the next: a delay δ lowers F_v \
                 by about M ω² δ at a motion of angular frequency ω";
     Finding::new(Severity::Note, "one-excitation", text.to_owned())
 }

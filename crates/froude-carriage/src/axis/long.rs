@@ -174,7 +174,7 @@ pub(super) fn of_table(
 fn coefficients(report: &LongReport) -> Vec<ServoCoefficient> {
     let coverage = coverage_factor(0.95, report.dof);
     let of = |(j, (name, unit)): (usize, &(String, &'static str))| {
-        let hac_std = report.hac[j];
+        let hac_std = if report.is_told[j] { report.hac[j] } else { f64::NAN };
         let (value, half) = (report.coefficients[j], coverage * hac_std);
         ServoCoefficient {
             name: name.clone(),

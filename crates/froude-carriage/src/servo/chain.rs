@@ -1,7 +1,7 @@
 //! From a record to the rows of a regression.
 //!
 //! 1. Position through a zero-phase Butterworth low-pass (the command stays as it is).
-//! 2. Speed and acceleration by central differences (of a command that is held, acceleration by second differences).
+//! 2. Speed and acceleration by central differences (if the command is held, acceleration by second differences of position).
 //! 3. Regressors of the friction law at the full rate, where `sgn` is sharp.
 //! 4. Force **and every regressor** through the same zero-phase FIR decimation: the parallel filter that leaves the
 //!    coefficients where they are, and takes out what lies beyond the filtered band.
@@ -23,10 +23,12 @@ use crate::servo::rows::Rows;
 
 /// Rate of rows from a log, Hz: the effect of position noise grows with the fifth power of this rate, and a rigid axis needs no higher rate.
 const ROW_RATE_HZ: f64 = 50.0;
-/// Least decimation of a log: what is beyond the rows' band is taken out.
+/// Minimum decimation of a log, so that its filter removes what lies beyond the rows' band.
 const LEAST_DECIMATION: usize = 4;
-/// Corner of the position's filter for a log, Hz, and its largest part of the log's rate.
-const CORNER_HZ: f64 = 50.0;
+/// Rows of a log that are dropped at each end, where the decimation's filter reaches beyond it.
+const TRIM_ROWS: f64 = 10.0;
+/// Corner of the position filter for a log, Hz, and its largest fraction of the log's rate.
+pub(crate) const CORNER_HZ: f64 = 50.0;
 const MOST_CORNER: f64 = 0.25;
 /// Largest filtered fraction of samples near rest and reversal in a row that is kept.
 pub(crate) const MOST_NEAR_REST: f64 = 0.2;
@@ -44,7 +46,7 @@ pub struct Chain {
     pub decimation: usize,
     /// Dropped at each end, s.
     pub trim_s: f64,
-    /// Whether a command is held until the next sample, as in a digital drive (zero-order hold): the force at a sample is then the mean of the forces before and after it, and the acceleration the second difference that is the same mean.
+    /// Whether a command is held until the next sample, as in a digital drive (zero-order hold): the force at a sample is then the mean of the forces before and after it, and the acceleration is taken by second differences, which average it in the same way.
     pub is_held: bool,
     /// Whether samples near rest and reversal are left out, because the direction of friction is unknown there: they are set to zero on both sides before decimation, and rows with too many of them are dropped.
     pub is_moving: bool,
@@ -74,9 +76,11 @@ impl Chain {
     /// For any log: the position's corner at 50 Hz, some fifty rows a second (both lower where the log has fewer than 200 samples a second), a command that is held, and no rows near rest and reversal.
     #[must_use]
     pub fn of_log(force_per_volt_n_v: f64, rate_hz: f64, friction: Friction) -> Self {
+        let decimation = ((rate_hz / ROW_RATE_HZ).round() as usize).max(LEAST_DECIMATION);
         Self {
             corner_hz: CORNER_HZ.min(MOST_CORNER * rate_hz),
-            decimation: ((rate_hz / ROW_RATE_HZ).round() as usize).max(LEAST_DECIMATION),
+            decimation,
+            trim_s: TRIM_ROWS * decimation as f64 / rate_hz,
             is_held: true,
             is_moving: true,
             ..Self::new(force_per_volt_n_v, friction)

@@ -1,19 +1,19 @@
-//! Which coefficients of an axis the motion of a log determines, a motion that determines the others, and how far a disturbance may have moved them.
+//! Which coefficients of an axis a log determines, which motion would determine the others, and how much a disturbance can bias them all.
 //!
 //! A log is not a designed test. A disturbance n also moves the axis, so that acceleration and speed follow it and least squares attribute it to inertia and friction. Without a loop E(a n) = −σ²/M and
-//! E(v n) = −σ² τ/M, τ its correlation time; a loop makes both smaller. N rows with the covariance C of white residuals are then off by up to
+//! E(v n) = −σ² τ/M, τ its correlation time; a loop makes both smaller if the correlation decays exponentially. (A periodic disturbance, such as cogging, can do more in a lightly damped loop.) With N rows and C, the covariance of the coefficients for white residuals, the coefficients are then biased by up to
 //!
 //! b_a = N C_M/M,  b_v = N C_v τ/M
 //!
-//! (C_M, C_v: columns of C). What the disturbance is in a log is unknown, so that each is a rectangular error within ± b, whose variance b bᵀ/3 is added to that of the scatter. It does not become smaller
-//! in longer logs, and neither does b_p, which is 0.2 % of M: filters smear a sudden acceleration across the samples near rest that are left out. b_a of M is M/R², where R is the ratio of two forces: that of the coefficient, without what the other columns explain, to the residual.
+//! (C_M, C_v: columns of C). The disturbance in a log is unknown, so each b is treated as a rectangular error within ± b, and its covariance b bᵀ/3 is added to that of the scatter. It does not become smaller
+//! in longer logs, and neither does b_p, which is 0.2 % of M at a corner of 50 Hz and grows with 1/corner²: filters smear a sudden acceleration across the samples near rest that are left out. The M component of b_a is M/R², where R is the ratio of two forces: that of the coefficient, without what the other columns explain, to the residual.
 //!
 //! | coefficient | needed for an interval | at least |
 //! |-------------|--------|-------|
-//! | all         | R = \|M\| rms(a⊥)/σ of M | 2 |
-//! | F_v, F_c    | rms(x⊥)/rms(x) of their own column: within a direction the speed varies | 0.07 |
+//! | M, F_v, F_c | R = \|M\| rms(a⊥)/σ of M | 2 |
+//! | F_v, F_c    | rms(x⊥)/rms(x) of their own column (the speed must vary within a direction) | 0.07 |
 //!
-//! x⊥ is what the other columns leave of a column: rms(x⊥) = σ/(s √N), s the standard deviation of its coefficient with white residuals. 2 τ is the time between rows times the ratio of the variances of F_v by HAC and
+//! x⊥ is what the other columns leave of a column: rms(x⊥) = σ/(s √N), s the standard deviation of its coefficient with white residuals. 2 τ is the time between rows times the largest ratio of a coefficient's variances by HAC and
 //! with white residuals.
 //!
 //! **Source.** Ljung (1999), System Identification, 13.4 (the bias of a direct method in a loop); Belsley, Kuh & Welsch (1980), 3.2. The limits are ours: twelve motions of a simulated axis
@@ -23,9 +23,11 @@ use froude_fit::faer::Mat;
 use froude_fit::stream::Solution;
 use froude_records::number::significant;
 
+use crate::servo::chain::CORNER_HZ;
+
 /// Least force of the inertia over what the model leaves: below, the motion is that of the disturbance.
 const LEAST_FORCE: f64 = 2.0;
-/// Part of M by which the preparation of the rows may move it.
+/// Part of M by which the preparation of the rows may move it, with the corner of the position's filter at 50 Hz.
 const BY_PREPARATION: f64 = 0.002;
 /// Least part of a column of friction that the other columns do not have.
 const LEAST_PART: f64 = 0.07;
@@ -45,12 +47,20 @@ pub(crate) struct Column<'a> {
 pub(crate) struct Excitation {
     /// A sentence for each kind of coefficient.
     pub findings: Vec<String>,
-    /// Covariance of what the disturbance may have moved; NaN of coefficients that the motion does not determine.
+    /// Whether the motion determines each coefficient.
+    pub is_told: Vec<bool>,
+    /// Covariance of the bias that a disturbance can cause.
     pub moved: Mat<f64>,
 }
 
 /// Judges the `columns` that `solution` was fitted to: `n` rows at `rate_hz`.
-pub(crate) fn excitation(columns: &[Column<'_>], solution: &Solution, n: usize, rate_hz: f64) -> Excitation {
+pub(crate) fn excitation(
+    columns: &[Column<'_>],
+    solution: &Solution,
+    n: usize,
+    rate_hz: f64,
+    corner_hz: f64,
+) -> Excitation {
     let p = columns.len();
     let root = (n as f64).sqrt();
     let left = |j: usize| solution.sigma / (solution.standard[j] * root);
@@ -82,30 +92,29 @@ pub(crate) fn excitation(columns: &[Column<'_>], solution: &Solution, n: usize, 
             significant(least, 2)
         ));
     }
-    let by = inertia.map_or_else(Vec::new, |j| by_disturbance(columns, solution, (j, n as f64), rate_hz).into());
+    let by = inertia.map_or_else(Vec::new, |j| biases(columns, solution, (j, n as f64), [rate_hz, corner_hz]).into());
     let variance = |i: usize, j: usize| by.iter().map(|b| b[i] * b[j]).sum::<f64>() / 3.0;
-    let moved = Mat::from_fn(p, p, |i, j| if is_told[i] && is_told[j] { variance(i, j) } else { f64::NAN });
-    Excitation { findings, moved }
+    Excitation { findings, is_told, moved: Mat::from_fn(p, p, variance) }
 }
 
-/// b_a, b_v and b_p. Columns of speed that are of one direction have parts by their squares.
-fn by_disturbance(
+/// b_a, b_p and b_v. If F_v has one column per direction, the columns share b_v in proportion to their mean squares.
+fn biases(
     columns: &[Column<'_>],
     solution: &Solution,
     (inertia, n): (usize, f64),
-    rate_hz: f64,
+    [rate_hz, corner_hz]: [f64; 2],
 ) -> [Vec<f64>; 3] {
     let p = columns.len();
     let of_mass = n / solution.coefficients[inertia].abs();
+    let preparation = BY_PREPARATION * (CORNER_HZ / corner_hz).powi(2);
     let speeds: Vec<usize> = (0..p).filter(|j| columns[*j].name.starts_with("F_v")).collect();
     let squares: f64 = speeds.iter().map(|j| columns[*j].rms.powi(2)).sum();
-    let by_speed = |i: usize, j: usize| {
-        let time_s = 0.5 * (columns[j].hac / solution.standard[j]).powi(2) / rate_hz;
-        time_s * columns[j].rms.powi(2) / squares * solution.covariance[(i, j)]
-    };
+    let longest = (0..p).map(|j| (columns[j].hac / solution.standard[j]).powi(2)).fold(0.0, f64::max);
+    let time_s = 0.5 * longest / rate_hz;
+    let by_speed = |i: usize, j: usize| time_s * columns[j].rms.powi(2) / squares * solution.covariance[(i, j)];
     [
         (0..p).map(|i| of_mass * solution.covariance[(i, inertia)]).collect(),
-        (0..p).map(|i| if i == inertia { BY_PREPARATION * solution.coefficients[i] } else { 0.0 }).collect(),
+        (0..p).map(|i| if i == inertia { preparation * solution.coefficients[i] } else { 0.0 }).collect(),
         (0..p).map(|i| of_mass * speeds.iter().map(|j| by_speed(i, *j)).sum::<f64>()).collect(),
     ]
 }

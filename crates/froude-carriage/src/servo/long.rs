@@ -44,7 +44,7 @@ pub struct LongReport {
     pub coefficients: Vec<f64>,
     /// Standard deviations if residuals were white.
     pub classical: Vec<f64>,
-    /// Standard deviations by HAC, with what a disturbance may have moved; NaN of coefficients that the motion does not determine.
+    /// Standard deviations by HAC, including the bias that a disturbance can cause.
     pub hac: Vec<f64>,
     /// Their covariance.
     pub covariance: Mat<f64>,
@@ -60,6 +60,8 @@ pub struct LongReport {
     pub ranges: Vec<[f64; 2]>,
     /// Coefficients that the motion does not determine, which have no interval, and a motion that would determine them.
     pub excitation: Vec<String>,
+    /// Whether the motion determines each coefficient.
+    pub is_told: Vec<bool>,
     /// How the rows of the regression were made, in words.
     pub preparation: String,
     /// Rows of the regression.
@@ -367,13 +369,15 @@ impl LongServo {
             .map(|j| Column { name: &self.names[j].0, hac: hac[j], rms: (self.squares[j] / rows as f64).sqrt() })
             .collect();
         let mut weak = Vec::new();
+        let mut is_told = vec![true; p];
         if self.chain.is_moving {
-            let found = excitation(&columns, &solution, rows, rate_hz);
+            let found = excitation(&columns, &solution, rows, rate_hz, self.chain.corner_hz);
             covariance += &found.moved;
-            weak = found.findings;
+            (weak, is_told) = (found.findings, found.is_told);
         }
         Ok(LongReport {
             excitation: weak,
+            is_told,
             hac: diagonal_roots(&covariance),
             covariance,
             dof: (1.5 * windows).min(solution.dof),
@@ -581,7 +585,7 @@ mod tests {
             let columns: Vec<Column<'_>> = (rows.names.iter().zip(&rows.columns).zip(&expected))
                 .map(|(((name, _), column), hac)| Column { name, hac: *hac, rms: rms(column) })
                 .collect();
-            let moved = excitation(&columns, &whole, rows.force_n.len(), rows.rate_hz).moved;
+            let moved = excitation(&columns, &whole, rows.force_n.len(), rows.rate_hz, chain.corner_hz).moved;
             assert!((0..expected.len()).all(|j| moved[(j, j)] > 0.0));
             expected.iter_mut().enumerate().for_each(|(j, hac)| *hac = hac.hypot(moved[(j, j)].sqrt()));
         }
@@ -612,7 +616,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_of_anyone_gives_what_it_gives_in_memory() {
+    fn any_log_gives_the_same_result_in_chunks_as_in_memory() {
         let mut chain = Chain::of_log(6.0, 1000.0, Friction::asymmetric());
         chain.intervals.hac_lag_s = Some(0.77);
         for cut in [997, 60_000] {

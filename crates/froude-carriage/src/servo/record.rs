@@ -40,7 +40,7 @@ pub fn rigid(source: &str, friction: &str, report: &ServoReport, gain: &ForcePer
         coefficients: &report.coefficients,
         dof: &report.spread.dof,
         covariance: &report.spread.covariance,
-        pieces: report.spread.pieces(),
+        pieces: if gain.drive.is_none() { with_bias(&report.spread.pieces()) } else { report.spread.pieces() },
         sigma_n: report.sigma_n,
         preparation: &report.preparation,
         n_rows: report.n_rows,
@@ -74,7 +74,7 @@ pub fn long(
         coefficients,
         dof: &vec![report.dof; coefficients.len()],
         covariance: &report.covariance,
-        pieces: format!("HAC with a lag of {:.1} s", report.hac_lag_s),
+        pieces: with_bias(&format!("HAC with a lag of {:.1} s", report.hac_lag_s)),
         sigma_n: report.sigma_n,
         preparation: &report.preparation,
         n_rows: report.n_rows,
@@ -83,6 +83,11 @@ pub fn long(
     };
     let ranges = report.names.iter().zip(&report.ranges).map(|((name, _), range)| (name.as_str(), *range));
     Estimate { validity: validity(ranges), interval: of_one_excitation(), ..recorded(source, friction, &fit, gain) }
+}
+
+/// What an interval of a log includes.
+fn with_bias(pieces: &str) -> String {
+    format!("{pieces}; with the bias that a disturbance can cause")
 }
 
 /// Intervals of blocks within one motion, which say nothing of another.

@@ -226,32 +226,35 @@ fn reported(
         })
         .collect();
     let mut weak = Vec::new();
+    let mut is_told = vec![true; rows.names.len()];
+    let not_white = whiteness.as_ref().and_then(|w| not_white(w, &spread));
     if chain.is_moving {
-        let found = excitation(&columns, solution, n, rows.rate_hz);
+        let found = excitation(&columns, solution, n, rows.rate_hz, chain.corner_hz);
         spread.covariance += &found.moved;
         spread.blocks = diagonal_roots(&spread.covariance);
         for (j, hac) in spread.hac.iter_mut().enumerate() {
             *hac = hac.hypot(found.moved[(j, j)].sqrt());
         }
-        weak = found.findings;
+        (weak, is_told) = (found.findings, found.is_told);
     }
     let coefficients: Vec<ServoCoefficient> = (rows.names.iter().enumerate())
         .map(|(j, (name, unit))| {
             let value = solution.coefficients[j];
-            let half = spread.coverage_factor[j] * spread.blocks[j];
+            let [hac_std, block_std] = [spread.hac[j], spread.blocks[j]].map(|s| if is_told[j] { s } else { f64::NAN });
+            let half = spread.coverage_factor[j] * block_std;
             ServoCoefficient {
                 name: name.clone(),
                 unit,
                 value,
                 classical_std: spread.classical[j],
-                hac_std: spread.hac[j],
-                block_std: spread.blocks[j],
+                hac_std,
+                block_std,
                 interval: [value - half, value + half],
             }
         })
         .collect();
     ServoReport {
-        findings: findings(&coefficients, whiteness.as_ref(), &spread),
+        findings: not_white.into_iter().chain(negative(&coefficients)).collect(),
         excitation: weak,
         preparation: chain.words(rows.rate_hz * chain.decimation as f64),
         n_rows: rows.force_n.len(),
@@ -269,21 +272,19 @@ fn reported(
     }
 }
 
-fn findings(coefficients: &[ServoCoefficient], whiteness: Option<&Whiteness>, spread: &Spread) -> Vec<String> {
-    let mut out = Vec::new();
-    if let Some(w) = whiteness.filter(|w| !w.is_white()) {
-        let worst = coefficients.iter().map(|c| c.block_std / c.classical_std).fold(0.0, f64::max);
+/// That classical standard deviations do not hold, and by how much.
+fn not_white(w: &Whiteness, spread: &Spread) -> Option<String> {
+    (!w.is_white()).then(|| {
+        let worst = spread.blocks.iter().zip(&spread.classical).map(|(blocks, white)| blocks / white).fold(0.0, f64::max);
         let by = if worst > 1.0 { format!("are up to {worst:.1} times too small") } else { "do not hold".to_owned() };
-        out.push(format!(
+        format!(
             "residuals are not white (r1 = {:.2}, Ljung-Box({}) = {:.0}): classical standard deviations {by}; the intervals are those of {}",
             w.r1,
             w.lags,
             w.ljung_box,
             spread.pieces()
-        ));
-    }
-    out.extend(negative(coefficients));
-    out
+        )
+    })
 }
 
 /// What resists must not drive: a sentence for each coefficient that does beyond its interval.
