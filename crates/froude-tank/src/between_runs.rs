@@ -1,8 +1,8 @@
 //! Run-to-run variation when the runs are too few to be clusters: a trip, the mount or the wake of the previous run changes the load of each run by a fraction γ, of variance τ².
 //!
-//! With c the affected load in one run, zero elsewhere, and M the projection onto the residuals of the law, ĝ = cᵀMy/cᵀc of each run is A(γ + e), A = cᵀMc′/cᵀc. e is noise, of the variance v of each
-//! run, from the scatter of ĝ between eight pieces of the run: a slow run, whose load is small beside the noise, says little. τ² is the most likely one for ĝ with the covariance A(τ² + v)Aᵀ, in the
-//! directions that the law leaves, and not below the least v. It has τ⁴ tr (Σ⁻¹AAᵀ)² degrees of freedom, as many as directions where the noise is small. Of five and more runs the variation is in their scatter.
+//! With c the affected load in one run, zero elsewhere, and M the projection onto the residuals of the law, ĝ = cᵀMy/cᵀc of each run is A(γ + e), A = cᵀMc′/cᵀc. The noise e has a variance v for each
+//! run, estimated from the scatter between eight pieces of it, so that a slow run, whose load is small beside the noise, has little weight. τ² maximises the likelihood of ĝ with covariance Σ = A(τ² + v)Aᵀ in the
+//! directions that the law does not explain; it is at least the smallest v. It has τ⁴ tr[(Σ⁻¹AAᵀ)²] degrees of freedom, at least one: the number of these directions if the noise is small. With five or more runs, their scatter already includes the variation.
 //!
 //! Source: Patterson & Thompson (1971), Biometrika 58, 545 (residual maximum likelihood).
 
@@ -11,13 +11,13 @@ use froude_fit::faer::{Mat, Side};
 
 /// Fewest runs that show it.
 pub(crate) const FEWEST_RUNS: usize = 3;
-/// The law takes so much of all directions that the rest is rounding.
+/// Below this, the law explains every direction and the rest is rounding error.
 const TAKEN: f64 = 1e-3;
-/// Least part of the largest direction of AAᵀ: of less, the law takes the most.
+/// Directions whose eigenvalue of AAᵀ is below this fraction of the largest are dropped: the law explains most of them.
 const LEFT: f64 = 0.05;
 /// Pieces of a run.
 const PIECES: usize = 8;
-/// Steps of τ² that are tried, and their ratio: 2 % of τ.
+/// Number of trial values of τ², and the ratio between them (2 % in τ).
 const STEPS: i32 = 700;
 const RATIO: f64 = 1.04;
 
@@ -66,8 +66,9 @@ pub(crate) fn between_runs(
     let (variance, _) = of.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let part = covariance(variance).llt(Side::Lower).ok()?.solve(&(&a * a.transpose()));
     let square = &part * &part;
-    let dof = variance * variance * (0..kept.len()).map(|k| square[(k, k)]).sum::<f64>();
-    (variance.is_finite() && dof > 0.0).then_some(BetweenRuns { variance, dof })
+    // Less than one degree of freedom has no quantile to speak of.
+    let dof = (variance * variance * (0..kept.len()).map(|k| square[(k, k)]).sum::<f64>()).max(1.0);
+    (variance.is_finite() && dof.is_finite()).then_some(BetweenRuns { variance, dof })
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -90,7 +91,7 @@ mod tests {
 
     const ROWS: usize = 400;
 
-    /// Standard deviation between runs of these loads, which change by a part, in noise of 0.01 N: root mean square, and upper quartile.
+    /// Estimated τ of three runs with these loads, whose true τ is `part`, in noise of 0.01 N: root mean square and upper quartile over 200 seeds.
     fn found(loads: [f64; 3], part: f64) -> [f64; 2] {
         let of_seed = |seed: u64| {
             let mut rng = Pcg64::new(u128::from(seed), 3);
@@ -115,7 +116,7 @@ mod tests {
         [(all.iter().sum::<f64>() / 200.0).sqrt(), all[150].sqrt()]
     }
 
-    /// The noise of a slow run is 5 % of its load, and none of the others' variation.
+    /// The noise of the slow run is 5 % of its load and must not be taken for run-to-run variation.
     #[test]
     fn a_slow_run_does_not_decide_what_changes_from_run_to_run() {
         let noise_of_fast = 0.01 / (ROWS as f64).sqrt();
