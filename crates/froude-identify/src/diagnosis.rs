@@ -363,7 +363,7 @@ fn negative_drag(model: &ModelFit) -> Vec<Finding> {
             let spec = &model.specs[j];
             let text = format!(
                 "{}: {} = {value:.4} {} is below zero ({}): this term pushes the body. The law follows the data in their range and \
-                 must not be used below it; compare with the power law, or set bounds",
+                 must not be used below it; compare with the power law, or write a law with another term ([[identify.model]])",
                 model.law.name,
                 spec.name,
                 spec.unit,

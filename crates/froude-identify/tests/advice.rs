@@ -125,3 +125,50 @@ fn a_prior_that_the_data_contradict() {
     assert!(warnings(&table, "", &prior).iter().any(|f| f.code == "prior-contradicted"));
     assert!(warnings(&table, "", QUADRATIC).is_empty());
 }
+
+/// Rows in time whose errors follow each other.
+#[test]
+fn rows_that_follow_each_other() {
+    let mut normal = rng(7);
+    let mut table = "time [s],speed [m/s],f_x [N]\n".to_owned();
+    let mut error = 0.0;
+    for i in 0..200 {
+        let t = 0.1 * f64::from(i);
+        let u = 1.0 + 0.6 * (0.5 * t).sin();
+        error = 0.8 * error + 0.12 * normal();
+        let _ = writeln!(table, "{t:.1},{u:.5},{:.5}", -12.0 * u * u + error);
+    }
+    let serial = format!("{QUADRATIC}\ncovariance = \"serial\"");
+    follow(&table, ["", QUADRATIC], &[("", &serial, "serial-correlation")]);
+}
+
+/// A load cell that was not zeroed: with its reading at rest subtracted it is as if it had been.
+#[test]
+fn a_load_cell_that_was_not_zeroed() {
+    let mut normal = rng(8);
+    let mut rows = Vec::new();
+    for i in 0..12 {
+        let u = 0.1 * f64::from(i);
+        rows.push(format!("{u:.1},{:.4}", -12.0 * u * u + 0.8 + 0.05 * normal()));
+    }
+    let as_read = format!("speed [m/s],f_x [N]\n{}\n", rows.join("\n"));
+    let zeroed = format!("speed [m/s],f_x [N],zero_before_f_x [N]\n{},0.8\n", rows.join(",0.8\n"));
+    let now = warnings(&as_read, "", "");
+    assert!(now.iter().any(|f| f.code == "load-at-rest" && f.message.contains("zero_before_f_x")), "{now:?}");
+    let after = warnings(&zeroed, "", "");
+    assert!(!after.iter().any(|f| f.code == "load-at-rest"), "{after:?}");
+}
+
+/// Drag that grows faster than U²: a term of the polynomial is below zero, and the power law has none.
+#[test]
+fn a_term_below_zero() {
+    let mut normal = rng(9);
+    let mut table = "speed [m/s],f_x [N]\n".to_owned();
+    for i in 0..20 {
+        let u = 0.3 + 0.1 * f64::from(i);
+        let _ = writeln!(table, "{u},{}", -9.0 * u.powf(2.4) + 0.1 * normal());
+    }
+    let now = warnings(&table, "", "models = [\"linear_quadratic\"]");
+    assert!(now.iter().any(|f| f.code == "negative-drag" && f.message.contains("power law")), "{now:?}");
+    assert!(warnings(&table, "", "models = [\"power_law\"]").is_empty());
+}

@@ -46,7 +46,7 @@ pub(crate) fn no_budget(campaign: &Campaign, source: &Source, stated: &[SharedEr
         } else {
             format!(
                 "no uncertainty of an instrument is declared: the intervals include the scatter of the observations{stated}{known} and nothing else \
-                 (a calibration error does not appear in the scatter); declare it ([[source.uncertainty]])"
+                 (a calibration error does not appear in the scatter); declare the uncertainty of each instrument ([[source.uncertainty]])"
             )
         };
         Finding::new(Severity::Note, "no-budget", text)
