@@ -159,7 +159,8 @@ fn by_law(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyErro
             Some(runs) => Some(runs.constant.value.hypot(runs.part * force)),
             None => estimate.sigma.get(load).map(|s| if law.in_logarithms() { s.value * force.abs() } else { s.value }),
         };
-        let of_sigma = estimate.dof.get(load).copied().flatten().unwrap_or(f64::INFINITY);
+        let of_runs = estimate.run_scatter.get(load).map(|runs| runs.dof);
+        let of_sigma = of_runs.or_else(|| estimate.dof.get(load).copied()).flatten().unwrap_or(f64::INFINITY);
         for row in 0..data.rows {
             let place = response * data.rows + row;
             let scatter = stated.map(|stated| stated[row]).or_else(|| sigma(forces[place])).filter(|s| *s > 0.0);

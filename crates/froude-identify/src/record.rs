@@ -167,9 +167,9 @@ fn scatter_by_load(
 /// Scatter of rows that are runs, by load.
 fn run_scatter(model: &ModelFit, data: &Dataset) -> IndexMap<String, RunScatter> {
     let sizes = model.run_scatter(data).unwrap_or_default();
-    let of = |(load, [constant, part]): (&fit::ComponentSummary, [f64; 2])| {
+    let of = |(load, [constant, part, dof]): (&fit::ComponentSummary, [f64; 3])| {
         let constant = Measured { value: constant, unit: unit_text(data, &load.name) };
-        (load.name.clone(), RunScatter { constant, part })
+        (load.name.clone(), RunScatter { constant, part, dof: Some(dof).filter(|dof| dof.is_finite()) })
     };
     model.fit.components.iter().zip(sizes).map(of).collect()
 }

@@ -30,7 +30,7 @@ pub fn sample(log: &RunLog, marks: &[Mark]) -> Option<String> {
         .find_map(|(name, channel)| sample_of(name, channel.meaning.unit.as_str(), &log.time_s, &channel.values, marks))
 }
 
-/// The same of one channel.
+/// [`sample`] for one channel.
 #[must_use]
 pub fn sample_of(name: &str, unit: &str, times: &[f64], values: &[f64], marks: &[Mark]) -> Option<String> {
     if values.len() != times.len() || !OF_TEST.contains(&unit) {

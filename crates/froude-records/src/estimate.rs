@@ -73,13 +73,15 @@ pub struct Measured {
     pub unit: String,
 }
 
-/// Scatter of a row that is a run: its variance is `constant` squared plus the square of `part` times the load.
+/// Scatter of a row that is a run: its variance is `constant`² + (`part` · load)².
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunScatter {
     /// What is the same at every load.
     pub constant: Measured,
-    /// Part of the load, 1.
+    /// Fraction of the load, 1.
     pub part: f64,
+    /// Degrees of freedom of that variance at the largest load of the rows.
+    pub dof: Option<f64>,
 }
 
 /// A closed range with its unit.
@@ -472,7 +474,7 @@ pub struct Estimate {
     /// Residual standard deviation by load component.
     #[serde(default)]
     pub sigma: IndexMap<String, Measured>,
-    /// By load component, where rows are runs whose scatter grows with the load.
+    /// Run-to-run scatter by load component, if the rows are runs; absent otherwise.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub run_scatter: IndexMap<String, RunScatter>,
     /// Observations used.

@@ -413,7 +413,10 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
             see(&|| format!("{section}.{name}"), m.value);
         }
     }
-    for (name, RunScatter { constant, part }) in run_scatter {
+    for (name, RunScatter { constant, part, dof }) in run_scatter {
+        if let Some(dof) = dof {
+            see(&|| format!("run_scatter.{name}.dof"), *dof);
+        }
         see(&|| format!("run_scatter.{name}.constant"), constant.value);
         see(&|| format!("run_scatter.{name}.part"), *part);
     }

@@ -19,10 +19,10 @@ pub fn central(record: &[f64], step_s: f64) -> Result<Vec<f64>, SignalError> {
     Ok(out)
 }
 
-/// Second derivative by `(x₊ − 2x + x₋)/h²`; at both ends that of the neighbour.
+/// Second derivative by `(x₊ − 2x + x₋)/h²`; both ends take the value of their neighbour.
 ///
-/// Error `h²x⁗/12` inside. It is the mean of the second derivative over two steps with the weights of a triangle, so that a force that is held over each step is there the mean of the force before and
-/// after the sample, exactly.
+/// Error `h²x⁗/12` inside. The result is the mean of the second derivative over two steps with triangular weights: if the acceleration is constant over each step, it is exactly the mean of those before and
+/// after the sample.
 ///
 /// # Errors
 ///

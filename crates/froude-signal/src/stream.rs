@@ -81,12 +81,12 @@ impl Link for Differences {
     }
 }
 
-/// Second differences as [`crate::differences::second`].
+/// Streaming form of [`crate::differences::second`].
 #[derive(Debug, Clone)]
 pub struct SecondDifferences {
     square: f64,
     last: [f64; 2],
-    /// The newest.
+    /// Latest second difference, repeated for the last sample.
     newest: f64,
     taken: usize,
 }
@@ -119,7 +119,7 @@ impl Link for SecondDifferences {
 
     fn finish(self, out: &mut Vec<f64>) -> Result<(), SignalError> {
         if self.taken < 3 {
-            return Err(SignalError::TooShort { what: "a second difference", needed: 3, found: self.taken });
+            return Err(SignalError::TooShort { what: "a second difference", needed: 2, found: self.taken });
         }
         out.push(self.newest);
         Ok(())

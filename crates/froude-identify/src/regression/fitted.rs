@@ -228,9 +228,9 @@ impl ModelFit {
         Some(sigma * (sum / n).sqrt())
     }
 
-    /// Scatter of each load of rows that are runs, where they have the same weight and their intervals include it.
+    /// √a, √b and the degrees of freedom of each load, if the rows are runs of equal weight and the intervals include this scatter.
     #[must_use]
-    pub(crate) fn run_scatter(&self, data: &Dataset) -> Option<Vec<[f64; 2]>> {
+    pub(crate) fn run_scatter(&self, data: &Dataset) -> Option<Vec<[f64; 3]>> {
         let is_of_runs = self.budget.first().is_some_and(|part| part.name.starts_with(runs::NAME));
         let runs = (is_of_runs && self.problem.weight.is_none())
             .then(|| runs::between_runs(&self.law, data, &self.problem, &self.fit))?;

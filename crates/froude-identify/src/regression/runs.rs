@@ -38,11 +38,11 @@ const ROUNDING: f64 = 1e-9;
 /// The scatter of rows that are runs.
 pub(crate) struct OfRuns {
     pub(crate) part: Part,
-    /// √a at weight 1 and √b of each load.
-    pub(crate) loads: Vec<[f64; 2]>,
+    /// √a at weight 1, √b, and the degrees of freedom of a row of the largest load, of each load.
+    pub(crate) loads: Vec<[f64; 3]>,
 }
 
-/// Of the rows of a fit; `None` where it cannot be told from one σ: in logarithms, beside undetermined coefficients, of loads without scatter.
+/// Run-to-run scatter of a fit; `None` where it cannot be distinguished from one σ: in logarithms, with undetermined coefficients, or if no load has scatter.
 pub(crate) fn between_runs(
     law: &ForceLaw,
     data: &Dataset,
@@ -106,21 +106,34 @@ pub(crate) fn between_runs(
     };
     let covariance = Mat::from_fn(p, p, |a, b| fitted.covariance[(a, b)] + sum(a, b, &|k| differs[k]));
     let moves = Mat::from_fn(p, rows.len(), |j, k| s[(j, rows[k])] * of(k).residual.sqrt());
-    // The errors of priors are known: of the whole variance the degrees of freedom are those of its part by scatter.
+    // The errors of priors are known exactly, so only the scatter's share of the variance limits the degrees of freedom (Welch–Satterthwaite).
     let dof = (found.dof(&m, &g, &moves).into_iter().enumerate())
         .map(|(j, dof)| {
             let scatter = sum(j, j, &variance);
             if scatter > 0.0 { dof * (covariance[(j, j)] / scatter).powi(2) } else { dof }
         })
         .collect();
-    let sizes: Vec<[f64; 2]> = (loads.iter().enumerate())
+    let sigma = found.sigma(&m);
+    let sizes: Vec<[f64; 3]> = (loads.iter().enumerate())
         .map(|(c, size)| {
             let part = found.theta[2 * c + 1] * size.residual / size.load.max(f64::MIN_POSITIVE);
-            [(found.theta[2 * c] * size.residual / size.of_weight).sqrt(), part.sqrt()]
+            let of_load = (0..rows.len()).filter(|k| problem.component[rows[*k]] == c);
+            let largest = of_load.map(|k| g[(k, 2 * c + 1)]).fold(0.0, f64::max);
+            let along = |a: usize| {
+                if a == 2 * c {
+                    1.0
+                } else if a == 2 * c + 1 {
+                    largest
+                } else {
+                    0.0
+                }
+            };
+            let dof = found.dof_of(&sigma, &along, found.theta[2 * c] + largest * found.theta[2 * c + 1]);
+            [(found.theta[2 * c] * size.residual / size.of_weight).sqrt(), part.sqrt(), dof]
         })
         .collect();
     let parts: Vec<String> = (sizes.iter().enumerate())
-        .map(|(c, [a, part])| {
+        .map(|(c, [a, part, _])| {
             let weighted = if problem.weight.is_some() { " at weight 1" } else { "" };
             let (load, unit) = (&problem.components[c], unit_text(data, &problem.components[c]));
             format!(
@@ -215,18 +228,26 @@ impl Components {
     /// Degrees of freedom of the variance of each coefficient, whose `moves` are those by the errors of the rows.
     fn dof(&self, m: &Mat<f64>, g: &Mat<f64>, moves: &Mat<f64>) -> Vec<f64> {
         let (p, n) = (moves.nrows(), moves.ncols());
-        let weighed = Mat::from_fn(n, n, |i, k| m[(i, k)] * self.variance[k]);
-        let sigma = weighed * m.transpose();
+        let sigma = self.sigma(m);
         let of = |j: usize| {
-            let along: Vec<f64> =
-                self.active.iter().map(|&a| (0..n).map(|i| moves[(j, i)].powi(2) * g[(i, a)]).sum()).collect();
-            let q: Vec<f64> =
-                (0..n).map(|i| (0..along.len()).map(|a| along[a] * self.of_squares[(a, i)]).sum()).collect();
-            let v: f64 = (0..n).map(|i| moves[(j, i)].powi(2) * self.variance[i]).sum();
-            let square: f64 = (0..n).map(|i| q[i] * (0..n).map(|k| q[k] * sigma[(i, k)].powi(2)).sum::<f64>()).sum();
-            if v > 0.0 { (v * v / square).max(1.0) } else { f64::INFINITY }
+            let along = |a: usize| (0..n).map(|i| moves[(j, i)].powi(2) * g[(i, a)]).sum();
+            self.dof_of(&sigma, &along, (0..n).map(|i| moves[(j, i)].powi(2) * self.variance[i]).sum())
         };
         (0..p).map(of).collect()
+    }
+
+    /// Covariance of the residuals.
+    fn sigma(&self, m: &Mat<f64>) -> Mat<f64> {
+        Mat::from_fn(m.nrows(), m.ncols(), |i, k| m[(i, k)] * self.variance[k]) * m.transpose()
+    }
+
+    /// Degrees of freedom of a variance that is Σ `along` θ.
+    fn dof_of(&self, sigma: &Mat<f64>, along: &dyn Fn(usize) -> f64, variance: f64) -> f64 {
+        let n = sigma.nrows();
+        let along: Vec<f64> = self.active.iter().map(|a| along(*a)).collect();
+        let q: Vec<f64> = (0..n).map(|i| (0..along.len()).map(|a| along[a] * self.of_squares[(a, i)]).sum()).collect();
+        let square: f64 = (0..n).map(|i| q[i] * (0..n).map(|k| q[k] * sigma[(i, k)].powi(2)).sum::<f64>()).sum();
+        if variance > 0.0 { (variance * variance / square).max(1.0) } else { f64::INFINITY }
     }
 }
 
@@ -289,7 +310,7 @@ mod tests {
         }
     }
 
-    /// At the highest speeds, where one σ is too small, 5 % of the runs of another campaign are beyond |E_n| = 1, to within three deviations; with one σ it was a quarter.
+    /// At the highest speeds, where one σ is too small, 5 % of the runs of another campaign have |E_n| > 1, to within three standard deviations of that share; with one σ it was 25 %.
     #[test]
     fn predictions_scatter_as_the_runs_do() {
         let mut beyond = Count::default();

@@ -121,7 +121,7 @@ fn estimate_to_si(e: &mut Estimate) -> Result<(), BadUnit> {
         let unit = Field { path: &["sigma", name], expected }.converted(&mut m.unit)?;
         m.value = unit.difference_to_si(m.value);
     }
-    for (name, RunScatter { constant, part: _ }) in &mut e.run_scatter {
+    for (name, RunScatter { constant, part: _, dof: _ }) in &mut e.run_scatter {
         let field = Field { path: &["run_scatter", name], expected: known_dimension(name) };
         let unit = field.converted(&mut constant.unit)?;
         constant.value = unit.difference_to_si(constant.value);
