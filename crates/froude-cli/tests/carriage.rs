@@ -530,6 +530,32 @@ fn a_sidecar_tells_a_servo_log_from_a_table() {
 }
 
 /// The halves of a record are two records of one axis: what they state about it is compared like any other estimates, with the same numbers as on the page.
+/// One speed both ways does not determine friction: it has no interval, and the record with an error of the force per volt is read again.
+#[test]
+fn a_log_that_does_not_determine_friction_makes_a_record_that_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut log = "t,x,u\n".to_owned();
+    for i in 0..4000 {
+        let s = f64::from(i % 400);
+        let (x, sign) = if s < 200.0 { (0.002 * s, 1.0) } else { (0.8 - 0.002 * s, -1.0) };
+        let ripple = 0.003 * (0.7 * f64::from(i)).sin() + 0.004 * (0.031 * f64::from(i)).sin();
+        log.push_str(&format!("{:.2},{x:.5},{:.4}\n", 0.01 * f64::from(i), sign * 0.145 + ripple));
+    }
+    let sidecar = "schema = 1\n[constants]\ndrive_gain = \"6 N/V\"\n[columns]\nt = { name = \"time\", unit = \"s\" }\n\
+                   x = { name = \"position\", unit = \"m\" }\nu = { name = \"command\", unit = \"V\" }\n";
+    let campaign = "schema = 1\nname = \"axis\"\n[[source]]\nname = \"rig\"\nkind = \"towing\"\ntable = \"log.csv\"\nmethod = \"servo_symmetric\"\n\
+                    [[source.uncertainty]]\nquantity = \"drive_gain\"\nname = \"data sheet\"\nstandard = \"1 %\"\nshared = \"campaign\"\n";
+    for (name, text) in [("log.csv", log.as_str()), ("log.toml", sidecar), ("axis.toml", campaign)] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let out = folder.path().join("out");
+    let found = json(&["identify", text(&folder.path().join("axis.toml")), "--out", text(&out), "--json"]);
+    assert!(found["estimates"][0]["coefficients"]["F_v"]["interval_95"].is_null(), "{found}");
+    assert!(found["findings"].as_array().unwrap().iter().any(|f| f["code"] == "weak-excitation"), "{found}");
+    let again = json(&["inspect", text(&out.join("estimate.json")), "--json"]);
+    assert_eq!(again["estimates"][0]["coefficients"], found["estimates"][0]["coefficients"]);
+}
+
 #[test]
 fn two_records_of_a_servo_are_compared() {
     let folder = tempfile::tempdir().unwrap();
