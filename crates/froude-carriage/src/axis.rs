@@ -421,7 +421,7 @@ fn by_direction(models: &[Model]) -> Option<Finding> {
     let found: Vec<String> = differences.collect();
     (!found.is_empty()).then(|| {
         let text = format!(
-            "friction differs with the direction of motion: {} (97.5 % each, so that both hold at 95 %; scatter alone); the symmetric model has a mean of both, which holds in \
+            "friction differs with the direction of motion: {} (97.5 % each, so that both hold at 95 %; without declared errors); the symmetric model has a mean of both, which holds in \
              neither direction: use servo_asymmetric",
             found.join(", ")
         );

@@ -207,3 +207,20 @@ fn intervals_hold_on_rigs_of_other_rates_and_disturbances() {
         println!("{name}: {held} of {given}");
     }
 }
+
+/// A drive of 60 samples a second: sines of 0.5 and 1 Hz determine all coefficients, one of 2 Hz the mass alone.
+#[test]
+fn a_slow_drive_determines_friction_in_slow_motions() {
+    let rig = Rig { rate_hz: 60.0, disturbed_n: 0.0, ..RIG };
+    let sines: [(Motion, usize); 3] = [
+        (Motion::Open(|t| 0.8 * (TAU * 0.5 * t).sin()), 3),
+        (Motion::Open(|t| 0.8 * (TAU * t).sin()), 3),
+        (Motion::Open(|t| 0.8 * (TAU * 2.0 * t).sin()), 1),
+    ];
+    for (motion, told) in sines {
+        let found = [report(&motion, rig, 1)];
+        let told_of = TRUTHS.map(|truth| counts(&found, truth));
+        assert_eq!(told_of.iter().map(|[given, _]| given).sum::<usize>(), told, "{told_of:?}");
+        assert!(told_of.iter().all(|[given, held]| given == held), "{:?}", found[0].as_ref().unwrap().coefficients);
+    }
+}

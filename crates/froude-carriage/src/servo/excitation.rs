@@ -6,7 +6,7 @@
 //! b_a = N C_M/M,  b_v = N C_v τ/M
 //!
 //! (C_M, C_v: columns of C). The disturbance in a log is unknown, so each b is treated as a rectangular error within ± b, and its covariance b bᵀ/3 is added to that of the scatter. It does not become smaller
-//! in longer logs, and neither does b_p, which is 0.2 % of M at a corner of 50 Hz and grows with 1/corner²: filters smear a sudden acceleration across the samples near rest that are left out. The M component of b_a is M/R², where R is the ratio of two forces: that of the coefficient, without what the other columns explain, to the residual.
+//! in longer logs, and neither does b_p, which is 0.2 % of M, F_v and F_c, each for itself, at a corner of 50 Hz and grows with 1/corner²: filters smear a sudden acceleration across the samples near rest that are left out. The M component of b_a is M/R², where R is the ratio of two forces: that of the coefficient, without what the other columns explain, to the residual.
 //!
 //! | coefficient | needed for an interval | at least |
 //! |-------------|--------|-------|
@@ -27,7 +27,7 @@ use crate::servo::chain::CORNER_HZ;
 
 /// Least force of the inertia over what the model leaves: below, the motion is that of the disturbance.
 const LEAST_FORCE: f64 = 2.0;
-/// Part of M by which the preparation of the rows may move it, with the corner of the position's filter at 50 Hz.
+/// Part of a coefficient by which the preparation of the rows may move it, with the corner of the position's filter at 50 Hz.
 const BY_PREPARATION: f64 = 0.002;
 /// Least part of a column of friction that the other columns do not have.
 const LEAST_PART: f64 = 0.07;
@@ -92,21 +92,25 @@ pub(crate) fn excitation(
             significant(least, 2)
         ));
     }
-    let by = inertia.map_or_else(Vec::new, |j| biases(columns, solution, (j, n as f64), [rate_hz, corner_hz]).into());
-    let variance = |i: usize, j: usize| by.iter().map(|b| b[i] * b[j]).sum::<f64>() / 3.0;
+    let by = inertia.map_or_else(Vec::new, |j| by_disturbance(columns, solution, (j, n as f64), rate_hz).into());
+    let preparation = BY_PREPARATION * (CORNER_HZ / corner_hz).powi(2);
+    let is_of_motion = |j: usize| columns[j].name == "M" || columns[j].name.starts_with("F_");
+    let variance = |i: usize, j: usize| {
+        let own = if i == j && is_of_motion(j) { (preparation * solution.coefficients[j]).powi(2) } else { 0.0 };
+        (own + by.iter().map(|b| b[i] * b[j]).sum::<f64>()) / 3.0
+    };
     Excitation { findings, is_told, moved: Mat::from_fn(p, p, variance) }
 }
 
-/// b_a, b_p and b_v. If F_v has one column per direction, the columns share b_v in proportion to their mean squares.
-fn biases(
+/// b_a and b_v. If F_v has one column per direction, the columns share b_v in proportion to their mean squares.
+fn by_disturbance(
     columns: &[Column<'_>],
     solution: &Solution,
     (inertia, n): (usize, f64),
-    [rate_hz, corner_hz]: [f64; 2],
-) -> [Vec<f64>; 3] {
+    rate_hz: f64,
+) -> [Vec<f64>; 2] {
     let p = columns.len();
     let of_mass = n / solution.coefficients[inertia].abs();
-    let preparation = BY_PREPARATION * (CORNER_HZ / corner_hz).powi(2);
     let speeds: Vec<usize> = (0..p).filter(|j| columns[*j].name.starts_with("F_v")).collect();
     let squares: f64 = speeds.iter().map(|j| columns[*j].rms.powi(2)).sum();
     let longest = (0..p).map(|j| (columns[j].hac / solution.standard[j]).powi(2)).fold(0.0, f64::max);
@@ -114,7 +118,6 @@ fn biases(
     let by_speed = |i: usize, j: usize| time_s * columns[j].rms.powi(2) / squares * solution.covariance[(i, j)];
     [
         (0..p).map(|i| of_mass * solution.covariance[(i, inertia)]).collect(),
-        (0..p).map(|i| if i == inertia { preparation * solution.coefficients[i] } else { 0.0 }).collect(),
         (0..p).map(|i| of_mass * speeds.iter().map(|j| by_speed(i, *j)).sum::<f64>()).collect(),
     ]
 }

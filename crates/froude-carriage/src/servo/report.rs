@@ -30,9 +30,9 @@ pub struct ServoCoefficient {
     pub value: f64,
     /// Standard deviation if residuals were white. They are not: see [`ServoReport::whiteness`].
     pub classical_std: f64,
-    /// Standard deviation by HAC.
+    /// Standard deviation by HAC; of a log, with the bias that a disturbance can cause.
     pub hac_std: f64,
-    /// Standard deviation over moving blocks, or over clusters: whole runs, stretches of a second.
+    /// Standard deviation over moving blocks, or over clusters: whole runs, stretches of a second; of a log, with the same bias.
     pub block_std: f64,
     /// Interval from the blocks at the chain's confidence.
     pub interval: [f64; 2],
