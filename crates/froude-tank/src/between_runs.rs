@@ -42,10 +42,15 @@ pub(crate) fn between_runs(
     let a = Mat::from_fn(n, n, |r, s| dot(&parts[r], &left_of_parts[s]) / dot(&parts[r], &parts[r]));
     let found: Vec<f64> = parts.iter().map(|c| dot(c, left) / dot(c, c)).collect();
     let noise: Vec<f64> = parts.iter().zip(&found).map(|(c, g)| noise(c, left, *g)).collect();
+    let is_finite =
+        (0..n).all(|r| found[r].is_finite() && noise[r].is_finite() && (0..n).all(|s| a[(r, s)].is_finite()));
+    if !is_finite {
+        return None;
+    }
     let eigen = (&a * a.transpose()).self_adjoint_eigen(Side::Lower).ok()?;
     let largest = eigen.S()[n - 1];
     let kept: Vec<usize> = (0..n).filter(|k| eigen.S()[*k] > LEFT * largest).collect();
-    if largest.is_nan() || largest <= TAKEN {
+    if largest <= TAKEN {
         return None;
     }
     let along = Mat::from_fn(kept.len(), n, |k, r| eigen.U()[(r, kept[k])]);
