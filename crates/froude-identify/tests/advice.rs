@@ -39,6 +39,12 @@ fn follow(table: &str, first: [&str; 2], steps: &[Step<'_>]) {
     }
 }
 
+/// A finding names what to do, and is not there once that is done.
+fn ends(code: &str, names: &str, before: &[Finding], after: &[Finding]) {
+    assert!(before.iter().any(|f| f.code == code && f.message.contains(names)), "{before:?}");
+    assert!(!after.iter().any(|f| f.code == code), "{after:?}");
+}
+
 fn rng(seed: u128) -> impl FnMut() -> f64 {
     let mut rng = Pcg64::new(seed, 18);
     move || StandardNormal.sample(&mut rng)
@@ -90,8 +96,7 @@ fn a_missing_term() {
     }
     let more = "models = [\"long\"]\n[[identify.model]]\nname = \"long\"\nf_x = \"-A*u - B*u*abs(u) - C*u^3\"";
     let now = warnings(&table, "", "models = [\"linear_quadratic\"]");
-    assert!(now.iter().any(|f| f.code == "lack-of-fit" && f.message.contains("[[identify.model]]")), "{now:?}");
-    assert!(!warnings(&table, "", more).iter().any(|f| f.code == "lack-of-fit"));
+    ends("lack-of-fit", "[[identify.model]]", &now, &warnings(&table, "", more));
 }
 
 /// A row that lies apart is left out by its name.
@@ -104,10 +109,8 @@ fn a_row_that_lies_apart() {
         let slip = if i == 9 { 4.0 } else { 0.0 };
         let _ = writeln!(table, "r{i},{u},{}", -12.0 * u * u + slip + 0.2 * normal());
     }
-    let now = warnings(&table, "", QUADRATIC);
-    assert!(now.iter().any(|f| f.code == "outlying-row" && f.message.contains("`keep`")), "{now:?}");
     let kept = warnings(&table, "keep = \"run != \\\"r9\\\"\"", QUADRATIC);
-    assert!(!kept.iter().any(|f| f.code == "outlying-row"), "{kept:?}");
+    ends("outlying-row", "`keep`", &warnings(&table, "", QUADRATIC), &kept);
 }
 
 /// A prior that the data contradict: without it the data say what they say.
@@ -153,10 +156,7 @@ fn a_load_cell_that_was_not_zeroed() {
     }
     let as_read = format!("speed [m/s],f_x [N]\n{}\n", rows.join("\n"));
     let zeroed = format!("speed [m/s],f_x [N],zero_before_f_x [N]\n{},0.8\n", rows.join(",0.8\n"));
-    let now = warnings(&as_read, "", "");
-    assert!(now.iter().any(|f| f.code == "load-at-rest" && f.message.contains("zero_before_f_x")), "{now:?}");
-    let after = warnings(&zeroed, "", "");
-    assert!(!after.iter().any(|f| f.code == "load-at-rest"), "{after:?}");
+    ends("load-at-rest", "zero_before_f_x", &warnings(&as_read, "", ""), &warnings(&zeroed, "", ""));
 }
 
 /// Drag that grows faster than U²: a term of the polynomial is below zero, and the power law has none.
@@ -169,6 +169,7 @@ fn a_term_below_zero() {
         let _ = writeln!(table, "{u},{}", -9.0 * u.powf(2.4) + 0.1 * normal());
     }
     let now = warnings(&table, "", "models = [\"linear_quadratic\"]");
-    assert!(now.iter().any(|f| f.code == "negative-drag" && f.message.contains("power law")), "{now:?}");
-    assert!(warnings(&table, "", "models = [\"power_law\"]").is_empty());
+    let after = warnings(&table, "", "models = [\"power_law\"]");
+    ends("negative-drag", "power law", &now, &after);
+    assert!(after.is_empty(), "{after:?}");
 }
