@@ -10,6 +10,7 @@ use froude::records::finding::{Finding, Severity};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
+use statrs::distribution::{Binomial, DiscreteCDF};
 
 use crate::claims::{Claims, Verdict};
 use crate::coverage::normal;
@@ -243,6 +244,12 @@ pub fn of_scatter(findings: &[Finding]) -> Codes {
     codes(findings).into_iter().filter(|(code, _)| TESTS.contains(&code.as_str())).collect()
 }
 
+/// Whether as many of `tables` are found at a rate of `most` in more than one of 740 samples, three deviations of a normal variable.
+fn is_chance(count: usize, tables: usize, most: f64) -> bool {
+    let found = Binomial::new(most, tables as u64).expect("a probability");
+    count == 0 || found.sf(count as u64 - 1) > 0.00135
+}
+
 /// How often sound tables carry each code.
 pub fn judged(claims: &mut Claims, section: &'static str, claim: &str, found: Vec<Codes>) {
     let tables = found.len();
@@ -254,11 +261,9 @@ pub fn judged(claims: &mut Claims, section: &'static str, claim: &str, found: Ve
         entry.1 |= severity == Severity::Error;
     }
     let n = tables as f64;
-    let scatter = |p: f64| 3.0 * (p * (1.0 - p) / n).sqrt();
     let is_fine = |(count, is_error): &(usize, bool)| {
         let most = MOST[usize::from(*is_error)];
-        // The design's level is known; in few tables its own scatter is what counts.
-        *count as f64 / n <= if tables >= 10_000 { most } else { most + scatter(most) }
+        if *is_error || tables >= 10_000 { *count as f64 / n <= most } else { is_chance(*count, tables, most) }
     };
     let words: Vec<String> =
         by_code.iter().map(|(code, (count, _))| format!("{code} {:.2} %", 100.0 * *count as f64 / n)).collect();
@@ -272,7 +277,7 @@ pub fn judged(claims: &mut Claims, section: &'static str, claim: &str, found: Ve
             100.0 * part,
             if words.is_empty() { "none".to_owned() } else { words.join(", ") }
         ),
-        part <= 0.05 + scatter(0.05) && by_code.values().all(is_fine),
+        is_chance(any, tables, 0.05) && by_code.values().all(is_fine),
     );
 }
 
