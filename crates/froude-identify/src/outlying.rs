@@ -5,9 +5,10 @@
 //! where n P(|T| ≥ |t|) is below 0.4 % over the loads of the law.
 //!
 //! Nothing is left out: whether a row is a mistake is in its log, not in its residual. A slip at a large speed makes the scatter look uneven, so a row is
-//! named only if the scatter is even without it and it also stands out when errors grow with the load: σ² = a + b f² fitted to the other rows or, with too few rows for that, σ ∝ f.
-//! Otherwise, if the scatter of all rows is uneven or weights were fitted, the row is judged by σ² = a + b f² alone; t then has a third of the degrees of freedom, because it rests on the few
-//! rows near that load. Not asked where rows follow each
+//! named only if the scatter is even without it and it also stands out when errors grow: σ² = a + b z² fitted to the other rows or, with too few rows for that, σ ∝ f. z is the load f, the
+//! speed, the angle or a channel of the law, whichever makes the other residuals likeliest: the noise of a load cell across the rail, for one, enters f_x by the sine of the angle.
+//! Otherwise, if the scatter of all rows is uneven or weights were fitted, the row is judged by σ² = a + b z² alone; t then has a third of the degrees of freedom, because it rests on the few
+//! rows near that z. With HC3 and no weights the errors go with something that nobody states, and the chance is a tenth of that. Not asked where rows follow each
 //! other in time, of a sample of the rows, and where σ is not that of the squares: with errors in variables, Huber's loss, and constraints that hold.
 //!
 //! **Source.** Cook & Weisberg (1982), *Residuals and Influence in Regression*, 2.2.2.
@@ -18,7 +19,7 @@ use froude_records::number::{plain, significant};
 
 use crate::dataset::{Dataset, unit_text};
 use crate::diagnosis::{FEWEST_FOR_SCATTER, Unevenness, unevenness};
-use crate::regression::{ModelFit, Variance};
+use crate::regression::{ModelFit, Scatter, Variance};
 
 /// Chance of naming a row where all are sound, over all loads of a law.
 const FALSE_ALARM: f64 = 0.004;
@@ -51,13 +52,14 @@ pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> (Vec<(String, u
     for (r, component) in model.law.responses.iter().enumerate() {
         let is_even = |found: &Outlying| {
             !uneven_without(model, data, r, *found).is_some_and(Unevenness::contradicts)
-                && is_beyond_growth(model, data.rows, r, *found)
+                && is_beyond_growth(model, data, r, *found)
         };
-        let of_all = outlying(model, data.rows, r).filter(is_even);
-        let by =
-            if of_all.is_some() { "of the other rows" } else { "of rows of such a load (the scatter grows with it)" };
-        let Some(found) = of_all.or_else(|| by_its_load(model, data, r)) else { continue };
-        let Outlying { row, residual, t } = found;
+        let of_all = outlying(model, data.rows, r).filter(is_even).map(|found| (found, "of the other rows".to_owned()));
+        let of_like = || {
+            let (found, with) = by_growth(model, data, r)?;
+            Some((found, format!("of rows like it (the scatter grows with {with})")))
+        };
+        let Some((Outlying { row, residual, t }, by)) = of_all.or_else(of_like) else { continue };
         loads.push((component.clone(), row));
         let unit = if model.law.in_logarithms() { String::new() } else { format!(" {}", unit_text(data, component)) };
         let at = data.values("speed").map_or_else(String::new, |v| format!(" ({} m/s)", plain(v[row].abs(), 4)));
@@ -74,6 +76,11 @@ pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> (Vec<(String, u
         ));
     }
     (loads, out)
+}
+
+fn false_alarm(model: &ModelFit) -> f64 {
+    let is_unstated = matches!(model.scatter, Scatter::Hc3) && !model.is_weighted();
+    if is_unstated { 0.1 * FALSE_ALARM } else { FALSE_ALARM }
 }
 
 /// The row of a component that the others explain least, if by less than chance.
@@ -96,11 +103,11 @@ fn outlying(model: &ModelFit, n: usize, r: usize) -> Option<Outlying> {
     };
     let most = (0..n).filter_map(of_row).filter(|found| !found.t.is_nan()).max_by(|a, b| a.t.total_cmp(&b.t))?;
     let loads = model.law.responses.len() as f64;
-    (t_two_sided(most.t, dof) * n as f64 * loads < FALSE_ALARM).then_some(most)
+    (t_two_sided(most.t, dof) * n as f64 * loads < false_alarm(model)).then_some(most)
 }
 
-/// The row furthest from the law relative to the scatter at its load; `None` if the scatter is even and no weights were fitted, or if chance explains the row.
-fn by_its_load(model: &ModelFit, data: &Dataset, r: usize) -> Option<Outlying> {
+/// The row furthest from the law relative to the scatter of rows like it, and what that grows with; `None` if the scatter is even and no weights were fitted, or if chance explains the row.
+fn by_growth(model: &ModelFit, data: &Dataset, r: usize) -> Option<(Outlying, String)> {
     let load = &model.law.responses[r];
     let is_fitted = model.is_weighted() && data.values(&format!("std_{load}")).is_none();
     let is_uneven = || unevenness(model, data, load).is_some_and(Unevenness::contradicts);
@@ -113,18 +120,19 @@ fn by_its_load(model: &ModelFit, data: &Dataset, r: usize) -> Option<Outlying> {
     let rows = model.problem.rows_of(r);
     let free = |i: usize| (1.0 - model.fit.leverage[i]).max(ALONE);
     let square = |i: &usize| model.fit.residuals[*i].powi(2) / free(*i);
+    let variates = variates(model, data, r);
     let of_others = |without: Option<usize>| {
         let others: Vec<usize> = rows.iter().copied().filter(|i| Some(*i) != without).collect();
-        let loads: Vec<f64> = others.iter().map(|i| model.fit.fitted[*i].powi(2)).collect();
-        Variance::of(&others.iter().map(square).collect::<Vec<_>>(), &loads)
+        likeliest(&others.iter().map(square).collect::<Vec<_>>(), &others, &variates)
     };
     let of_all = of_others(None)?;
-    let ratio = |variance: &Variance, i: usize| (square(&i) / variance.at(model.fit.fitted[i].powi(2))).sqrt();
+    let ratio = |growth: &Growth, i: usize| (square(&i) / growth.at(i)).sqrt();
     let most = rows.iter().copied().max_by(|a, b| ratio(&of_all, *a).total_cmp(&ratio(&of_all, *b)))?;
-    let t = ratio(&of_others(Some(most))?, most);
+    let growth = of_others(Some(most))?;
+    let t = ratio(&growth, most);
     let looks = (rows.len() * model.law.responses.len()) as f64;
     let found = Outlying { row: most % data.rows, residual: model.fit.residuals[most], t };
-    (t_two_sided(t, dof) * looks < FALSE_ALARM).then_some(found)
+    (t_two_sided(t, dof) * looks < false_alarm(model)).then(|| (found, growth.with.name.clone()))
 }
 
 /// Residuals of the other rows in the fit without one, times √w: `r_i + x_i S_k r_k/(1 − h_k)`; beside them their rows.
@@ -151,8 +159,49 @@ fn uneven_without(model: &ModelFit, data: &Dataset, r: usize, found: Outlying) -
     Some(Unevenness::of(&left.iter().map(|x| x.abs()).collect::<Vec<_>>(), &speeds))
 }
 
-/// Whether the row still stands out if errors grow with the load: as fitted to the other rows or, with few rows, in proportion to it.
-fn is_beyond_growth(model: &ModelFit, n: usize, r: usize, found: Outlying) -> bool {
+/// What errors may grow with, and its square in each row.
+struct Variate {
+    name: String,
+    squares: Vec<f64>,
+}
+
+/// The fitted load of a component, the speed, the angle and the channels of the law.
+fn variates(model: &ModelFit, data: &Dataset, r: usize) -> Vec<Variate> {
+    let of = |name: &str, z: &[f64]| Variate { name: name.to_owned(), squares: z.iter().map(|z| z * z).collect() };
+    let fitted = &model.fit.fitted[r * data.rows..(r + 1) * data.rows];
+    let own = ["speed", "angle"].map(|name| data.values(name).map(|z| of(&format!("the {name}"), z)));
+    let channels = model.law.channels().into_iter().filter(|c| !matches!(*c, "density" | "n_links"));
+    let channels = channels.filter_map(|name| data.values(name).map(|z| of(&format!("|{name}|"), z)));
+    std::iter::once(of("the load", fitted)).chain(own.into_iter().flatten()).chain(channels).collect()
+}
+
+/// How the variance grows, and with what.
+struct Growth<'a> {
+    variance: Variance,
+    with: &'a Variate,
+}
+
+impl Growth<'_> {
+    /// At an observation of the component whose squares these are.
+    fn at(&self, i: usize) -> f64 {
+        self.variance.at(self.with.squares[i % self.with.squares.len()])
+    }
+}
+
+/// The growth that makes squares of normal residuals likeliest; `rows` are theirs.
+fn likeliest<'a>(squares: &[f64], rows: &[usize], variates: &'a [Variate]) -> Option<Growth<'a>> {
+    let of = |with: &'a Variate| {
+        let z: Vec<f64> = rows.iter().map(|i| with.squares[i % with.squares.len()]).collect();
+        let growth = Growth { variance: Variance::of(squares, &z)?, with };
+        let unlikely = rows.iter().zip(squares).map(|(i, square)| growth.at(*i).ln() + square / growth.at(*i));
+        Some((unlikely.sum::<f64>(), growth))
+    };
+    variates.iter().filter_map(of).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, growth)| growth)
+}
+
+/// Whether the row still stands out if errors grow: as fitted to the other rows or, with few rows, in proportion to the load.
+fn is_beyond_growth(model: &ModelFit, data: &Dataset, r: usize, found: Outlying) -> bool {
+    let n = data.rows;
     let (others, left) = without(model, r, n, found);
     let largest = others.iter().fold(0.0_f64, |m, i| m.max(model.fit.fitted[*i].abs()));
     let load = |i: usize| model.fit.fitted[i].abs().max(LEAST_LOAD * largest).powi(2);
@@ -162,15 +211,14 @@ fn is_beyond_growth(model: &ModelFit, n: usize, r: usize, found: Outlying) -> bo
         // Scaled by n/dof, because the fit absorbs part of the scatter.
         let lost = others.len() as f64 / dof;
         let squares: Vec<f64> = left.iter().map(|x| x * x * lost).collect();
-        let loads: Vec<f64> = others.iter().map(|i| load(*i)).collect();
-        Variance::of(&squares, &loads).map_or(f64::INFINITY, |variance| variance.at(load(k)))
+        likeliest(&squares, &others, &variates(model, data, r)).map_or(f64::INFINITY, |growth| growth.at(k))
     } else {
         others.iter().zip(&left).map(|(i, x)| x * x / load(*i)).sum::<f64>() / dof * load(k)
     };
     let weight = model.problem.weight.as_ref().map_or(1.0, |w| w[k]);
     let own = found.residual.abs() * (weight / (1.0 - model.fit.leverage[k])).sqrt();
     let looks = (n * model.law.responses.len()) as f64;
-    t_two_sided(own / variance.sqrt(), dof) * looks < FALSE_ALARM
+    t_two_sided(own / variance.sqrt(), dof) * looks < false_alarm(model)
 }
 
 #[cfg(test)]
@@ -180,7 +228,8 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
     use rand_pcg::Pcg64;
 
-    use crate::small_tables::said;
+    use crate::small_tables::{identified_of, said};
+    use crate::source::handed::TABLE;
 
     fn found(rows: &str, keys: &str) -> Vec<String> {
         said(rows, keys, &["outlying-row"])
@@ -214,17 +263,37 @@ mod tests {
         }
     }
 
-    /// Of 400 sound tables each, 0.68 % and three standard deviations are reported at most.
+    /// Of 200 sound tables each, 0.68 % and three standard deviations are reported at most.
     #[test]
     fn sound_rows_are_passed_over_whatever_their_scatter() {
         for (speeds, repeats) in [(5, 1), (8, 1), (7, 4)] {
             for scatter in [[0.3, 0.0], [0.0, 0.02], [0.05, 0.02]] {
                 for keys in [QUADRATIC, FITTED] {
                     let is_named = |seed: &u128| !found(&table(*seed, speeds, repeats, scatter, NONE), keys).is_empty();
-                    let alarms = (0..400).filter(is_named).count();
-                    assert!(alarms <= 7, "{speeds} speeds {repeats} times, {scatter:?}, {keys}: {alarms} of 400");
+                    let alarms = (0..200).filter(is_named).count();
+                    assert!(alarms <= 5, "{speeds} speeds {repeats} times, {scatter:?}, {keys}: {alarms} of 200");
                 }
             }
         }
+    }
+
+    /// The noise of a load cell across the rail enters f_x by the sine of the angle; speed and load do not tell it.
+    #[test]
+    fn sound_rows_are_passed_over_where_the_scatter_grows_with_the_angle() {
+        let is_named = |seed: &u128| {
+            let mut rng = Pcg64::new(*seed, 7);
+            let mut rows = "speed [m/s],angle [deg],f_x [N]\n".to_owned();
+            for i in 0..39 {
+                let (u, angle) = ([0.6, 0.8, 1.0][i / 13], 3.0 + 3.0 * (i % 13) as f64);
+                let z: f64 = StandardNormal.sample(&mut rng);
+                let v = u * f64::to_radians(angle).cos();
+                let _ = writeln!(rows, "{u},{angle},{}", -4.0 * v * v + 0.02 * z * f64::to_radians(angle).sin());
+            }
+            let keys = "models = [\"own\"]\n[identify]\ncovariance = \"HC3\"\n[[identify.model]]\nname = \"own\"\n\
+                        f_x = \"-D*v_x*abs(v_x)\"\n";
+            identified_of(&rows, TABLE, keys).findings.iter().any(|f| f.code == "outlying-row")
+        };
+        let alarms = (0..400).filter(is_named).count();
+        assert!(alarms <= 7, "{alarms} of 400");
     }
 }

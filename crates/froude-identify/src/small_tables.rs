@@ -12,8 +12,13 @@ pub(crate) fn identified(rows: &str, keys: &str) -> SourceResult {
 
 /// The same of rows that a method has made.
 pub(crate) fn identified_by(method: &str, rows: &str, keys: &str) -> SourceResult {
+    identified_of(&format!("speed [m/s],f_x [N]\n{rows}"), method, keys)
+}
+
+/// The result of a table of any columns.
+pub(crate) fn identified_of(table: &str, method: &str, keys: &str) -> SourceResult {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("t.csv"), format!("speed [m/s],f_x [N]\n{rows}")).unwrap();
+    std::fs::write(folder.path().join("t.csv"), table).unwrap();
     let campaign =
         format!("schema = 1\nname = \"a\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n{keys}");
     std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
