@@ -5,6 +5,7 @@
 //! What takes longer or needs more programs has its own task, which installs what it needs.
 
 mod firmware;
+mod lines;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -47,6 +48,8 @@ enum Task {
     },
     /// The book as HTML (needs mdbook; installs it).
     Book,
+    /// Lines and tokens of each crate, without and with comments, blank lines and tests.
+    Lines,
 }
 
 fn main() -> ExitCode {
@@ -63,6 +66,7 @@ fn main() -> ExitCode {
         Task::Deny => deny(&root),
         Task::Firmware { full } => firmware::firmware(&root, full),
         Task::Book => book(&root),
+        Task::Lines => lines::lines(&root),
     };
     println!("xtask: {:.0} s", started.elapsed().as_secs_f64());
     match done {
