@@ -6,11 +6,12 @@ use std::str::FromStr;
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// What a crate holds.
+/// Counts of one crate.
 #[derive(Default)]
 struct Count {
     /// Lines of its `src` that carry a token outside of comments and tests.
     code: usize,
+    /// A pair of brackets counts as one.
     tokens: usize,
     /// All lines of its `src`.
     source: usize,
@@ -31,20 +32,20 @@ impl Count {
     }
 }
 
-/// Prints a row per crate, and the whole.
+/// Prints a row per crate, and the total.
 pub fn lines(root: &Path) -> Result<(), String> {
     println!("{:24} {:>8} {:>9} {:>10} {:>8}", "crate", "code", "tokens", "src, all", "tests");
-    let mut whole = Count::default();
+    let mut total = Count::default();
     for folder in folders(root)? {
         let count = of_crate(&folder)?;
         println!("{}", count.row(&folder.strip_prefix(root).unwrap_or(&folder).display().to_string()));
-        whole.add(&count);
+        total.add(&count);
     }
-    println!("{}", whole.row("whole"));
+    println!("{}", total.row("total"));
     Ok(())
 }
 
-/// Every folder with a manifest of a crate.
+/// The folders of xtask, of the crates and of the firmware.
 fn folders(root: &Path) -> Result<Vec<PathBuf>, String> {
     let mut out = vec![root.join("xtask")];
     for parent in ["crates", "firmware"] {
@@ -128,7 +129,7 @@ impl Seen {
         while at < trees.len() {
             match attribute(&trees[at..]) {
                 Some((words, len)) if words.starts_with("doc ") => at += len,
-                Some((words, len)) if words == "cfg (test)" => {
+                Some((words, len)) if words == "cfg (test)" || words.starts_with("cfg (all (test") => {
                     at += len;
                     at += self.test_item(&trees[at..]);
                 }
@@ -150,7 +151,7 @@ impl Seen {
         }
     }
 
-    /// Length of the item that begins here; a module in a file of its own is kept in mind.
+    /// Length of the item that begins here; a module in a file of its own is recorded.
     fn test_item(&mut self, trees: &[TokenTree]) -> usize {
         let is_end = |tree: &TokenTree| match tree {
             TokenTree::Punct(punct) => punct.as_char() == ';',
@@ -184,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn comments_blank_lines_and_tests_are_no_code() {
+    fn comments_blank_lines_and_tests_are_not_code() {
         let text = "//! A file.\n\n/// One.\nfn one() -> u8 {\n    // Why.\n    1\n}\n#[cfg(test)]\nmod tests {\n    fn two() {}\n}\n#[cfg(test)]\nmod more;\n";
         let mut seen = Seen::default();
         seen.walk(TokenStream::from_str(text).expect("it is Rust"));

@@ -48,7 +48,7 @@ enum Task {
     },
     /// The book as HTML (needs mdbook; installs it).
     Book,
-    /// Lines and tokens of each crate, without and with comments, blank lines and tests.
+    /// Count lines and tokens of each crate, without and with comments, blank lines and tests.
     Lines,
 }
 

@@ -244,7 +244,7 @@ pub fn of_scatter(findings: &[Finding]) -> Codes {
     codes(findings).into_iter().filter(|(code, _)| TESTS.contains(&code.as_str())).collect()
 }
 
-/// Whether as many of `tables` are found at a rate of `most` in more than one of 740 samples, three deviations of a normal variable.
+/// Whether a true rate of `most` gives `count` or more of `tables` with a probability above 0.00135, that of three normal deviations.
 fn is_chance(count: usize, tables: usize, most: f64) -> bool {
     let found = Binomial::new(most, tables as u64).expect("a probability");
     count == 0 || found.sf(count as u64 - 1) > 0.00135

@@ -178,7 +178,7 @@ fn main() -> ExitCode {
             potential::all(claims, &root, full)?;
             potential_laws::all(claims, full)?;
         }
-        // What few bodies show is judged by nobody: the tests of the added mass hold the kinds of bodies.
+        // Full run only: a short one has too few bodies for an acceptance band.
         if full && wants("facets") {
             potential_facets::facets(claims)?;
         }

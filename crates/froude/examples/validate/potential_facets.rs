@@ -26,8 +26,8 @@ use crate::tessellations::{Intended, KINDS};
 
 /// Tessellations of ellipsoids, and as many of other bodies.
 const BODIES: u64 = 200;
-/// Fewer segments around than this.
-const FINEST: usize = 24;
+/// Segments around are fewer than this.
+const MOST_AROUND: usize = 24;
 const ROOM: &str = "Added mass from potential flow: facets of meshes from elsewhere";
 /// Tolerance of the panels.
 const TOLERANCE: f64 = 0.05;
@@ -105,7 +105,7 @@ fn rings(around: usize, along: usize, is_quads: bool) -> Mesh {
 
 /// A tessellation of one of four kinds, stretched to an ellipsoid with these semi-axes.
 fn tessellation(rng: &mut Pcg64, number: u64) -> (Mesh, [f64; 3]) {
-    let around = rng.random_range(8..FINEST);
+    let around = rng.random_range(8..MOST_AROUND);
     let along = (rng.random_range(around / 2..around + around / 2)).max(5);
     let times = 2 + usize::from(number / 4 % 2 == 1);
     let mut mesh = match number % 4 {
@@ -251,7 +251,7 @@ fn covered(bodies: &[&Vec<Entry>]) -> [f64; 2] {
     [percent(all().filter(|e| e.holds()).count(), all().count()), percent(whole, bodies.len())]
 }
 
-/// All rows.
+/// Adds all rows of this section.
 pub fn facets(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
     let bodies = (0..2 * BODIES)
         .into_par_iter()
@@ -282,7 +282,8 @@ pub fn facets(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
         );
     };
     let (ellipsoids, others) = bodies.split_at(BODIES as usize);
-    let what = format!("{BODIES} tessellations of ellipsoids, 8 to {FINEST} segments around or 128 to 512 triangles");
+    let what =
+        format!("{BODIES} tessellations of ellipsoids, 8 to {MOST_AROUND} segments around or 128 to 512 triangles");
     add(&what, ellipsoids.iter().map(|b| &b.alone).collect(), true);
     add("those of ellipsoids with --apart", ellipsoids.iter().map(|b| &b.apart).collect(), true);
     add("those of ellipsoids with --smooth", ellipsoids.iter().map(|b| &b.smooth).collect(), false);
