@@ -31,6 +31,8 @@ use crate::results::spares;
 const CONTRADICTED: f64 = 0.01;
 /// Rows that a person sees of those that are predicted worst.
 const SHOWN: usize = 8;
+/// Loads that a person sees of a table without measured ones.
+const MOST_SHOWN: usize = 40;
 
 /// A record that forces of a table are wanted of.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,7 +108,8 @@ pub fn of_rows(all: &[&Estimate], estimates: &[&Estimate], data: Dataset) -> Res
     let of = |estimate: &&Estimate| {
         of_estimate(estimate, &beside(all.iter().copied(), estimate), &with_density(&data, estimate))
     };
-    let findings = estimates.iter().filter_map(|estimate| without_bands(estimate)).collect();
+    let mut findings: Vec<Finding> = estimates.iter().filter_map(|estimate| without_bands(estimate)).collect();
+    findings.extend(estimates.iter().filter_map(|estimate| load_at_rest(estimate, &data)));
     let estimates = estimates.iter().map(of).collect::<Result<_, _>>()?;
     Ok(Prediction { estimates, findings, written: Vec::new(), seen: IndexMap::new(), data })
 }
@@ -161,6 +164,32 @@ fn without_bands(estimate: &Estimate) -> Option<Finding> {
             counted(clusters.n, &clusters.by, &format!("{}s", clusters.by))
         );
         Finding::new(Severity::Warning, "no-band", text)
+    })
+}
+
+/// Loads that a law gives in water at rest: its constants, which may be those of the rig.
+fn load_at_rest(estimate: &Estimate, data: &Dataset) -> Option<Finding> {
+    if data.rows == 0 {
+        return None;
+    }
+    let mut at_rest = with_density(data, estimate).subset(&[0]);
+    let names: Vec<(String, Dimension)> =
+        at_rest.channels.iter().map(|(name, c)| (name.clone(), c.dimension)).collect();
+    for (name, dimension) in names.into_iter().filter(|(name, _)| name != "density") {
+        at_rest.put(&name, vec![0.0; 1], dimension);
+    }
+    let predicted = of_estimate(estimate, &[], &at_rest).ok()?;
+    let constant = |row: &&Row| row.predicted != 0.0 && row.predicted.is_finite();
+    let of = |row: &Row| format!("{} {} {}", row.load, significant(row.predicted, 3), row.unit);
+    let loads: Vec<String> = predicted.rows.iter().filter(constant).map(of).collect();
+    (!loads.is_empty()).then(|| {
+        let text = format!(
+            "{}: the law gives a load at rest ({}), which is part of each prediction. If it is of the rig (a load cell that was not zeroed, friction) and not of the water, subtract it \
+             from the table, or fit it as the offset of a group (group_offset = \"estimate\"), which is no part of a prediction",
+            estimate.id,
+            loads.join(", ")
+        );
+        Finding::new(Severity::Note, "constant-load", text)
     })
 }
 
@@ -296,21 +325,26 @@ impl Prediction {
         let loads = by_load(predicted);
         let head =
             ["load", "rows", "outside", "u of the law", "mean error", "rms error", "of the rms load", "|E_n| > 1"];
-        let mut tables = vec![TextTable {
-            caption: format!("{} on {}", predicted.id, counted(self.data.rows, "row", "rows")),
-            head: head.map(str::to_owned).to_vec(),
-            rows: loads.iter().map(row).collect(),
-        }];
+        let mut tables = Vec::new();
+        if predicted.rows.iter().any(|row| row.measured.is_some()) {
+            tables.push(TextTable {
+                caption: format!("{} on {}", predicted.id, counted(self.data.rows, "row", "rows")),
+                head: head.map(str::to_owned).to_vec(),
+                rows: loads.iter().map(row).collect(),
+            });
+        }
         let mut worst: Vec<&Row> = predicted.rows.iter().filter(|row| row.e_n.is_some()).collect();
         worst.sort_by(|a, b| b.e_n.unwrap_or_default().abs().total_cmp(&a.e_n.unwrap_or_default().abs()));
+        let band = |row: &Row| {
+            row.band_95.map_or_else(dash, |[low, high]| format!("{} to {}", significant(low, 3), significant(high, 3)))
+        };
         let line = |row: &&Row| {
             vec![
                 self.data.row_name(row.row),
                 format!("{}, {}", row.load, row.unit),
                 number(row.measured),
                 number(Some(row.predicted)),
-                row.band_95
-                    .map_or_else(dash, |[low, high]| format!("{} to {}", significant(low, 3), significant(high, 3))),
+                band(row),
                 number(row.error()),
                 number(row.e_n),
                 if row.outside.is_empty() { String::new() } else { row.outside.join(", ") },
@@ -325,6 +359,24 @@ impl Prediction {
             });
         }
         let mut paragraphs: Vec<String> = predicted.joint.iter().map(joint).collect();
+        if tables.is_empty() {
+            let mut all: Vec<&Row> = predicted.rows.iter().collect();
+            all.sort_by_key(|row| row.row);
+            let line = |row: &&Row| {
+                let load = format!("{}, {}", row.load, row.unit);
+                let predicted = significant(row.predicted, 4);
+                vec![self.data.row_name(row.row), load, predicted, band(row), row.outside.join(", ")]
+            };
+            tables.push(TextTable {
+                caption: format!("{} on {}", predicted.id, counted(self.data.rows, "row", "rows")),
+                head: ["row", "load", "predicted", "95 % band", "outside its range of"].map(str::to_owned).to_vec(),
+                rows: all.iter().take(MOST_SHOWN).map(line).collect(),
+            });
+            if all.len() > MOST_SHOWN {
+                let all = counted(all.len(), "load", "loads");
+                paragraphs.push(format!("{MOST_SHOWN} of {all} are shown; `--out FOLDER` writes them all"));
+            }
+        }
         if predicted.laws.len() > 1 {
             paragraphs.push(format!(
                 "Bands and E_n come from the envelope of this law and all others that the data of the record do not contradict ({}). χ² is that of the law that agrees best.",
