@@ -188,7 +188,7 @@ mod tests {
     fn comments_blank_lines_and_tests_are_not_code() {
         let text = "//! A file.\n\n/// One.\nfn one() -> u8 {\n    // Why.\n    1\n}\n#[cfg(test)]\nmod tests {\n    fn two() {}\n}\n#[cfg(test)]\nmod more;\n";
         let mut seen = Seen::default();
-        seen.walk(TokenStream::from_str(text).expect("it is Rust"));
+        seen.walk(TokenStream::from_str(text).unwrap_or_default());
         assert_eq!(seen.lines.into_iter().collect::<Vec<_>>(), [4, 6, 7]);
         assert_eq!((seen.tokens, seen.test_modules), (8, vec!["more".to_owned()]));
     }

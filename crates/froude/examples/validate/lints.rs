@@ -246,8 +246,8 @@ pub fn of_scatter(findings: &[Finding]) -> Codes {
 
 /// Whether a true rate of `most` gives `count` or more of `tables` with a probability above 0.00135, that of three normal deviations.
 fn is_chance(count: usize, tables: usize, most: f64) -> bool {
-    let found = Binomial::new(most, tables as u64).expect("a probability");
-    count == 0 || found.sf(count as u64 - 1) > 0.00135
+    let is_in_reach = |found: Binomial| found.sf(count as u64 - 1) > 0.00135;
+    count == 0 || Binomial::new(most, tables as u64).is_ok_and(is_in_reach)
 }
 
 /// How often sound tables carry each code.
