@@ -7,7 +7,7 @@
 //! Nothing is left out: whether a row is a mistake is in its log, not in its residual. A slip at a large speed makes the scatter look uneven, so a row is
 //! named only if the scatter is even without it and it still stands out under a growing variance: σ² = a + b z² fitted to the other rows or, with too few rows for that, σ ∝ f. z is the
 //! load f, the speed, the sine or cosine of the angle or a channel of the law, whichever gives the other residuals the highest likelihood, if that tells growth from an even variance
-//! (−2 ln L falls by 4). For example, the noise of a load cell mounted across the rail enters f_x in proportion to the sine of the angle.
+//! (−2 ln L falls by 4, and by 10 where it alone names a row). For example, the noise of a load cell mounted across the rail enters f_x in proportion to the sine of the angle.
 //! Otherwise, if the scatter grows without a row or weights were fitted, the row is judged by σ² = a + b z² alone. Where the variance is fitted, t has a third of the degrees of freedom,
 //! because it rests on the few rows near that z. HC3 without weights declares that the scatter is uneven and not how: the level is then 0.04 %, and the second of these tests is
 //! left out. Skipped for rows in time, for a sample of the rows, and where σ is not a least-squares σ: with errors in variables, Huber's loss, and
@@ -31,8 +31,10 @@ const FALSE_ALARM: f64 = 0.004;
 const FEWEST_DOF: f64 = 1.0;
 /// Fraction of the degrees of freedom available for the scatter at one load.
 const AT_ONE_LOAD: f64 = 1.0 / 3.0;
-/// Decrease of −2 ln L by which a growing variance is told from an even one: two standard deviations of one coefficient.
+/// Decrease of −2 ln L by which a growing variance excuses a row: two standard deviations of one coefficient.
 const TOLD: f64 = 4.0;
+/// The same by which it accuses one: chance gives it to one table in two hundred, over half a dozen variates.
+const TOLD_ALONE: f64 = 10.0;
 /// A fit without error has no scatter to compare with.
 const ROUNDING: f64 = 1e-9;
 
@@ -148,8 +150,9 @@ fn by_growth(model: &ModelFit, data: &Dataset, r: usize) -> Option<(Outlying, St
         let others: Vec<usize> = rows.iter().copied().filter(|i| *i != row).collect();
         let growth = likeliest(&others.iter().map(square).collect::<Vec<_>>(), &others, &variates)?;
         let with = format!(" (the scatter grows with the {})", growth.with.name);
-        let with = if growth.is_told { with } else { String::new() };
-        (growth.is_told || is_fitted).then(|| (row, (square(&row) / growth.at(row)).sqrt(), with))
+        let is_told = growth.fall > TOLD_ALONE;
+        let with = if is_told { with } else { String::new() };
+        (is_told || is_fitted).then(|| (row, (square(&row) / growth.at(row)).sqrt(), with))
     };
     let (row, t, with) = candidates.into_iter().filter_map(of).max_by(|a, b| a.1.total_cmp(&b.1))?;
     let looks = (rows.len() * model.law.responses.len()) as f64;
@@ -214,15 +217,15 @@ fn variates(model: &ModelFit, data: &Dataset, r: usize) -> Vec<Variate> {
 struct Growth<'a> {
     variance: Variance,
     with: &'a Variate,
-    /// Whether the likelihood tells it from an even variance.
-    is_told: bool,
+    /// Decrease of −2 ln L from that of an even variance.
+    fall: f64,
 }
 
 impl<'a> Growth<'a> {
     /// Of squares of residuals; `rows[k]` is the row of `squares[k]` in the stacked problem.
     fn of(squares: &[f64], rows: &[usize], with: &'a Variate) -> Option<Self> {
         let z: Vec<f64> = rows.iter().map(|i| with.squares[i % with.squares.len()]).collect();
-        Some(Self { variance: Variance::of(squares, &z)?, with, is_told: false })
+        Some(Self { variance: Variance::of(squares, &z)?, with, fall: 0.0 })
     }
 
     /// Variance of row `i` of the stacked problem.
@@ -241,7 +244,7 @@ fn likeliest<'a>(squares: &[f64], rows: &[usize], variates: &'a [Variate]) -> Op
         Some((deviance.sum::<f64>(), growth))
     };
     let (deviance, growth) = variates.iter().filter_map(of).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(Growth { is_told: even - deviance > TOLD, ..growth })
+    Some(Growth { fall: even - deviance, ..growth })
 }
 
 /// Whether the row still stands out under a growing variance: as fitted to the other rows or, with few rows, in proportion to the load.
@@ -256,7 +259,7 @@ fn is_beyond_growth(model: &ModelFit, data: &Dataset, r: usize, found: Outlying)
         let lost = others.len() as f64 / dof;
         let squares: Vec<f64> = left.iter().map(|x| x * x * lost).collect();
         match likeliest(&squares, &others, &variates) {
-            Some(growth) if growth.is_told => (growth.at(k), (AT_ONE_LOAD * dof).max(FEWEST_DOF)),
+            Some(growth) if growth.fall > TOLD => (growth.at(k), (AT_ONE_LOAD * dof).max(FEWEST_DOF)),
             Some(_) => return true,
             None => return false,
         }
