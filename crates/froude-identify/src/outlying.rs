@@ -7,7 +7,7 @@
 //! Nothing is left out: whether a row is a mistake is in its log, not in its residual. A slip at a large speed makes the scatter look uneven, so a row is
 //! named only if the scatter is even without it and it still stands out under a growing variance: σ² = a + b z² fitted to the other rows or, with too few rows for that, σ ∝ f. z is the
 //! load f, the speed, the sine or cosine of the angle or a channel of the law, whichever gives the other residuals the highest likelihood, if that tells growth from an even variance
-//! (−2 ln L falls by 4, and by 10 where it alone names a row). For example, the noise of a load cell mounted across the rail enters f_x in proportion to the sine of the angle.
+//! (−2 ln L falls by 4, and by 12 where it alone names a row). For example, the noise of a load cell mounted across the rail enters f_x in proportion to the sine of the angle.
 //! Otherwise, if the scatter grows without a row or weights were fitted, the row is judged by σ² = a + b z² alone. Where the variance is fitted, t has a third of the degrees of freedom,
 //! because it rests on the few rows near that z. HC3 without weights declares that the scatter is uneven and not how: the level is then 0.04 %, and the second of these tests is
 //! left out. Skipped for rows in time, for a sample of the rows, and where σ is not a least-squares σ: with errors in variables, Huber's loss, and
@@ -33,8 +33,8 @@ const FEWEST_DOF: f64 = 1.0;
 const AT_ONE_LOAD: f64 = 1.0 / 3.0;
 /// Decrease of −2 ln L by which a growing variance excuses a row: two standard deviations of one coefficient.
 const TOLD: f64 = 4.0;
-/// The same by which it accuses one: chance gives it to one table in two hundred, over half a dozen variates.
-const TOLD_ALONE: f64 = 10.0;
+/// The same by which it accuses one: chance gives it to one table in two hundred, over three loads of half a dozen variates.
+const TOLD_ALONE: f64 = 12.0;
 /// A fit without error has no scatter to compare with.
 const ROUNDING: f64 = 1e-9;
 
