@@ -31,10 +31,10 @@ const FALSE_ALARM: f64 = 0.004;
 const FEWEST_DOF: f64 = 1.0;
 /// Fraction of the degrees of freedom available for the scatter at one load.
 const AT_ONE_LOAD: f64 = 1.0 / 3.0;
-/// Decrease of −2 ln L by which a growing variance excuses a row: two standard deviations of one coefficient.
-const TOLD: f64 = 4.0;
-/// The same by which it accuses one: chance gives it to one table in two hundred, over three loads of half a dozen variates.
-const TOLD_ALONE: f64 = 12.0;
+/// Smallest decrease of −2 ln L at which a growing variance can excuse a row: two standard deviations of one coefficient.
+const LEAST_FALL: f64 = 4.0;
+/// Smallest decrease at which a growing variance alone can name a row: it occurs by chance in one table in two hundred (three loads, six variates each).
+const LEAST_FALL_ALONE: f64 = 12.0;
 /// A fit without error has no scatter to compare with.
 const ROUNDING: f64 = 1e-9;
 
@@ -150,9 +150,9 @@ fn by_growth(model: &ModelFit, data: &Dataset, r: usize) -> Option<(Outlying, St
         let others: Vec<usize> = rows.iter().copied().filter(|i| *i != row).collect();
         let growth = likeliest(&others.iter().map(square).collect::<Vec<_>>(), &others, &variates)?;
         let with = format!(" (the scatter grows with the {})", growth.with.name);
-        let is_told = growth.fall > TOLD_ALONE;
-        let with = if is_told { with } else { String::new() };
-        (is_told || is_fitted).then(|| (row, (square(&row) / growth.at(row)).sqrt(), with))
+        let is_clear = growth.fall > LEAST_FALL_ALONE;
+        let with = if is_clear { with } else { String::new() };
+        (is_clear || is_fitted).then(|| (row, (square(&row) / growth.at(row)).sqrt(), with))
     };
     let (row, t, with) = candidates.into_iter().filter_map(of).max_by(|a, b| a.1.total_cmp(&b.1))?;
     let looks = (rows.len() * model.law.responses.len()) as f64;
@@ -259,7 +259,7 @@ fn is_beyond_growth(model: &ModelFit, data: &Dataset, r: usize, found: Outlying)
         let lost = others.len() as f64 / dof;
         let squares: Vec<f64> = left.iter().map(|x| x * x * lost).collect();
         match likeliest(&squares, &others, &variates) {
-            Some(growth) if growth.fall > TOLD => (growth.at(k), (AT_ONE_LOAD * dof).max(FEWEST_DOF)),
+            Some(growth) if growth.fall > LEAST_FALL => (growth.at(k), (AT_ONE_LOAD * dof).max(FEWEST_DOF)),
             Some(_) => return true,
             None => return false,
         }

@@ -185,7 +185,7 @@ fn load_at_rest(estimate: &Estimate, data: &Dataset) -> Option<Finding> {
     (!loads.is_empty()).then(|| {
         let text = format!(
             "{}: the law gives a load at rest ({}), which is part of each prediction. If it is of the rig (a load cell that was not zeroed, friction) and not of the water, subtract it \
-             from the table, or fit it as the offset of a group (group_offset = \"estimate\"), which is no part of a prediction",
+             from the loads before the fit, or fit it as the offset of a group (group_offset = \"estimate\"), which is no part of a prediction",
             estimate.id,
             loads.join(", ")
         );
