@@ -27,7 +27,7 @@ use clap::Parser;
 use failure::Failure;
 use froude::pipeline::{self, Input, Job};
 use froude::records::text::counted;
-use froude::swim::look::look;
+use froude::swim::verb::look;
 use froude::{demo, inspect, plan, predict, twin};
 
 fn main() -> ExitCode {
@@ -128,10 +128,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Verb::Swim(args) => swim::swim(*args, cli.json)?,
         Verb::Robot { job: RobotJob::Inspect { robot } } => {
             let found = look(&robot).map_err(|error| mistaken::ROBOT.explain(error, &[robot]))?;
-            if cli.json {
-                return print::json(&found.as_json());
-            }
-            print::summary(&found.section());
+            print::answer(&found, cli.json)?;
         }
         Verb::Schema => out::say!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA.trim_end()),
     }

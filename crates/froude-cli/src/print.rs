@@ -6,9 +6,11 @@ use froude::identify::method::{ExpectedCoefficient, Prospect};
 use froude::identify::source::SourceResult;
 use froude::inspect::{ChannelFacts, ColumnFacts, Inspection, SourceFacts};
 use froude::pipeline::{Outcome, Summary};
+use froude::records::block::{Block, laid_out};
 use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
 use froude::records::number;
+use froude::records::outcome::Outcome as Answered;
 use froude::records::page::{DocumentSection, TextTable};
 use froude::records::text::{counted, visible_json};
 use froude::results::Written;
@@ -49,6 +51,47 @@ pub fn outcome(outcome: &Outcome, all: bool) {
     findings(&outcome.file.findings);
     if let Some(written) = &outcome.written {
         self::written(written);
+    }
+}
+
+/// What a verb returns, for a person or as one JSON document.
+pub fn answer(answer: &Answered, is_json: bool) -> Result<(), Failure> {
+    if is_json {
+        return json(&answer.json());
+    }
+    blocks(&answer.blocks);
+    if let Some(found) = &answer.findings {
+        findings(found);
+    }
+    if !answer.files.is_empty() {
+        say!("");
+    }
+    for file in &answer.files {
+        say!("{:<10} {}", file.key, file.path.display());
+    }
+    Ok(())
+}
+
+fn blocks(all: &[Block]) {
+    for block in all {
+        match block {
+            Block::Text { texts, .. } if texts.is_empty() => {}
+            Block::Text { texts, .. } => {
+                say!("");
+                for text in texts {
+                    say!("{text}");
+                }
+            }
+            Block::Table(table) => {
+                let Some(table) = laid_out(table) else { continue };
+                if !table.caption.is_empty() {
+                    say!("\n{}", wrapped(&table.caption));
+                }
+                text_table(&table);
+            }
+            Block::Section(section) if !section.is_detail => blocks(&section.blocks),
+            Block::Section(_) | Block::Chart(_) | Block::Map(_) => {}
+        }
     }
 }
 
@@ -343,10 +386,10 @@ fn diagnostics(d: &Diagnostics) -> Vec<(&'static str, String)> {
 
 /// A table whose cells are written already; numbers to the right. No word is broken: a table of long words is wider than [`WIDEST`].
 pub fn text_table(text: &TextTable) {
-    say!("{}", laid_out(text, usize::from(WIDEST)));
+    say!("{}", fitted(text, usize::from(WIDEST)));
 }
 
-fn laid_out(text: &TextTable, widest: usize) -> Table {
+fn fitted(text: &TextTable, widest: usize) -> Table {
     let widths = widths(text, widest);
     let wrapped = |row: &[String]| -> Vec<String> {
         row.iter().enumerate().map(|(i, cell)| wrap(cell, widths.get(i).copied().unwrap_or(usize::MAX))).collect()
@@ -455,7 +498,7 @@ mod tests {
         let words: Vec<&str> =
             std::iter::once(&table.head).chain(&table.rows).flatten().flat_map(|c| c.split_whitespace()).collect();
         for widest in [10, 60, 80, 100, 120] {
-            let printed = laid_out(&table, widest).to_string();
+            let printed = fitted(&table, widest).to_string();
             let found: Vec<&str> = printed.split_whitespace().collect();
             for word in &words {
                 assert!(found.contains(word), "{word} at {widest} columns:\n{printed}");
@@ -466,7 +509,7 @@ mod tests {
     #[test]
     fn a_table_is_as_wide_as_the_page_where_its_words_fit() {
         for widest in [90, 100, 120] {
-            let printed = laid_out(&preflight(), widest).to_string();
+            let printed = fitted(&preflight(), widest).to_string();
             let longest = printed.lines().map(|l| l.chars().count()).max().unwrap_or(0);
             assert!(longest <= widest, "{longest} of {widest}:\n{printed}");
         }

@@ -6,86 +6,39 @@ use std::path::PathBuf;
 
 use froude::records::gait_file::angular_frequency;
 use froude::records::units::{Dimension, parse_quantity};
-use froude::swim::uncertain::{Drawing, Uncertain, uncertain};
-use froude::swim::{Answer, Job, Moves, Pitching, Typed, swim_anywhere};
-use froude::swimmer::gait::{Envelope, Gait};
+use froude::report::write::write_folder;
+use froude::swim::gait::{Envelope, Gait};
+use froude::swim::verb::{Drawing, Job, Moves, Pitching, Typed, swim as run};
 
 use crate::args::SwimArgs;
 use crate::failure::Failure;
-use crate::out::{Bar, say};
+use crate::out::Bar;
 use crate::print;
 
 pub fn swim(args: SwimArgs, json: bool) -> Result<(), Failure> {
     if let Some(ranges) = &args.sweep {
         return sweep::sweep(ranges, &args, json);
     }
-    let (moves, drawing) = (moves(&args)?, drawing(&args));
-    let pitching = pitching(&args)?;
-    let mut job = Job {
+    let job = Job {
+        moves: moves(&args)?,
+        pitching: pitching(&args)?,
+        draws: drawing(&args),
         robot: args.robot,
-        moves,
         motor: args.motor,
         step_s: args.step.as_deref().map(step).transpose()?,
         out: args.out,
         periods: args.periods as usize,
         date: Some(crate::today()),
-        uncertain: None,
+        is_sensitive: args.sensitivity,
     };
-    if drawing.is_some() || args.sensitivity {
-        let bar = Bar::of("draws");
-        let found = uncertain(&job, drawing, args.sensitivity, &|done, all| bar.is_at(done, all));
-        bar.finish_and_clear();
-        job.uncertain = Some(found?);
+    let bar = Bar::of("draws");
+    let found = run(&job, &|done, all| bar.is_at(done, all));
+    bar.finish_and_clear();
+    let found = found?;
+    if let Some(out) = &job.out {
+        write_folder(&found, out)?;
     }
-    let (answer, mut section, warnings, written) = match swim_anywhere(&job, &pitching)? {
-        Answer::Plane(swum) => {
-            let written = swum.written.iter();
-            let written = written.flat_map(|w| {
-                [
-                    ("report", &w.report),
-                    ("animation", &w.animation),
-                    ("trajectory", &w.trajectory),
-                    ("record", &w.record),
-                ]
-            });
-            (
-                swum.as_json(),
-                swum.section(),
-                swum.warnings(),
-                written.map(|(what, path)| (what, path.clone())).collect::<Vec<_>>(),
-            )
-        }
-        Answer::Space(swum) => {
-            let written = swum.written.iter();
-            let written =
-                written.flat_map(|w| [("report", &w.report), ("trajectory", &w.trajectory), ("record", &w.record)]);
-            (
-                swum.as_json(),
-                swum.section(),
-                swum.warnings(),
-                written.map(|(what, path)| (what, path.clone())).collect(),
-            )
-        }
-    };
-    if json {
-        return print::json(&answer);
-    }
-    // Before the figures, where nobody passes over them.
-    for warning in &warnings {
-        say!("\n{warning}");
-    }
-    section.paragraphs.retain(|sentence| !warnings.contains(sentence));
-    print::summary(&section);
-    for section in job.uncertain.iter().flat_map(Uncertain::sections) {
-        print::summary(&section);
-    }
-    if !written.is_empty() {
-        say!("");
-    }
-    for (what, path) in written {
-        say!("{what:<10} {}", path.display());
-    }
-    Ok(())
+    print::answer(&found, json)
 }
 
 /// The wave of the joints that pitch; what is left out says nothing.

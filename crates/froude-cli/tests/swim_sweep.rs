@@ -61,7 +61,7 @@ fn rows_are_the_gaits_alone_and_say_why_there_is_none() {
     assert_eq!(alone["power_positive_w"].as_f64(), Some(column("power_pos", Dimension::new(2, 1, -3))[3]));
     assert_eq!(table.text("status").unwrap(), ["periodic"; 6]);
     let best = speed.iter().copied().fold(0.0, f64::max);
-    assert_eq!(found["best"]["fastest"]["speed"].as_f64(), Some(best));
+    assert_eq!(found["best"][0]["speed_m_s"].as_f64(), Some(best));
 
     let found = swept("amplitude=0..100 deg:3, phase=40..50 deg:2", out.path());
     let statuses: Value = serde_json::json!({"periodic": 2, "limit": 2, "still": 2});
@@ -100,7 +100,7 @@ fn gaits_beyond_the_drives_are_neither_fastest_nor_cheapest() {
     let (drives, periodic) =
         (found["statuses"]["drives"].as_u64().unwrap(), found["statuses"]["periodic"].as_u64().unwrap());
     assert!(drives > 0 && periodic > 0 && drives + periodic == 8, "{found}");
-    assert!(found["best"]["fastest"]["torque_peak"].as_f64().unwrap() < 0.5, "{found}");
+    assert!(found["best"][0]["torque_peak_n_m"].as_f64().unwrap() < 0.5, "{found}");
     let table = read_table(&out.path().join("map/sweep.parquet"), None).unwrap();
     assert!(table.number("speed", Dimension::SPEED).unwrap().iter().all(|u| *u > 0.0));
 }
@@ -195,9 +195,9 @@ fn a_front_is_refined_and_compared_by_paired_draws() {
     let gaits = front["gaits"].as_array().unwrap();
     let number = |gait: &Value, key: &str| gait[key].as_f64().unwrap();
     assert!(gaits.len() == 12 && front["front_gaits"].as_u64().unwrap() >= 12, "{front}");
-    assert!(number(&gaits[0], "speed") >= number(&grid["best"]["fastest"], "speed"));
+    assert!(number(&gaits[0], "speed_m_s") >= number(&grid["best"][0], "speed_m_s"));
     for pair in gaits.windows(2) {
-        assert!(["speed", "power_net"].iter().all(|key| number(&pair[0], key) > number(&pair[1], key)));
+        assert!(["speed_m_s", "power_net_w"].iter().all(|key| number(&pair[0], key) > number(&pair[1], key)));
         // Faster by the estimate is faster by most draws, and takes more power by most.
         let p = &pair[0]["better_than_next"];
         assert!(number(p, "speed") > 0.5 && number(p, "power") < 0.5, "{pair:?}");

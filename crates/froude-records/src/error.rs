@@ -143,6 +143,41 @@ pub enum RecordError {
         /// Froude wrote it, and somebody changed it.
         is_changed: bool,
     },
+    /// The folder of the results holds what a person wrote.
+    #[error(
+        "{} {}, and the folder {} is replaced as a whole; move the file out of it, or name another folder with --out",
+        .path.display(),
+        if *.is_changed { "was changed after Froude wrote it" } else { "was not written by Froude" },
+        .out.display()
+    )]
+    NotOurResults {
+        /// The folder.
+        out: PathBuf,
+        /// The first such file.
+        path: PathBuf,
+        /// Froude wrote it, and somebody changed it.
+        is_changed: bool,
+    },
+    /// Results would replace a file that is read.
+    #[error(
+        "{} holds {}, which is read: results there would replace it. Name another folder with --out",
+        .out.display(),
+        .record.display()
+    )]
+    ReplacesInput {
+        /// The folder of the results.
+        out: PathBuf,
+        /// The file.
+        record: PathBuf,
+    },
+    /// A folder or file of the output could not be made.
+    #[error("{}: cannot be written: {reason}; choose another place with --out", .path.display())]
+    Output {
+        /// The folder or file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
     /// The machine has not the memory that the file needs.
     #[error("{}: {source}; close other programs, or read a smaller file", path.display())]
     Memory {
@@ -453,6 +488,7 @@ impl RecordError {
             self,
             Self::Memory { .. }
                 | Self::Write { .. }
+                | Self::Output { .. }
                 | Self::NonFinite { .. }
                 | Self::Recording { .. }
                 | Self::RunExists { .. }

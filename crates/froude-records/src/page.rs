@@ -98,3 +98,30 @@ pub struct Chart {
     /// From top to bottom.
     pub panels: Vec<ChartPanel>,
 }
+
+/// One quantity over two: a cell for each pair.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Map {
+    /// Stem of the file's name.
+    pub name: String,
+    /// Title, for readers who do not see the picture.
+    pub title: String,
+    /// Caption below the figure.
+    pub caption: String,
+    /// Label of the abscissa, unit included.
+    pub x_label: String,
+    /// Label of the ordinate, unit included.
+    pub y_label: String,
+    /// Name of what is shown, unit included.
+    pub value_label: String,
+    /// How its colours run.
+    pub value_scale: Scale,
+    /// Abscissae, rising.
+    pub x: Vec<f64>,
+    /// Ordinates, rising.
+    pub y: Vec<f64>,
+    /// A row per ordinate, a column per abscissa; what is no number, or has no place on the scale, is hatched.
+    pub values: Vec<f64>,
+    /// Column and row of the cell that is marked, with its name.
+    pub best: Option<(usize, usize, String)>,
+}

@@ -12,7 +12,6 @@ use crate::chart;
 use crate::field::Field;
 use crate::findings::findings_by_severity;
 use crate::input::ReportError;
-use crate::map::Map;
 use crate::style::{POLICY, STYLE};
 use crate::tables::Tables;
 
@@ -32,9 +31,7 @@ pub struct Document {
     pub date: Option<String>,
     /// Sections in order; the first is the summary.
     pub sections: Vec<DocumentSection>,
-    /// Maps, behind the sections.
-    pub maps: Vec<Map>,
-    /// Quantities over a plane, behind the maps.
+    /// Quantities over a plane, behind the sections.
     pub fields: Vec<Field>,
     /// What the checks found.
     pub findings: Vec<Finding>,
@@ -53,7 +50,6 @@ impl Document {
         for (i, section) in self.sections.iter().enumerate() {
             body.push(section_markup(i, section, &mut tables, &mut figure)?);
         }
-        let maps = self.maps.iter().map(Map::svg).collect::<Result<Vec<_>, _>>()?;
         let fields = self.fields.iter().map(Field::svg).collect::<Result<Vec<_>, _>>()?;
         let findings = findings_by_severity(&self.findings, &mut tables);
         let contents = html! {
@@ -61,7 +57,6 @@ impl Document {
                 @for (i, section) in self.sections.iter().enumerate() {
                     li { a href={ "#section-" (i + 1) } { span { (i + 1) } (section.title) } }
                 }
-                @if !maps.is_empty() { li { a href="#maps" { span {} "Maps" } } }
                 @if !fields.is_empty() { li { a href="#pictures" { span {} "Pictures" } } }
                 @if !self.findings.is_empty() { li { a href="#findings" { span {} "Findings" } } }
             }
@@ -74,17 +69,6 @@ impl Document {
                 @if let Some(date) = &self.date { p class="meta" { span { (date) } } }
             }
             @for part in &body { (part) }
-            @if !maps.is_empty() {
-                section {
-                    h2 id="maps" { "Maps" }
-                    @for (map, svg) in self.maps.iter().zip(&maps) {
-                        figure {
-                            (PreEscaped(svg))
-                            figcaption { b { "Figure " (count(&mut figure)) ". " } (map.caption) }
-                        }
-                    }
-                }
-            }
             @if !fields.is_empty() {
                 section {
                     h2 id="pictures" { "Pictures" }
@@ -157,7 +141,7 @@ pub(crate) fn section_text(section: &DocumentSection, tables: &mut Tables) -> Ma
     }
 }
 
-fn table_markup(table: &TextTable, tables: &mut Tables) -> Markup {
+pub(crate) fn table_markup(table: &TextTable, tables: &mut Tables) -> Markup {
     let caption = tables.caption(&table.caption);
     let is_words =
         |column: usize| table.rows.iter().any(|row| row.get(column).is_some_and(|c| c.chars().count() > WORDS));
@@ -189,7 +173,7 @@ fn table_markup(table: &TextTable, tables: &mut Tables) -> Markup {
     }
 }
 
-fn count(n: &mut usize) -> usize {
+pub(crate) fn count(n: &mut usize) -> usize {
     *n += 1;
     *n
 }

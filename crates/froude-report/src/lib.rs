@@ -35,6 +35,7 @@ mod filled;
 mod findings;
 mod input;
 pub mod map;
+pub mod outcome;
 mod page;
 mod plot;
 mod statistics;
@@ -42,6 +43,7 @@ mod style;
 mod symbol;
 mod tables;
 pub mod verdict;
+pub mod write;
 
 pub use figures::{Figure, figures};
 pub use froude_records::page::{Abscissa, Against, BudgetRow, Curve, Point, SelectionRow, SourceSection};

@@ -2,7 +2,7 @@
 //!
 //! Cells without a number are hatched, so that "no answer" is not mistaken for a small one. The colours run from dark blue to ochre with rising lightness, and are told apart without red and green, and in grey.
 
-use froude_records::page::Scale;
+use froude_records::page::Map;
 
 use crate::canvas::{Align, Canvas, Ink, WHITE};
 use crate::chart::on;
@@ -20,99 +20,70 @@ const HEIGHT: f64 = 380.0;
 const HATCH: f64 = 7.0;
 const HATCHED: Ink = Ink::new(0xb4_bc_c2);
 
-/// A map.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Map {
-    /// Stem of the file's name.
-    pub name: String,
-    /// Title, for readers who do not see the picture.
-    pub title: String,
-    /// Caption below the figure.
-    pub caption: String,
-    /// Label of the abscissa, unit included.
-    pub x_label: String,
-    /// Label of the ordinate, unit included.
-    pub y_label: String,
-    /// Name of what is shown, unit included.
-    pub value_label: String,
-    /// How its colours run.
-    pub value_scale: Scale,
-    /// Abscissae, rising.
-    pub x: Vec<f64>,
-    /// Ordinates, rising.
-    pub y: Vec<f64>,
-    /// A row per ordinate, a column per abscissa; what is no number, or has no place on the scale, is hatched.
-    pub values: Vec<f64>,
-    /// Column and row of the cell that is marked, with its name.
-    pub best: Option<(usize, usize, String)>,
+/// The map as SVG.
+///
+/// # Errors
+///
+/// [`ReportError::Figure`] when the numbers are not those of its axes, or the drawing library refuses it.
+pub fn svg(map: &Map) -> Result<String, ReportError> {
+    let refused = |reason: String| ReportError::Figure { figure: map.title.clone(), reason };
+    if map.values.len() != map.x.len() * map.y.len() {
+        let (n, x, y) = (map.values.len(), map.x.len(), map.y.len());
+        return Err(refused(format!("{n} numbers for {x} × {y} cells")));
+    }
+    canvas(map).svg(&crate::figures::drawing::slug(&map.name), &map.title, &map.caption).map_err(refused)
 }
 
-impl Map {
-    /// The map as SVG.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Figure`] when the numbers are not those of its axes, or the drawing library refuses it.
-    pub fn svg(&self) -> Result<String, ReportError> {
-        let refused = |reason: String| ReportError::Figure { figure: self.title.clone(), reason };
-        if self.values.len() != self.x.len() * self.y.len() {
-            let (n, x, y) = (self.values.len(), self.x.len(), self.y.len());
-            return Err(refused(format!("{n} numbers for {x} × {y} cells")));
-        }
-        self.canvas().svg(&crate::figures::drawing::slug(&self.name), &self.title, &self.caption).map_err(refused)
-    }
-
-    fn canvas(&self) -> Canvas {
-        let mut canvas = Canvas::new(WIDTH, TOP + HEIGHT + 52.0);
-        let (x, y) = (chosen(self.x.len()), chosen(self.y.len()));
-        let edges = |of: &[f64], which: &[usize]| edges(&which.iter().map(|i| of[*i]).collect::<Vec<_>>());
-        let (x_edges, y_edges) = (edges(&self.x, &x), edges(&self.y, &y));
-        let all = |edges: &[f64]| Span::of(edges.iter().copied()).unwrap_or(Span { low: 0.0, high: 1.0 });
-        let frame = Panel {
-            left: LEFT,
-            top: TOP,
-            width: WIDTH - LEFT - GAP - BAR - RIGHT,
-            height: HEIGHT,
-            x: all(&x_edges),
-            y: all(&y_edges),
-        };
-        let value = |v: f64| on(self.value_scale, v);
-        let shown = Span::of(self.values.iter().map(|v| value(*v)).filter(|v| v.is_finite()));
-        let range = shown.unwrap_or(Span { low: 0.0, high: 1.0 });
-        for (row, j) in y.iter().enumerate() {
-            for (column, i) in x.iter().enumerate() {
-                // What is drawn later covers what lies over.
-                let corner = (frame.at_x(x_edges[column]), frame.at_y(y_edges[row + 1]) - OVER);
-                let other = (frame.at_x(x_edges[column + 1]) + OVER, frame.at_y(y_edges[row]));
-                let shown = value(self.values[j * self.x.len() + i]);
-                if shown.is_finite() {
-                    canvas.rectangle(corner, other, ramp((shown - range.low) / range.width()));
-                } else {
-                    hatched(&mut canvas, corner, other);
-                }
+fn canvas(map: &Map) -> Canvas {
+    let mut canvas = Canvas::new(WIDTH, TOP + HEIGHT + 52.0);
+    let (x, y) = (chosen(map.x.len()), chosen(map.y.len()));
+    let edges = |of: &[f64], which: &[usize]| edges(&which.iter().map(|i| of[*i]).collect::<Vec<_>>());
+    let (x_edges, y_edges) = (edges(&map.x, &x), edges(&map.y, &y));
+    let all = |edges: &[f64]| Span::of(edges.iter().copied()).unwrap_or(Span { low: 0.0, high: 1.0 });
+    let frame = Panel {
+        left: LEFT,
+        top: TOP,
+        width: WIDTH - LEFT - GAP - BAR - RIGHT,
+        height: HEIGHT,
+        x: all(&x_edges),
+        y: all(&y_edges),
+    };
+    let value = |v: f64| on(map.value_scale, v);
+    let shown = Span::of(map.values.iter().map(|v| value(*v)).filter(|v| v.is_finite()));
+    let range = shown.unwrap_or(Span { low: 0.0, high: 1.0 });
+    for (row, j) in y.iter().enumerate() {
+        for (column, i) in x.iter().enumerate() {
+            // What is drawn later covers what lies over.
+            let corner = (frame.at_x(x_edges[column]), frame.at_y(y_edges[row + 1]) - OVER);
+            let other = (frame.at_x(x_edges[column + 1]) + OVER, frame.at_y(y_edges[row]));
+            let shown = value(map.values[j * map.x.len() + i]);
+            if shown.is_finite() {
+                canvas.rectangle(corner, other, ramp((shown - range.low) / range.width()));
+            } else {
+                hatched(&mut canvas, corner, other);
             }
         }
-        self.mark(&mut canvas, &frame);
-        axes(&mut canvas, &frame, [&self.x_label, &self.y_label], [8, 6]);
-        let place = Panel { left: frame.right() + GAP, width: BAR, x: Span { low: 0.0, high: 1.0 }, y: range, ..frame };
-        bar(&mut canvas, &place, self.value_scale, &self.value_label, WIDTH - 14.0, ramp);
-        canvas
     }
+    mark(map, &mut canvas, &frame);
+    axes(&mut canvas, &frame, [&map.x_label, &map.y_label], [8, 6]);
+    let place = Panel { left: frame.right() + GAP, width: BAR, x: Span { low: 0.0, high: 1.0 }, y: range, ..frame };
+    bar(&mut canvas, &place, map.value_scale, &map.value_label, WIDTH - 14.0, ramp);
+    canvas
+}
 
-    fn mark(&self, canvas: &mut Canvas, frame: &Panel) {
-        let Some((column, row, name)) = &self.best else { return };
-        let (Some(x), Some(y)) = (self.x.get(*column), self.y.get(*row)) else { return };
-        let at = (frame.at_x(*x), frame.at_y(*y));
-        canvas.dot(at, 5.5, TEXT);
-        canvas.speck(at, 2.0, WHITE);
-        // On the side where there is room, on a plate of its own.
-        let is_left = at.0 > frame.left + 0.5 * frame.width;
-        let text = Rich::plain(name);
-        let long = crate::canvas::text_width(&text, TICK_SIZE) * 1.1 + 8.0;
-        let from = if is_left { at.0 - 12.0 - long } else { at.0 + 12.0 };
-        canvas.rectangle((from, at.1 - 10.0), (from + long, at.1 + 10.0), WHITE.faint(0.85));
-        canvas.text(text, (from + 4.0, at.1), TICK_SIZE, TEXT, Align::Left);
-    }
+fn mark(map: &Map, canvas: &mut Canvas, frame: &Panel) {
+    let Some((column, row, name)) = &map.best else { return };
+    let (Some(x), Some(y)) = (map.x.get(*column), map.y.get(*row)) else { return };
+    let at = (frame.at_x(*x), frame.at_y(*y));
+    canvas.dot(at, 5.5, TEXT);
+    canvas.speck(at, 2.0, WHITE);
+    // On the side where there is room, on a plate of its own.
+    let is_left = at.0 > frame.left + 0.5 * frame.width;
+    let text = Rich::plain(name);
+    let long = crate::canvas::text_width(&text, TICK_SIZE) * 1.1 + 8.0;
+    let from = if is_left { at.0 - 12.0 - long } else { at.0 + 12.0 };
+    canvas.rectangle((from, at.1 - 10.0), (from + long, at.1 + 10.0), WHITE.faint(0.85));
+    canvas.text(text, (from + 4.0, at.1), TICK_SIZE, TEXT, Align::Left);
 }
 
 /// Which of n are drawn.
@@ -152,6 +123,7 @@ fn hatched(canvas: &mut Canvas, (x0, y0): (f64, f64), (x1, y1): (f64, f64)) {
 mod tests {
     use super::*;
     use crate::filled::SHADES;
+    use froude_records::page::Scale;
 
     fn map() -> Map {
         Map {
@@ -170,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_map_has_a_cell_for_each_number_its_labels_and_its_mark() {
-        let drawn = map().svg().unwrap();
+        let drawn = svg(&map()).unwrap();
         for text in ["amplitude [deg]", "phase [deg]", "speed [m/s]", "fastest"] {
             assert!(drawn.lines().any(|line| line.trim() == text), "{text} is missing");
         }
@@ -183,7 +155,7 @@ mod tests {
     #[test]
     fn a_map_of_decades_has_their_colours() {
         let values = vec![0.1, 1.0, 10.0, 100.0, 1e4, 0.0];
-        let drawn = Map { values, value_scale: Scale::Logarithmic, best: None, ..map() }.svg().unwrap();
+        let drawn = svg(&Map { values, value_scale: Scale::Logarithmic, best: None, ..map() }).unwrap();
         assert_eq!(drawn.matches("<rect").count(), 6 + SHADES);
         for text in ["0.1", "1", "10", "100", "1000"] {
             assert!(drawn.lines().any(|line| line.trim() == text), "{text} is missing");
@@ -192,17 +164,17 @@ mod tests {
 
     #[test]
     fn numbers_of_other_axes_are_refused_and_none_at_all_is_no_panic() {
-        let refused = Map { values: vec![1.0], ..map() }.svg().unwrap_err();
+        let refused = svg(&Map { values: vec![1.0], ..map() }).unwrap_err();
         assert!(refused.to_string().contains("1 numbers for 3 × 2 cells"), "{refused}");
-        assert!(Map { values: vec![f64::INFINITY; 6], best: Some((9, 9, String::new())), ..map() }.svg().is_ok());
-        assert!(Map::default().svg().is_ok());
+        assert!(svg(&Map { values: vec![f64::INFINITY; 6], best: Some((9, 9, String::new())), ..map() }).is_ok());
+        assert!(svg(&Map::default()).is_ok());
     }
 
     #[test]
     fn a_large_map_is_drawn_by_some_of_its_cells() {
         let n = 1000;
         let x: Vec<f64> = (0..n).map(f64::from).collect();
-        let drawn = Map { values: vec![1.0; 1_000_000], y: x.clone(), x, best: None, ..map() }.svg().unwrap();
+        let drawn = svg(&Map { values: vec![1.0; 1_000_000], y: x.clone(), x, best: None, ..map() }).unwrap();
         assert_eq!(drawn.matches("<rect").count(), MOST * MOST + SHADES);
     }
 

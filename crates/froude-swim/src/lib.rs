@@ -30,6 +30,7 @@
 //! | [`spatial`]       | the same in three dimensions, with weight and buoyancy               |
 //! | [`trajectory`]      | the way of a swimmer, moment by moment                               |
 //! | [`track`]           | what a recording of joint angles comes to                            |
+//! | [`verb`]          | `froude swim` and `froude robot inspect`                              |
 //! | [`seen`]            | what links lose and joints need on their way                         |
 
 // What a kernel calls must become part of it, or it is compiled plainly (froude-lanes).
@@ -70,3 +71,4 @@ pub mod sweep;
 pub mod swim;
 pub mod track;
 pub mod trajectory;
+pub mod verb;

@@ -6,6 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use froude_identify::simulate::tables;
+use froude_records::RecordError;
 use froude_records::folder::UnfinishedFolder;
 use froude_records::write::write_atomically;
 use include_dir::{Dir, include_dir};
@@ -74,7 +75,7 @@ fn write_files(dir: &Dir<'_>, folder: &Path) -> Result<(), Error> {
     for file in dir.files() {
         let path: PathBuf = folder.join(file.path());
         if let Some(parent) = path.parent() {
-            std::fs::create_dir_all(parent).map_err(|source| Error::Output { path: parent.to_owned(), source })?;
+            std::fs::create_dir_all(parent).map_err(|source| RecordError::output(parent, &source))?;
         }
         write_atomically(&path, file.contents())?;
     }

@@ -7,8 +7,10 @@ use froude_identify::compare::too_many;
 use froude_identify::method::MethodError;
 use froude_records::run::FREE_DECAY;
 use froude_records::text::counted;
+use froude_report::write::WriteError;
 use froude_rig::campaign::error::CampaignError;
 use froude_rig::campaign::runner::RunnerError;
+use froude_swim::verb::VerbError;
 
 /// Why a job of the pipeline failed.
 #[derive(Debug, thiserror::Error)]
@@ -62,13 +64,9 @@ pub enum Error {
     #[error(transparent)]
     Runner(#[from] froude_rig::campaign::runner::RunnerError),
 
-    /// A robot file gives no robot.
+    /// A robot does not swim.
     #[error(transparent)]
-    Robot(#[from] froude_swim::robot::RobotError),
-
-    /// A file of the joints' motion does not fit the robot.
-    #[error(transparent)]
-    SwimInput(#[from] crate::swim::SwimInput),
+    Swim(VerbError),
 
     /// A campaign of flow computations cannot be used.
     #[error(transparent)]
@@ -86,46 +84,9 @@ pub enum Error {
     #[error("stopped as asked, nothing is lost: the same command resumes")]
     Stopped,
 
-    /// A sweep does not begin.
-    #[error(transparent)]
-    Sweep(#[from] crate::swim::sweep::SweepError),
-
-    /// Nothing can be drawn.
-    #[error(transparent)]
-    Draws(#[from] froude_swim::draws::DrawError),
-
-    /// A gait has no answer.
-    #[error(transparent)]
-    Swim(#[from] froude_swim::swim::SwimError),
-
     /// The report could not be drawn.
     #[error(transparent)]
     Report(#[from] froude_report::ReportError),
-
-    /// A folder or file of the output could not be made.
-    #[error("{}: cannot be written: {source}; choose another place with --out", .path.display())]
-    Output {
-        /// The folder or file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-
-    /// The folder of the results holds what a person wrote.
-    #[error(
-        "{} {}, and the folder {} is replaced as a whole; move the file out of it, or name another folder with --out",
-        .path.display(),
-        if *.is_changed { "was changed after Froude wrote it" } else { "was not written by Froude" },
-        .out.display()
-    )]
-    NotOurs {
-        /// The folder.
-        out: PathBuf,
-        /// The first such file.
-        path: PathBuf,
-        /// Froude wrote it, and somebody changed it.
-        is_changed: bool,
-    },
 
     /// A job failed in a folder that nobody sees, in the words of the one that it would have become.
     #[error("{text}")]
@@ -169,19 +130,6 @@ pub enum Error {
     TooMany {
         /// How many there are.
         estimates: usize,
-    },
-
-    /// Results would replace a file that is read.
-    #[error(
-        "{} holds {}, which is read: results there would replace it. Name another folder with --out",
-        .out.display(),
-        .record.display()
-    )]
-    ReplacesInput {
-        /// The folder of the results.
-        out: PathBuf,
-        /// The file.
-        record: PathBuf,
     },
 
     /// Data behind a record are fitted too.
@@ -241,6 +189,24 @@ impl From<MethodError> for Error {
     }
 }
 
+impl From<VerbError> for Error {
+    fn from(error: VerbError) -> Self {
+        match error {
+            VerbError::Record(error) => Self::Record(error),
+            error => Self::Swim(error),
+        }
+    }
+}
+
+impl From<WriteError> for Error {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Record(error) => Self::Record(error),
+            WriteError::Report(error) => Self::Report(error),
+        }
+    }
+}
+
 impl From<froude_added_mass::AddedMassError> for Error {
     fn from(error: froude_added_mass::AddedMassError) -> Self {
         MethodError::from(error).into()
@@ -260,24 +226,18 @@ impl Error {
             Self::Simulate(e) => e.is_bad_input(),
             Self::Identify(_)
             | Self::NotEmpty { .. }
-            | Self::NotOurs { .. }
             | Self::NoSource { .. }
             | Self::TooMany { .. }
-            | Self::ReplacesInput { .. }
             | Self::CountedTwice { .. }
             | Self::ReplacesMore { .. }
             | Self::OfAnotherMethod { .. }
             | Self::Drag(_)
             | Self::Servo(_)
             | Self::Tuning(_)
-            | Self::Robot(_)
-            | Self::SwimInput(_)
             | Self::CfdInput(_)
             | Self::CfdStore(_)
-            | Self::Sweep(_)
-            | Self::Draws(_)
             | Self::Swim(_) => true,
-            Self::Stopped | Self::Runner(_) | Self::OpenFoam(_) | Self::Report(_) | Self::Output { .. } => false,
+            Self::Stopped | Self::Runner(_) | Self::OpenFoam(_) | Self::Report(_) => false,
         }
     }
 

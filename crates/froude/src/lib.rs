@@ -21,7 +21,7 @@ pub use froude_panel as panel;
 pub use froude_records as records;
 pub use froude_report as report;
 pub use froude_rig as rig;
-pub use froude_swim as swimmer;
+pub use froude_swim as swim;
 
 /// The methods that make estimates of sources, by what they are measured with.
 pub mod methods {
@@ -43,7 +43,6 @@ pub mod predict;
 mod registry;
 pub mod results;
 mod steps_page;
-pub mod swim;
 pub mod twin;
 
 /// What most programs need.

@@ -336,7 +336,7 @@ fn reads_nothing_in(out: &Path, campaign: &Campaign) -> Result<(), Error> {
         matches!(source.input, campaign::Input::Record { .. } | campaign::Input::Table(_) | campaign::Input::Mesh(_))
     });
     let inputs = sources.map(|source| source.input.path()).chain(origins::records(campaign));
-    results::spares(out, inputs.chain([campaign.path.as_path()]))
+    Ok(results::spares(out, inputs.chain([campaign.path.as_path()]))?)
 }
 
 /// What a record states about itself that a comparison must take into account.

@@ -9,6 +9,7 @@ use froude_identify::dataset::{Dataset, LOADS};
 use froude_identify::lint::repeats::identical_copies;
 use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate};
 use froude_identify::reduce::rows_of;
+use froude_records::RecordError;
 use froude_records::csv_table::csv_bytes;
 use froude_records::estimate::{Estimate, EstimateFile, beside};
 use froude_records::finding::{Finding, Severity};
@@ -87,7 +88,7 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
     let mut out = of_rows(&record.estimates.iter().collect::<Vec<_>>(), &chosen, data)?.seen(seen);
     out.findings = [findings, out.findings].concat();
     if let Some(folder) = &job.out {
-        std::fs::create_dir_all(folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
+        std::fs::create_dir_all(folder).map_err(|source| RecordError::output(folder, &source))?;
         for predicted in &out.estimates {
             let path = folder.join(format!("predicted-{}.csv", in_a_file_name(&predicted.id)));
             spares(&path, [job.record.as_path(), job.table.as_path()].into_iter().chain(job.sidecar.as_deref()))?;

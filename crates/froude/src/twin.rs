@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use froude_identify::method::MethodError;
 use froude_identify::simulate::tables::{self, SimulateError};
+use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
 use froude_records::folder::UnfinishedFolder;
 use froude_records::output;
@@ -53,7 +54,7 @@ pub fn simulate(path: &Path, replace: bool) -> Result<Vec<Written>, Error> {
         let folder = UnfinishedFolder::beside(target)?;
         for file in &all {
             let place = folder.path().join(&file.name);
-            std::fs::write(&place, &file.content).map_err(|source| Error::Output { path: place.clone(), source })?;
+            std::fs::write(&place, &file.content).map_err(|source| RecordError::output(&place, &source))?;
         }
         let runs = all.iter().filter(|file| Path::new(&file.name).extension().is_some_and(|e| e == "csv")).count();
         let written = Written { source: source.name.clone(), path: target.to_owned(), count: runs, are_runs: true };

@@ -1,14 +1,14 @@
 //! `froude swim --sweep`: ranges of a gait's numbers.
 
 use froude::records::units::{Dimension, parse_quantity};
-use froude::swim::optimise::optimise;
-use froude::swim::sweep::{Ranges, SweepJob, sweep as run};
-use froude::swimmer::front::Objective;
-use froude::swimmer::sweep::Axis;
+use froude::report::write::write_files;
+use froude::swim::front::Objective;
+use froude::swim::sweep::Axis;
+use froude::swim::verb::{Ranges, SweepJob, optimise, sweep as run};
 
 use crate::args::SwimArgs;
 use crate::failure::Failure;
-use crate::out::{Bar, say};
+use crate::out::Bar;
 use crate::print;
 
 const EXAMPLE: &str = "ranges with their unit and how many values: 'amplitude=10..50 deg:9, phase=10..80 deg:8'";
@@ -26,30 +26,17 @@ pub fn sweep(text: &str, args: &SwimArgs, json: bool) -> Result<(), Failure> {
         draws: super::drawing(args),
         out: args.out.clone().unwrap_or_default(),
     };
+    let objectives = objectives(&args.optimise)?;
     let bar = Bar::of("rows");
-    if let Some(of) = objectives(&args.optimise)? {
-        let found = optimise(&job, of, &|done, all| bar.is_at(done, all));
-        bar.finish_and_clear();
-        let found = found?;
-        if json {
-            return print::json(&found.as_json());
-        }
-        print::summary(&found.section());
-        if !found.front.is_empty() {
-            say!("\nfront {}", found.written.display());
-        }
-        return Ok(());
-    }
-    let swept = run(&job, &|done, all| bar.is_at(done, all));
+    let tell = |done, all| bar.is_at(done, all);
+    let found = match objectives {
+        Some(of) => optimise(&job, of, &tell),
+        None => run(&job, &tell),
+    };
     bar.finish_and_clear();
-    let swept = swept?;
-    if json {
-        return print::json(&swept.as_json());
-    }
-    print::summary(&swept.section());
-    say!("\nreport {}", swept.report.display());
-    say!("sweep  {}", swept.written.display());
-    Ok(())
+    let found = found?;
+    write_files(&found)?;
+    print::answer(&found, json)
 }
 
 /// Two objectives that differ; `None` where a sweep is asked for.

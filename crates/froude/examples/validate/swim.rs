@@ -8,12 +8,12 @@ use froude::hydro::{Body, Link};
 use froude::records::estimate::Estimate;
 use froude::records::json::read_estimates;
 use froude::records::robot::read_robot;
-use froude::swimmer::gait::{Envelope, Gait};
-use froude::swimmer::joints::Drives;
-use froude::swimmer::planar::Inertia;
-use froude::swimmer::robot::Robot;
-use froude::swimmer::shares::{Distribution, SMOOTH_M_S, Torque, shares};
-use froude::swimmer::swim::Swim;
+use froude::swim::gait::{Envelope, Gait};
+use froude::swim::joints::Drives;
+use froude::swim::planar::Inertia;
+use froude::swim::robot::Robot;
+use froude::swim::shares::{Distribution, SMOOTH_M_S, Torque, shares};
+use froude::swim::swim::Swim;
 
 use crate::claims::{Claims, Verdict};
 

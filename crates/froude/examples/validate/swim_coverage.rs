@@ -11,10 +11,10 @@ use froude::hydro::drag::DragModel;
 use froude::pipeline::{Job, identify};
 use froude::records::robot::{FromRecord, RobotFile, read_robot};
 use froude::records::write::write_atomically;
-use froude::swimmer::blueprint::Blueprint;
-use froude::swimmer::draws::interval_95;
-use froude::swimmer::gait::Envelope;
-use froude::swimmer::robot::Robot;
+use froude::swim::blueprint::Blueprint;
+use froude::swim::draws::interval_95;
+use froude::swim::gait::Envelope;
+use froude::swim::robot::Robot;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 

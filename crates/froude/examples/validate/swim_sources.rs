@@ -11,11 +11,11 @@ use froude::records::page::{Chart, ChartPanel, Mark, Series};
 use froude::records::robot::{FromRecord, RobotFile, read_robot};
 use froude::records::write::write_atomically;
 use froude::report::chart;
-use froude::swimmer::blueprint::Blueprint;
-use froude::swimmer::draws::interval_95;
-use froude::swimmer::gait::{Envelope, Gait};
-use froude::swimmer::robot::Robot;
-use froude::swimmer::shares::Torque;
+use froude::swim::blueprint::Blueprint;
+use froude::swim::draws::interval_95;
+use froude::swim::gait::{Envelope, Gait};
+use froude::swim::robot::Robot;
+use froude::swim::shares::Torque;
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};

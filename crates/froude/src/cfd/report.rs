@@ -19,6 +19,7 @@ use froude_cfd::case::Case;
 use froude_cfd::outcome::Outcome;
 use froude_cfd::result::attempt_folder;
 use froude_cfd::store::{State, Store};
+use froude_records::RecordError;
 use froude_records::page::{Chart, DocumentSection, TextTable};
 use froude_records::text::counted;
 use froude_records::write::write_atomically;
@@ -250,7 +251,7 @@ fn write(out: &Path, page: &Document) -> Result<Vec<String>, Error> {
     let html = page.html()?;
     results::replace(out, |folder| {
         let place = folder.join("figures");
-        std::fs::create_dir(&place).map_err(|source| Error::Output { path: place.clone(), source })?;
+        std::fs::create_dir(&place).map_err(|source| RecordError::output(&place, &source))?;
         for (name, svg) in &figures {
             write_atomically(&place.join(name), svg.as_bytes())?;
         }

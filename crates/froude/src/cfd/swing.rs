@@ -14,6 +14,7 @@ use froude_cfd::orphans;
 use froude_cfd::oscillation::{Period, Swing, swing as compute};
 use froude_cfd::solve::{How, Progress};
 use froude_cfd::store::check_links;
+use froude_records::RecordError;
 use froude_records::campaign::{Input, Source, SourceKind, read_campaign};
 use froude_records::hash::sha256_of_bytes;
 use froude_records::number::significant;
@@ -112,7 +113,7 @@ pub fn swing(
     let asked = Asked::of(&read, source, folder)?;
     let programs = OpenFoam::find()?;
     for path in [&asked.folder, runs] {
-        std::fs::create_dir_all(path).map_err(|source| Error::Output { path: path.to_owned(), source })?;
+        std::fs::create_dir_all(path).map_err(|source| RecordError::output(path, &source))?;
     }
     let all = prepared(&asked, &setup, planned, cancel, now)?;
     let _lock = Lock::take(&asked.folder)?;
@@ -149,7 +150,7 @@ pub fn swing(
 
 /// Everything in the folder of the runs must be of this plan and of these inputs: `froude identify` fits whatever lies there.
 fn check_logs(runs: &Path, all: &[Job]) -> Result<(), Error> {
-    let failed = |source| Error::Output { path: runs.to_owned(), source };
+    let failed = |source| RecordError::output(runs, &source);
     for entry in std::fs::read_dir(runs).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         let job = all.iter().find(|job| path.file_stem().is_some_and(|stem| *stem == *job.planned.id));
@@ -288,7 +289,7 @@ fn one(
 ) -> Result<Option<(Option<Period>, f64)>, Error> {
     let own = folder.join(&job.planned.id);
     orphans::end(&own);
-    let failed = |source| Error::Output { path: own.clone(), source };
+    let failed = |source| RecordError::output(&own, &source);
     // What was begun carries a mark; anything else of this name is somebody's.
     let mark = own.join(MARK);
     if mark.exists() {

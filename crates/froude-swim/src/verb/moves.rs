@@ -3,19 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use froude_records::RecordError;
+use froude_records::block::{ResultColumn, facts};
 use froude_records::gait_file::{GaitForm, PitchFile, read_gait};
 use froude_records::motor_file::read_motor;
-use froude_records::number::significant;
 use froude_records::table::{Table, read_table};
 use froude_records::units::Dimension;
-use froude_swim::course::{Ramped, Recorded};
-use froude_swim::drive::Motor;
-use froude_swim::gait::{Course, Envelope, Gait, Shape};
-use froude_swim::joints::Drives;
 
-use serde_json::{Value, json};
-
-use super::SwimInput;
+use super::VerbError;
+use crate::course::{Ramped, Recorded};
+use crate::drive::Motor;
+use crate::gait::{Course, Envelope, Gait, Shape};
+use crate::joints::Drives;
 
 /// What is asked of the joints.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,33 +94,32 @@ impl Course for FromRest<'_> {
 }
 
 /// The gait of a file for so many joints that yaw.
-pub(super) fn flat_gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, crate::Error> {
+pub(super) fn flat_gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, VerbError> {
     let gait = gait_of(path, typed, joints)?;
     if gait.pitch.is_some() {
-        let problem =
-            "has pitch, and joints of a plane yaw: leave it out, or write space = \"3d\" in the robot file".to_owned();
-        return Err(SwimInput { path: path.to_owned(), problem }.into());
+        let problem = "has pitch, and joints of a plane yaw: leave it out, or write space = \"3d\" in the robot file";
+        return Err(VerbError::input(path, problem));
     }
     Ok(gait)
 }
 
 /// The gait of a file for so many joints.
-pub(super) fn gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, crate::Error> {
+pub(super) fn gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, VerbError> {
     let file = read_gait(path)?;
-    let wrong = |problem: String| SwimInput { path: path.to_owned(), problem };
+    let wrong = |problem: String| VerbError::input(path, problem);
     let envelope = match file.form {
         GaitForm::Lateral => Envelope::Lateral,
         GaitForm::Eel => Envelope::Eel,
         GaitForm::Factors(factors) if factors.len() != joints => {
             let problem =
                 format!("envelope has {} factors, and the robot has {joints} joints: write one of each", factors.len());
-            return Err(wrong(problem).into());
+            return Err(wrong(problem));
         }
         GaitForm::Factors(factors) => Envelope::Factors(factors),
         GaitForm::Table { path: table, .. } => {
             if *typed != Typed::default() {
                 let problem = "takes its angles from a table; --amplitude, --frequency, --phase and --turn mean nothing beside it: leave them out";
-                return Err(wrong(problem.to_owned()).into());
+                return Err(wrong(problem.to_owned()));
             }
             let cycle = recorded(&table, joints, true)?;
             return Ok(Periodically { wave: Wave::Table(cycle), ramp_s: file.ramp_s, pitch: file.pitch });
@@ -144,9 +141,9 @@ pub(super) fn gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Perio
 }
 
 /// Joint angles of a table.
-pub(super) fn recorded(path: &Path, joints: usize, is_cycle: bool) -> Result<Recorded, crate::Error> {
+pub(super) fn recorded(path: &Path, joints: usize, is_cycle: bool) -> Result<Recorded, VerbError> {
     let table = read_table(path, None)?;
-    let wrong = |problem: String| crate::Error::from(SwimInput { path: path.to_owned(), problem });
+    let wrong = |problem: String| VerbError::input(path, problem);
     let time = table.number("time", Dimension::TIME)?;
     let angles: Vec<Vec<f64>> = (1..=joints).map(|i| angle(&table, i)).collect::<Result<_, _>>()?;
     let next = format!("phi_{}", joints + 1);
@@ -192,7 +189,7 @@ pub(super) fn with_motor(drives: Drives, path: &Path) -> Result<Drives, RecordEr
 
 /// What was asked of the joints.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Asked {
+pub(super) struct Asked {
     /// A gait file or a recording, with what it is.
     pub file: Option<(&'static str, PathBuf)>,
     /// The gait in numbers, where it has them.
@@ -223,34 +220,19 @@ impl Asked {
         }
     }
 
-    /// Name, value and unit of each.
-    pub(super) fn words(&self) -> Vec<(&'static str, String, &'static str)> {
-        let mut out: Vec<(&'static str, String, &'static str)> =
-            self.file.iter().map(|(name, path)| (*name, path.display().to_string(), "")).collect();
-        if let Some(gait) = &self.gait {
-            let degrees = |x: f64| significant(x.to_degrees(), 5);
-            out.extend([
-                ("gait", Self::form(gait).to_owned(), ""),
-                ("amplitude", degrees(gait.amplitude), "deg"),
-                ("frequency", degrees(gait.frequency), "deg/s"),
-                ("phase", degrees(gait.phase), "deg"),
-                ("turn", degrees(gait.turn), "deg"),
-            ]);
-        }
-        out.extend(self.ramp_s.map(|ramp_s| ("ramp of the trajectory", significant(ramp_s, 4), "s")));
-        out
-    }
-
-    /// The same in SI.
-    pub(super) fn as_json(&self) -> Value {
-        json!({
-            "file": self.file.as_ref().map(|(_, path)| path),
-            "gait": self.gait.as_ref().map(Self::form),
-            "amplitude_rad": self.gait.as_ref().map(|g| g.amplitude),
-            "frequency_rad_s": self.gait.as_ref().map(|g| g.frequency),
-            "phase_rad": self.gait.as_ref().map(|g| g.phase),
-            "turn_rad": self.gait.as_ref().map(|g| g.turn),
-            "ramp_s": self.ramp_s,
-        })
+    /// Facts of it.
+    pub(super) fn columns(&self) -> Vec<ResultColumn> {
+        let f = facts("", "", self);
+        let file = self.file.as_ref().map_or("gait file", |(name, _)| name);
+        let gait = |of: fn(&Gait) -> f64| move |asked: &Self| asked.gait.as_ref().map(of);
+        vec![
+            f.text("asked/file", file, |a| a.file.as_ref().map(|(_, path)| path.display().to_string())),
+            f.text("asked/gait", "gait", |a| a.gait.as_ref().map(|gait| Self::form(gait).to_owned())),
+            f.number("asked/amplitude_rad", "amplitude [deg]", gait(|g| g.amplitude)).plain(5),
+            f.number("asked/frequency_rad_s", "frequency [deg/s]", gait(|g| g.frequency)).plain(5),
+            f.number("asked/phase_rad", "phase [deg]", gait(|g| g.phase)).plain(5),
+            f.number("asked/turn_rad", "turn [deg]", gait(|g| g.turn)).plain(5),
+            f.number("asked/ramp_s", "ramp of the trajectory [s]", |a| a.ramp_s),
+        ]
     }
 }

@@ -1,36 +1,15 @@
-//! What is said of a sweep, to a person and to a program.
+//! What is said of a sweep.
 
 use std::collections::BTreeMap;
 
-use froude_records::number::{count, fixed, interval, significant};
-use froude_records::page::{DocumentSection, TextTable};
+use froude_records::block::{Block, ResultTable, TableBuilder, facts};
+use froude_records::number::count;
 use froude_records::text::counted;
-use froude_swim::draws::envelope_95;
-use froude_swim::sweep::{COLUMNS, Row, Status};
-use serde_json::{Map, Value, json};
 
-use super::Swept;
-use crate::swim::uncertain::bodies;
-
-/// What a table of gaits says of each, behind its name.
-pub(in crate::swim) const HEAD: [&str; 9] = [
-    "gait",
-    "amplitude, deg",
-    "frequency, deg/s",
-    "phase, deg",
-    "turn, deg",
-    "speed, m/s",
-    "net power, W",
-    "cost, J/m",
-    "torque, N m",
-];
-
-/// The same of a row.
-pub(in crate::swim) fn cells(row: &Row) -> Vec<String> {
-    let gait = ["amplitude", "frequency", "phase", "turn"].map(|key| fixed(row.get(key).to_degrees(), 2));
-    let found = ["speed", "power_net", "cot", "torque_peak"].map(|key| significant(row.get(key), 4));
-    [gait, found].concat()
-}
+use super::{Swept, gaits};
+use crate::draws::envelope_95;
+use crate::sweep::{Row, Status};
+use crate::verb::uncertain::{bodies, of_draws};
 
 impl Swept {
     /// Gaits with an answer by the estimate: the first row of each.
@@ -66,29 +45,51 @@ impl Swept {
         all
     }
 
-    /// What a person reads.
-    #[must_use]
-    pub fn section(&self) -> DocumentSection {
-        let row = |(name, at): (&str, usize)| {
-            let row = &self.rows[at];
-            let cell = |column: &str| self.interval(at, column).map_or_else(String::new, interval);
-            let of_draws = if self.drawn.is_some() { vec![cell("speed"), cell("cot")] } else { Vec::new() };
-            [vec![name.to_owned()], cells(row), of_draws].concat()
-        };
-        let mut head = HEAD.to_vec();
+    /// Its best gaits, and what else is to be known.
+    pub(super) fn blocks(&self) -> Vec<Block> {
+        vec![
+            self.about().into(),
+            self.statuses_table().into(),
+            self.best_table().into(),
+            Block::text("remarks", self.sentences()),
+        ]
+    }
+
+    fn about(&self) -> ResultTable {
+        let f = facts("", "", self);
+        let mut columns = vec![
+            f.text("robot", "", |s| s.name.clone()),
+            f.count("rows", "", |s| s.rows.len()),
+            f.count("gaits", "", |s| s.rows.len() / s.each),
+            f.count("resumed_rows", "", |s| s.resumed),
+        ];
+        columns.extend(self.drawn.iter().flat_map(of_draws));
+        f.build(columns)
+    }
+
+    fn statuses_table(&self) -> ResultTable {
+        let f = facts("statuses", "", self);
+        let one = |(status, n): (Status, usize)| f.count(status.name(), "", move |_| n);
+        let columns = self.statuses().into_iter().map(one).collect();
+        f.build(columns)
+    }
+
+    fn best_table(&self) -> ResultTable {
+        let caption = format!("{}: {}", self.name, counted(self.rows.len() / self.each, "gait", "gaits"));
+        let best = self.best();
+        let t = TableBuilder::new("best", caption, &best);
+        let mut columns = vec![t.text("name", "gait", |(name, _)| (*name).to_owned())];
+        columns.extend(gaits::columns(&t, |(_, at)| &self.rows[*at]));
         if self.drawn.is_some() {
-            head.extend(["speed, 95 %", "cost, 95 %"]);
+            columns.extend([
+                t.interval("speed_interval_95_m_s", "speed, 95 % [m/s]", |(_, at)| self.interval(*at, "speed")),
+                t.interval("power_net_interval_95_w", "", |(_, at)| self.interval(*at, "power_net")),
+                t.interval("cost_of_transport_interval_95_j_m", "cost, 95 % [J/m]", |(_, at)| {
+                    self.interval(*at, "cot")
+                }),
+            ]);
         }
-        DocumentSection {
-            title: self.name.clone(),
-            paragraphs: self.sentences(),
-            tables: vec![TextTable {
-                caption: format!("{}: {}", self.name, counted(self.rows.len() / self.each, "gait", "gaits")),
-                head: head.into_iter().map(str::to_owned).collect(),
-                rows: self.best().into_iter().map(row).collect(),
-            }],
-            charts: Vec::new(),
-        }
+        t.build(columns)
     }
 
     fn sentences(&self) -> Vec<String> {
@@ -140,45 +141,4 @@ impl Swept {
         }
         out
     }
-
-    /// The same for a program, each number in SI.
-    #[must_use]
-    pub fn as_json(&self) -> Value {
-        let statuses: Map<String, Value> =
-            self.statuses().into_iter().map(|(status, n)| (status.name().to_owned(), json!(n))).collect();
-        let best: Map<String, Value> =
-            self.best().into_iter().map(|(name, at)| (name.replace(' ', "_"), self.of_gait(at))).collect();
-        json!({
-            "robot": self.name,
-            "data": self.data,
-            "rows": self.rows.len(),
-            "gaits": self.rows.len() / self.each,
-            "draws": self.drawn.map(|(d, laws, beyond)| json!({"n": d.n, "laws": laws, "seed": d.seed, "brought_back": beyond.brought_back, "refused": beyond.refused})),
-            "statuses": statuses,
-            "best": best,
-            "resumed_rows": self.resumed,
-            "sweep": self.written,
-            "report": self.report,
-            "units": COLUMNS.iter().map(|(name, unit)| ((*name).to_owned(), json!(unit))).collect::<Map<_, _>>(),
-            "remarks": self.sentences(),
-        })
-    }
-
-    fn of_gait(&self, at: usize) -> Value {
-        let mut row = of_row(&self.rows[at]);
-        if let Value::Object(row) = &mut row
-            && self.drawn.is_some()
-        {
-            let ends = |column: &str| json!(self.interval(at, column));
-            row.insert("speed_interval_95".to_owned(), ends("speed"));
-            row.insert("power_net_interval_95".to_owned(), ends("power_net"));
-            row.insert("cot_interval_95".to_owned(), ends("cot"));
-        }
-        row
-    }
-}
-
-/// A row by the names of its columns; what is no number is null.
-pub(in crate::swim) fn of_row(row: &Row) -> Value {
-    COLUMNS.iter().zip(row.numbers).map(|((name, _), x)| ((*name).to_owned(), json!(x))).collect::<Map<_, _>>().into()
 }

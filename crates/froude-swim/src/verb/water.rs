@@ -2,8 +2,8 @@
 //!
 //! **Frame.** The tank's, z down: seen from above, y is to the right of x. **Units.** SI.
 
-use froude_swim::chain::Chain;
-use froude_swim::trajectory::Moment;
+use crate::chain::Chain;
+use crate::trajectory::Moment;
 
 /// A link at a moment.
 #[derive(Debug, Clone, Copy)]

@@ -1,46 +1,10 @@
-//! The report of a swim in three dimensions: the answer with its remarks, and the way in figures.
+//! The way of a swimmer in three dimensions, in figures.
 
-use froude_records::page::{Chart, DocumentSection};
-use froude_report::ReportError;
-use froude_report::document::Document;
-use froude_swim::spatial::swim::SpatialMoment;
+use froude_records::block::Block;
+use froude_records::page::Chart;
 
-use super::SpatialSwum;
-use super::report::{joint_chart, line, panel};
-
-impl SpatialSwum {
-    /// The page as one self-contained HTML file.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError`] when the drawing library refuses a chart.
-    pub fn page(&self, moments: &[SpatialMoment], date: Option<String>) -> Result<String, ReportError> {
-        let summary = DocumentSection { title: "The answer".to_owned(), ..self.section() };
-        let way = DocumentSection {
-            title: "The way".to_owned(),
-            charts: vec![path(moments), attitude(moments), motion(moments)],
-            ..DocumentSection::default()
-        };
-        let joints = DocumentSection {
-            title: "Joints".to_owned(),
-            charts: vec![joints(moments), powers(moments)],
-            ..DocumentSection::default()
-        };
-        Document {
-            sort: "Swimming robot".to_owned(),
-            title: self.name.clone(),
-            subtitle: format!(
-                "{} modules in three dimensions, drag of {}",
-                self.robot.chain.links.len(),
-                self.robot.plane.estimates.0
-            ),
-            date,
-            sections: vec![summary, way, joints],
-            ..Document::default()
-        }
-        .html()
-    }
-}
+use super::figures::{joint_chart, line, panel};
+use crate::spatial::swim::SpatialMoment;
 
 fn column(moments: &[SpatialMoment], of: impl Fn(&SpatialMoment) -> f64) -> Vec<f64> {
     moments.iter().map(of).collect()
@@ -50,9 +14,9 @@ fn time(moments: &[SpatialMoment]) -> Vec<f64> {
     column(moments, |m| m.time_s)
 }
 
-fn path(moments: &[SpatialMoment]) -> Chart {
+pub(super) fn path(moments: &[SpatialMoment]) -> Block {
     let x = column(moments, |m| m.centre_m[0]);
-    Chart {
+    Block::Chart(Chart {
         name: "path".to_owned(),
         title: "Path in the tank".to_owned(),
         caption:
@@ -64,13 +28,13 @@ fn path(moments: &[SpatialMoment]) -> Chart {
             panel("z [m]", vec![line("centre of mass", &x, column(moments, |m| m.centre_m[2]))]),
         ],
         ..Chart::default()
-    }
+    })
 }
 
-fn attitude(moments: &[SpatialMoment]) -> Chart {
+pub(super) fn attitude(moments: &[SpatialMoment]) -> Block {
     let time = time(moments);
     let angle = |k: usize| column(moments, |m| m.angles[k].to_degrees());
-    Chart {
+    Block::Chart(Chart {
         name: "attitude".to_owned(),
         title: "How the head lies".to_owned(),
         caption: "Roll (starboard down), pitch (bow up) and heading of the head.".to_owned(),
@@ -80,16 +44,16 @@ fn attitude(moments: &[SpatialMoment]) -> Chart {
             panel("heading [deg]", vec![line("heading", &time, angle(2))]),
         ],
         ..Chart::default()
-    }
+    })
 }
 
-fn motion(moments: &[SpatialMoment]) -> Chart {
+pub(super) fn motion(moments: &[SpatialMoment]) -> Block {
     let time = time(moments);
     let lines = |from: usize, names: [&str; 3], scale: f64| {
         let one = |k: usize| line(names[k], &time, column(moments, |m| scale * m.state.head[from + k]));
         vec![one(0), one(1), one(2)]
     };
-    Chart {
+    Block::Chart(Chart {
         name: "motion".to_owned(),
         title: "Motion of the head".to_owned(),
         caption: "Motion of the head through the water in its own axes: forward, to starboard, down.".to_owned(),
@@ -99,20 +63,20 @@ fn motion(moments: &[SpatialMoment]) -> Chart {
             panel("turn rate [deg/s]", lines(0, ["roll", "pitch", "yaw"], 1_f64.to_degrees())),
         ],
         ..Chart::default()
-    }
+    })
 }
 
-fn joints(moments: &[SpatialMoment]) -> Chart {
+pub(super) fn joints(moments: &[SpatialMoment]) -> Block {
     let n = moments.first().map_or(0, |m| m.torque_n_m.len());
     joint_chart(&time(moments), n, &|i| column(moments, |m| m.shape.angle[i].to_degrees()), &|i| {
         column(moments, |m| m.torque_n_m[i])
     })
 }
 
-fn powers(moments: &[SpatialMoment]) -> Chart {
+pub(super) fn powers(moments: &[SpatialMoment]) -> Block {
     let time = time(moments);
     let series = ["net, of the motors", "positive", "drag"].iter().enumerate();
-    Chart {
+    Block::Chart(Chart {
         name: "powers".to_owned(),
         title: "Powers".to_owned(),
         caption: "What the motors give, its positive part, and what drag takes; between net power and drag lie the kinetic energy of body and water and what weight and buoyancy do.".to_owned(),
@@ -122,5 +86,5 @@ fn powers(moments: &[SpatialMoment]) -> Chart {
             series.map(|(k, name)| line(name, &time, column(moments, |m| m.power_w[k]))).collect(),
         )],
         ..Chart::default()
-    }
+    })
 }

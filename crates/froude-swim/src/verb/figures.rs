@@ -1,54 +1,17 @@
-//! The report of a swim: the answer with its remarks, and the way in figures.
+//! The way of a swimmer in the plane, in figures.
 
+use froude_records::block::Block;
 use froude_records::number::{degrees, significant};
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series};
-use froude_report::ReportError;
-use froude_report::document::Document;
-use froude_swim::planar::dot;
-use froude_swim::robot::Robot;
-use froude_swim::trajectory::Moment;
+use froude_records::page::{Chart, ChartPanel, Mark, Series};
 
-use super::Swum;
-use super::uncertain::Uncertain;
+use crate::planar::dot;
+use crate::robot::Robot;
+use crate::trajectory::Moment;
 
 /// Most joints that get a line each.
 const MOST_LINES: usize = 5;
 /// Points of a distribution.
 const POINTS: usize = 90;
-
-impl Swum {
-    /// The page as one self-contained HTML file.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError`] when the drawing library refuses a chart.
-    pub fn page(&self, moments: &[Moment], date: Option<String>) -> Result<String, ReportError> {
-        let summary = DocumentSection { title: "The answer".to_owned(), ..self.section() };
-        let way = DocumentSection {
-            title: "The way".to_owned(),
-            charts: vec![path(moments), motion(moments)],
-            ..DocumentSection::default()
-        };
-        let joints = DocumentSection {
-            title: "Joints".to_owned(),
-            charts: vec![joints(moments), powers(moments)],
-            ..DocumentSection::default()
-        };
-        let uncertain = self.uncertain.iter().flat_map(Uncertain::sections);
-        Document {
-            sort: "Swimming robot".to_owned(),
-            title: self.name.clone(),
-            subtitle: format!("{} modules, drag of {}", self.robot.chain.links.len(), self.robot.estimates.0),
-            date,
-            sections: std::iter::once(summary)
-                .chain(uncertain)
-                .chain([way, joints, losses(&self.robot, moments)])
-                .collect(),
-            ..Document::default()
-        }
-        .html()
-    }
-}
 
 fn column(moments: &[Moment], of: impl Fn(&Moment) -> f64) -> Vec<f64> {
     moments.iter().map(of).collect()
@@ -62,10 +25,10 @@ pub(super) fn panel(y_label: &str, series: Vec<Series>) -> ChartPanel {
     ChartPanel { y_label: y_label.to_owned(), series, ..ChartPanel::default() }
 }
 
-fn path(moments: &[Moment]) -> Chart {
+pub(super) fn path(moments: &[Moment]) -> Block {
     let centre = line("centre of mass", &column(moments, |m| m.centre_m[0]), column(moments, |m| m.centre_m[1]));
     let head = line("head", &column(moments, |m| m.state.place_m[0]), column(moments, |m| m.state.place_m[1]));
-    Chart {
+    Block::Chart(Chart {
         name: "path".to_owned(),
         title: "Path in the tank".to_owned(),
         caption:
@@ -74,13 +37,13 @@ fn path(moments: &[Moment]) -> Chart {
         x_label: "x [m]".to_owned(),
         panels: vec![panel("y [m]", vec![head, centre])],
         ..Chart::default()
-    }
+    })
 }
 
-fn motion(moments: &[Moment]) -> Chart {
+pub(super) fn motion(moments: &[Moment]) -> Block {
     let time = column(moments, |m| m.time_s);
     let turning = column(moments, |m| m.state.head[0].to_degrees());
-    Chart {
+    Block::Chart(Chart {
         name: "motion".to_owned(),
         title: "Motion of the head".to_owned(),
         caption: "Speed of the head through the water along and across its own axis, and its turn rate.".to_owned(),
@@ -96,10 +59,10 @@ fn motion(moments: &[Moment]) -> Chart {
             panel("turn rate [deg/s]", vec![line("turn rate", &time, turning)]),
         ],
         ..Chart::default()
-    }
+    })
 }
 
-fn joints(moments: &[Moment]) -> Chart {
+pub(super) fn joints(moments: &[Moment]) -> Block {
     let n = moments.first().map_or(0, |m| m.torque_n_m.len());
     joint_chart(&column(moments, |m| m.time_s), n, &|i| column(moments, |m| m.shape.angle[i].to_degrees()), &|i| {
         column(moments, |m| m.torque_n_m[i])
@@ -112,7 +75,7 @@ pub(super) fn joint_chart(
     n: usize,
     angle_deg: &dyn Fn(usize) -> Vec<f64>,
     torque_n_m: &dyn Fn(usize) -> Vec<f64>,
-) -> Chart {
+) -> Block {
     // Of many joints those that are evenly spaced from the head to the tail.
     let shown: Vec<usize> = if n <= MOST_LINES {
         (0..n).collect()
@@ -122,17 +85,17 @@ pub(super) fn joint_chart(
     let lines = |of: &dyn Fn(usize) -> Vec<f64>| -> Vec<Series> {
         shown.iter().map(|i| line(&format!("joint {}", i + 1), time_s, of(*i))).collect()
     };
-    Chart {
+    Block::Chart(Chart {
         name: "joints".to_owned(),
         title: "Joints".to_owned(),
         caption: format!("Angles of {} joints of {n} from the head, and the torques of their motors.", shown.len()),
         x_label: "time [s]".to_owned(),
         panels: vec![panel("angle [deg]", lines(angle_deg)), panel("torque [N m]", lines(torque_n_m))],
         ..Chart::default()
-    }
+    })
 }
 
-fn powers(moments: &[Moment]) -> Chart {
+pub(super) fn powers(moments: &[Moment]) -> Block {
     let time = column(moments, |m| m.time_s);
     let mut series = vec![
         line("net, of the motors", &time, column(moments, |m| m.power_w[0])),
@@ -142,18 +105,18 @@ fn powers(moments: &[Moment]) -> Chart {
     if moments.iter().any(|m| m.power_w[3] > 0.0) {
         series.push(line("friction of the joints", &time, column(moments, |m| m.power_w[3])));
     }
-    Chart {
+    Block::Chart(Chart {
         name: "powers".to_owned(),
         title: "Powers".to_owned(),
         caption: "What the motors give, its positive part, and what drag takes; between net power and drag lies kinetic energy of body and water.".to_owned(),
         x_label: "time [s]".to_owned(),
         panels: vec![panel("power [W]", series)],
         ..Chart::default()
-    }
+    })
 }
 
 /// Shares of the loss by angle to the flow and by speed, with what the drag was fitted at.
-fn losses(robot: &Robot, moments: &[Moment]) -> DocumentSection {
+pub(super) fn losses(robot: &Robot, moments: &[Moment]) -> Vec<Block> {
     // Angle, speed, power of each link at each moment.
     let mut all: Vec<[f64; 3]> = Vec::new();
     for moment in moments {
@@ -178,7 +141,7 @@ fn losses(robot: &Robot, moments: &[Moment]) -> DocumentSection {
         (x, y.collect::<Vec<f64>>())
     };
     let fastest = all.iter().map(|l| l[1]).fold(f64::MIN_POSITIVE, f64::max);
-    let mut charts = Vec::new();
+    let mut charts: Vec<Block> = Vec::new();
     let mut paragraphs = vec![
         "How much of what drag takes is of links below an angle to the flow, and below a speed. What lies outside of the fitted range is extrapolated by the law."
             .to_owned(),
@@ -210,14 +173,14 @@ fn losses(robot: &Robot, moments: &[Moment]) -> DocumentSection {
             };
             paragraphs.push(format!("The drag was fitted at {article} {name} of {} to {}.", unit[0], unit[1]));
         }
-        charts.push(Chart {
+        charts.push(Block::Chart(Chart {
             name: format!("loss-by-{name}"),
             title: format!("Loss by {name}"),
             caption: format!("Share of the loss that is of links whose {name} is below the abscissa."),
             x_label: label.to_owned(),
             panels: vec![panel("share of the loss [%]", series)],
             ..Chart::default()
-        });
+        }));
     }
-    DocumentSection { title: "Where the power goes".to_owned(), paragraphs, tables: Vec::new(), charts }
+    [vec![Block::text("", paragraphs)], charts].concat()
 }

@@ -1,13 +1,11 @@
-//! The page of a sweep: what stands out, and speed and cost as maps or lines over what was swept.
+//! The figures of a sweep: speed and cost as maps or lines over what was swept.
 
+use froude_records::block::{Block, Section};
 use froude_records::number::significant;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Scale, Series};
-use froude_report::ReportError;
-use froude_report::document::Document;
-use froude_report::map::Map;
-use froude_swim::sweep::{Row, Status};
+use froude_records::page::{Chart, ChartPanel, Map, Scale, Series};
 
 use super::Swept;
+use crate::sweep::{Row, Status};
 
 /// Columns of a gait, with their labels in degrees.
 const AXES: [(&str, &str); 4] = [
@@ -21,29 +19,18 @@ const SHOWN: [(&str, &str, &str, bool); 2] =
     [("speed", "speed [m/s]", "fastest", true), ("cot", "cost of transport [J/m]", "least cost", false)];
 
 impl Swept {
-    /// The page as one self-contained HTML file.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError`] when the drawing library refuses a figure.
-    pub fn page(&self) -> Result<String, ReportError> {
+    /// Maps of speed and cost, or lines over what was swept.
+    pub(super) fn figures(&self) -> Option<Section> {
         let swept: Vec<Varied> = AXES.iter().filter_map(|(key, label)| self.axis(key, label)).collect();
-        let summary = DocumentSection { title: "What stands out".to_owned(), ..self.section() };
-        let mut sections = vec![summary];
-        let mut maps = Vec::new();
-        match &swept[..] {
-            [] => {}
-            [axis] => sections.push(self.lines(axis)),
-            [x, y, ..] => maps.extend(SHOWN.iter().filter_map(|shown| self.map((x, y), shown))),
-        }
-        Document {
-            sort: "Swimming robot · sweep of gaits".to_owned(),
-            title: self.name.clone(),
-            sections,
-            maps,
-            ..Document::default()
-        }
-        .html()
+        let (title, blocks) = match &swept[..] {
+            [] => return None,
+            [axis] => (format!("Over the {}", axis.key), vec![Block::Chart(self.lines(axis))]),
+            [x, y, ..] => {
+                let maps = SHOWN.iter().filter_map(|shown| self.map((x, y), shown)).map(Block::Map);
+                ("Maps".to_owned(), maps.collect())
+            }
+        };
+        Some(Section { title, blocks, is_detail: true, ..Section::default() })
     }
 
     /// An axis with more than one value.
@@ -59,7 +46,7 @@ impl Swept {
         self.rows.iter().filter(|row| row.get("draw") == 0.0)
     }
 
-    fn lines(&self, axis: &Varied) -> DocumentSection {
+    fn lines(&self, axis: &Varied) -> Chart {
         let rows: Vec<&Row> = self.estimated().collect();
         let x: Vec<f64> = rows.iter().map(|row| row.get(axis.key).to_degrees()).collect();
         let panel = |(key, label): (&str, &str)| ChartPanel {
@@ -72,15 +59,14 @@ impl Swept {
             ..ChartPanel::default()
         };
         let shown = [("speed", "speed [m/s]"), ("power_net", "net power [W]"), ("cot", "cost of transport [J/m]")];
-        let chart = Chart {
+        Chart {
             name: "sweep".to_owned(),
             title: format!("Speed, power and cost over the {}", axis.key),
             caption: format!("Over the {}; a gait without an answer leaves a gap.", axis.key),
             x_label: axis.label.to_owned(),
             panels: shown.into_iter().map(panel).collect(),
             ..Chart::default()
-        };
-        DocumentSection { title: format!("Over the {}", axis.key), charts: vec![chart], ..DocumentSection::default() }
+        }
     }
 
     /// The plane of two axes through the best gait; `None` where no gait has an answer.

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use froude_records::estimate::DataFile;
 use froude_records::hash::sha256_of_file;
+use froude_records::results::spares;
 use froude_records::robot::{AddedFile, RobotFile, is_urdf, sidecar_of_urdf};
 
+use super::VerbError;
 use super::moves::Moves;
-use crate::{Error, results};
 
 /// Files with what each was read as.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,12 +46,12 @@ impl Reads {
     }
 
     /// Refuses results in a folder that holds one of them, or in place of one.
-    pub(super) fn spared_by(&self, out: &Path) -> Result<(), Error> {
-        results::spares(out, self.0.iter().map(|(_, path)| path.as_path()))
+    pub(super) fn spared_by(&self, out: &Path) -> Result<(), VerbError> {
+        Ok(spares(out, self.0.iter().map(|(_, path)| path.as_path()))?)
     }
 
     /// With their fingerprints.
-    pub(super) fn data(&self) -> Result<Vec<DataFile>, Error> {
+    pub(super) fn data(&self) -> Result<Vec<DataFile>, VerbError> {
         let one = |(role, path): &(&'static str, PathBuf)| {
             Ok(DataFile {
                 path: path.display().to_string(),

@@ -5,32 +5,33 @@
 //!
 //! **Order.** Amplitude, frequency, phase, turn, draw, the last the fastest.
 
-mod page;
+mod figures;
+pub(super) mod gaits;
 mod parts;
-pub(super) mod told;
+mod told;
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use froude_records::estimate::DataFile;
-use froude_records::manifest::{may_replace, take_own_place};
-use froude_records::table::{Column, ColumnData, Table, prepare_table};
+use froude_records::RecordError;
+use froude_records::block::Block;
+use froude_records::manifest::may_replace;
+use froude_records::outcome::{Content, Head, Outcome, OutputFile};
+use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit, parse_unit};
-use froude_records::write::Prepared;
-use froude_swim::blueprint::Blueprint;
-use froude_swim::draws::Beyond;
-use froude_swim::gait::Gait;
-use froude_swim::joints::Drives;
-use froude_swim::robot::Robot;
-use froude_swim::sweep::{Axis, COLUMNS, Grid, Row};
 use rayon::prelude::*;
 
-use super::SwimInput;
+use super::VerbError;
+use super::answer::files_read;
 use super::moves::{Moves, Wave, flat_gait_of};
 use super::reads::Reads;
 use super::uncertain::Drawing;
-use crate::Error;
+use crate::blueprint::Blueprint;
+use crate::draws::Beyond;
+use crate::gait::Gait;
+use crate::joints::Drives;
+use crate::robot::Robot;
+use crate::sweep::{Axis, COLUMNS, Grid, Row};
 use parts::Parts;
 
 /// What is asked for.
@@ -80,27 +81,21 @@ impl Ranges {
 }
 
 /// What came of it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Swept {
-    /// The robot's name.
-    pub name: String,
-    /// The files that were read.
-    pub data: Vec<DataFile>,
+struct Swept {
+    name: String,
     /// A row per gait and draw; of each gait the estimate comes first, then the draws law by law.
-    pub rows: Vec<Row>,
+    rows: Vec<Row>,
     /// Rows of a gait.
-    pub each: usize,
-    /// Draws per law, number of laws, and draws that were no bodies.
-    pub drawn: Option<(Drawing, usize, Beyond)>,
+    each: usize,
+    drawn: Option<Drawn>,
     /// Rows that were there from an earlier start.
-    pub resumed: usize,
-    /// The table.
-    pub written: PathBuf,
-    /// The page with its maps.
-    pub report: PathBuf,
+    resumed: usize,
     /// Folders with parts of other sweeps that never came to their end.
-    pub others: Vec<PathBuf>,
+    others: Vec<PathBuf>,
 }
+
+/// Draws per law, number of laws, and draws that were no bodies.
+pub(super) type Drawn = (Drawing, usize, Beyond);
 
 /// Why a sweep does not begin.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -142,11 +137,11 @@ const MOST_ROWS: usize = 1_000_000;
 /// # Errors
 ///
 /// A robot file, record or gait that cannot be used, too many gaits, a folder that cannot be written. A gait without an answer is a row.
-pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Swept, Error> {
+pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Outcome, VerbError> {
     let ready = Ready::new(job)?;
     let each = ready.robots.len();
     let rows = ready.gaits * each;
-    std::fs::create_dir_all(&job.out).map_err(|source| Error::Output { path: job.out.clone(), source })?;
+    std::fs::create_dir_all(&job.out).map_err(|e| RecordError::output(&job.out, &e))?;
     let [written, report, result] = ["sweep.parquet", "report.html", "result.json"].map(|name| job.out.join(name));
     for path in [&written, &report, &result] {
         may_replace(path)?;
@@ -158,7 +153,7 @@ pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Swe
     let done = AtomicUsize::new(0);
     let resumed = AtomicUsize::new(0);
     let count = |n: usize| tell(done.fetch_add(n, Ordering::Relaxed) + n, rows);
-    let of_part = |part: usize| -> Result<Vec<Row>, Error> {
+    let of_part = |part: usize| -> Result<Vec<Row>, VerbError> {
         if let Some(found) = parts.read(part)? {
             resumed.fetch_add(found.len(), Ordering::Relaxed);
             count(found.len());
@@ -175,24 +170,25 @@ pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Swe
     };
     let all: Vec<Vec<Row>> = (0..parts.count()).into_par_iter().map(of_part).collect::<Result<_, _>>()?;
     let all = all.concat();
-    take_own_place(prepare_table(&table(&all, &written), &written)?)?;
-    let others = parts.finish();
     let drawn = job.draws.map(|drawing| (drawing, (ready.robots.len() - 1) / drawing.n.max(1), ready.beyond));
-    let swept = Swept {
-        name: ready.name,
-        data,
-        rows: all,
-        each,
-        drawn,
-        resumed: resumed.into_inner(),
-        written,
-        report,
-        others,
+    let others = parts.others.clone();
+    let swept = Swept { name: ready.name, rows: all, each, drawn, resumed: resumed.into_inner(), others };
+    let mut blocks = vec![files_read(&data).into()];
+    blocks.extend(swept.blocks());
+    blocks.extend(swept.figures().map(Block::from));
+    let head = Head {
+        sort: "Swimming robot · sweep of gaits".to_owned(),
+        title: swept.name.clone(),
+        summary: "What stands out".to_owned(),
+        ..Head::default()
     };
-    let page = swept.page()?;
-    take_own_place(Prepared::new(&swept.report, |file| file.write_all(page.as_bytes()))?)?;
-    take_own_place(Prepared::new(&result, |file| writeln!(file, "{:#}", swept.as_json()))?)?;
-    Ok(swept)
+    let rows = table(&swept.rows, &written);
+    let files = vec![
+        OutputFile { key: "report", path: report, content: Content::Page(head) },
+        OutputFile { key: "sweep", path: written, content: Content::Table(rows) },
+        OutputFile { key: "record", path: result, content: Content::Result },
+    ];
+    Ok(Outcome { blocks, files, scratch: Some(parts.scratch()), ..Outcome::default() })
 }
 
 /// All that the rows are made from.
@@ -211,7 +207,7 @@ pub(super) struct Ready<'a> {
 }
 
 impl<'a> Ready<'a> {
-    pub(super) fn new(job: &'a SweepJob) -> Result<Self, Error> {
+    pub(super) fn new(job: &'a SweepJob) -> Result<Self, VerbError> {
         let file = super::planar(&job.robot)?;
         let (laws, _) = Blueprint::of_all_laws(&file)?;
         let drives = super::drives(&file, job.motor.as_deref())?;
@@ -241,14 +237,14 @@ impl<'a> Ready<'a> {
 }
 
 /// The gait in numbers.
-fn base(moves: &Moves, joints: usize) -> Result<Gait, Error> {
-    let refused = |path: &Path, problem: &str| SwimInput { path: path.to_owned(), problem: problem.to_owned() };
+fn base(moves: &Moves, joints: usize) -> Result<Gait, VerbError> {
+    let refused = |path, problem| VerbError::input(path, problem);
     match moves {
         Moves::Wave(gait) => Ok(gait.clone()),
-        Moves::Track(path) => Err(refused(path, "is a recording, which has no numbers to sweep: name a gait").into()),
+        Moves::Track(path) => Err(refused(path, "is a recording, which has no numbers to sweep: name a gait")),
         Moves::File { path, typed } => match flat_gait_of(path, typed, joints)?.wave {
             Wave::Gait(gait) => Ok(gait),
-            Wave::Table(_) => Err(refused(path, "is a table, which has no numbers to sweep: take another kind").into()),
+            Wave::Table(_) => Err(refused(path, "is a table, which has no numbers to sweep: take another kind")),
         },
     }
 }

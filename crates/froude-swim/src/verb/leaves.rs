@@ -1,54 +1,46 @@
 //! A motion that a swimmer leaves and the one that it settles into, said of the plane and of space.
 
 use froude_records::number::significant;
-use serde_json::{Value, json};
+
+use crate::{period, spatial};
 
 /// A motion that turns by more in a period, rad, is a circle.
 const CIRCLES: f64 = 1e-6;
 
 /// A motion that repeats.
-pub(super) struct Repeating<'a> {
+#[derive(Debug, Clone)]
+pub(super) struct Repeating {
     pub speed_m_s: f64,
     pub net_w: f64,
     pub positive_w: f64,
     /// In a period, rad.
     pub turn: f64,
     /// Sizes of the Floquet multipliers, the largest first.
-    pub multipliers: &'a [f64],
+    pub multipliers: Vec<f64>,
 }
 
-impl<'a> From<&'a froude_swim::period::Periodic> for Repeating<'a> {
-    fn from(p: &'a froude_swim::period::Periodic) -> Self {
-        Self {
-            speed_m_s: p.speed_m_s,
-            net_w: p.net_w,
-            positive_w: p.positive_w,
-            turn: p.turn,
-            multipliers: &p.multipliers,
-        }
+impl From<&period::Periodic> for Repeating {
+    fn from(p: &period::Periodic) -> Self {
+        let (speed_m_s, net_w, positive_w, turn) = (p.speed_m_s, p.net_w, p.positive_w, p.turn);
+        Self { speed_m_s, net_w, positive_w, turn, multipliers: p.multipliers.to_vec() }
     }
 }
 
-impl<'a> From<&'a froude_swim::spatial::period::Periodic> for Repeating<'a> {
-    fn from(p: &'a froude_swim::spatial::period::Periodic) -> Self {
-        Self {
-            speed_m_s: p.speed_m_s,
-            net_w: p.net_w,
-            positive_w: p.positive_w,
-            turn: p.turn,
-            multipliers: &p.multipliers,
-        }
+impl From<&spatial::period::Periodic> for Repeating {
+    fn from(p: &spatial::period::Periodic) -> Self {
+        let (speed_m_s, net_w, positive_w, turn) = (p.speed_m_s, p.net_w, p.positive_w, p.turn);
+        Self { speed_m_s, net_w, positive_w, turn, multipliers: p.multipliers.to_vec() }
     }
 }
 
-impl Repeating<'_> {
+impl Repeating {
     fn grows(&self) -> String {
         let by = self.multipliers.first().copied().unwrap_or(f64::NAN);
         format!("a small deviation grows by a factor of {} from period to period", significant(by, 3))
     }
 
     /// Of an unstable motion that the figures are of; `was_followed` says whether another was looked for.
-    pub fn stays(&self, was_followed: bool) -> String {
+    pub(super) fn stays(&self, was_followed: bool) -> String {
         let other = if was_followed {
             "no other that repeats each period was reached"
         } else {
@@ -61,7 +53,7 @@ impl Repeating<'_> {
     }
 
     /// Of an unstable motion, and the settled one that the figures are of.
-    pub fn leaves(&self, settled: &Self, period_s: f64) -> String {
+    pub(super) fn leaves(&self, settled: &Self, period_s: f64) -> String {
         let into = if settled.turn.abs() > CIRCLES {
             let radius_m = settled.speed_m_s * period_s / (2.0 * (0.5 * settled.turn).sin().abs());
             // Only a motion without a turn of its own may leave to either side.
@@ -78,26 +70,5 @@ impl Repeating<'_> {
             significant(self.net_w, 4),
             self.grows()
         )
-    }
-
-    /// Rows of a table: quantity, value, unit.
-    pub fn rows(&self) -> Vec<Vec<String>> {
-        let row = |name: &str, value: f64, unit: &str| vec![name.to_owned(), significant(value, 4), unit.to_owned()];
-        vec![
-            row("speed of the unstable motion", self.speed_m_s, "m/s"),
-            row("net power of the unstable motion", self.net_w, "W"),
-        ]
-    }
-
-    /// The same for a program.
-    pub fn as_json(&self) -> Value {
-        json!({
-            "speed_m_s": self.speed_m_s,
-            "power_net_w": self.net_w,
-            "power_positive_w": self.positive_w,
-            "cost_of_transport_j_m": self.net_w / self.speed_m_s,
-            "turn_per_period_rad": self.turn,
-            "floquet_multipliers": self.multipliers,
-        })
     }
 }

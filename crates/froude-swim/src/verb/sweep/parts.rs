@@ -7,13 +7,15 @@ use std::fs::{File, TryLockError};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use froude_records::RecordError;
 use froude_records::hash::{sha256_of_bytes, sha256_of_file, short_key};
+use froude_records::outcome::Scratch;
 use froude_records::read::if_there;
 use froude_records::write::write_atomically;
-use froude_swim::sweep::{COLUMNS, Row, Status};
 
 use super::SweepError;
-use crate::Error;
+use crate::sweep::{COLUMNS, Row, Status};
+use crate::verb::VerbError;
 
 /// So many parts, where a part has not more rows than it may.
 const PARTS: usize = 64;
@@ -27,7 +29,7 @@ const SUM: usize = 64;
 const PREFIX: &str = ".sweep-";
 
 /// Hash of files and of what was asked.
-pub(super) fn key(files: &[PathBuf], asked: &str) -> Result<String, Error> {
+pub(super) fn key(files: &[PathBuf], asked: &str) -> Result<String, VerbError> {
     let mut text = format!("{} {asked}", env!("CARGO_PKG_VERSION"));
     for file in files {
         text.push_str(&format!(" {}", sha256_of_file(file)?));
@@ -42,18 +44,18 @@ pub(super) struct Parts {
     key: String,
     rows: usize,
     each: usize,
-    others: Vec<PathBuf>,
-    /// Held for as long as the process lives.
-    _lock: File,
+    /// Folders with parts of other sweeps that never came to their end.
+    pub(super) others: Vec<PathBuf>,
+    lock: File,
 }
 
 impl Parts {
     /// Finds or makes the folder of so many rows.
-    pub(super) fn begin(out: &Path, key: &str, rows: usize) -> Result<Self, Error> {
+    pub(super) fn begin(out: &Path, key: &str, rows: usize) -> Result<Self, VerbError> {
         let folder = out.join(format!("{PREFIX}{key}"));
         let failed = |path: &Path| {
             let path = path.to_owned();
-            move |source| Error::Output { path, source }
+            move |source| RecordError::output(&path, &source)
         };
         std::fs::create_dir_all(&folder).map_err(failed(&folder))?;
         let lock_path = folder.join("lock");
@@ -69,7 +71,7 @@ impl Parts {
         let entries = std::fs::read_dir(out).map_err(failed(out))?;
         let mut others: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(is_other).collect();
         others.sort();
-        Ok(Self { folder, key: key.to_owned(), rows, each: (rows / PARTS).clamp(1, MOST_ROWS), others, _lock: lock })
+        Ok(Self { folder, key: key.to_owned(), rows, each: (rows / PARTS).clamp(1, MOST_ROWS), others, lock })
     }
 
     pub(super) fn count(&self) -> usize {
@@ -95,7 +97,7 @@ impl Parts {
     /// # Errors
     ///
     /// [`SweepError::Elsewhere`]: it is whole, and another part.
-    pub(super) fn read(&self, part: usize) -> Result<Option<Vec<Row>>, Error> {
+    pub(super) fn read(&self, part: usize) -> Result<Option<Vec<Row>>, VerbError> {
         let path = self.path(part);
         let most = (ROW * self.each + SUM) as u64;
         let Ok(Some(bytes)) = if_there(&path, most, "a part of a sweep") else { return Ok(None) };
@@ -110,7 +112,7 @@ impl Parts {
         }
     }
 
-    pub(super) fn write(&self, part: usize, rows: &[Row]) -> Result<(), Error> {
+    pub(super) fn write(&self, part: usize, rows: &[Row]) -> Result<(), VerbError> {
         let mut bytes = Vec::with_capacity(ROW * rows.len() + SUM);
         for row in rows {
             bytes.extend(row.numbers.iter().flat_map(|x| x.to_le_bytes()));
@@ -121,11 +123,10 @@ impl Parts {
         Ok(write_atomically(&self.path(part), &bytes)?)
     }
 
-    /// Takes the parts away, whose table is written; the folders of other sweeps are left.
-    pub(super) fn finish(self) -> Vec<PathBuf> {
-        // What is left where this fails is found by the next start, and makes the same table.
-        let _ = std::fs::remove_dir_all(&self.folder);
-        self.others
+    /// The folder, to be taken away when the table of its parts is written. What is left where that fails is found by the next start, and
+    /// makes the same table.
+    pub(super) fn scratch(self) -> Scratch {
+        Scratch { folder: self.folder, lock: self.lock }
     }
 }
 
@@ -167,6 +168,6 @@ mod tests {
         let busy = Parts::begin(out.path(), "0123", 130).unwrap_err().to_string();
         assert!(busy.contains("another process"), "{busy}");
         let other = Parts::begin(out.path(), "4567", 1).unwrap();
-        assert_eq!(other.finish(), [out.path().join(".sweep-0123")]);
+        assert_eq!(other.others, [out.path().join(".sweep-0123")]);
     }
 }

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use crate::trajectory::Moment;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit, parse_unit};
-use froude_swim::trajectory::Moment;
 
 /// Columns with their units, a row per moment.
 pub(super) fn table(moments: &[Moment], is_driven: bool, path: &Path) -> Table {

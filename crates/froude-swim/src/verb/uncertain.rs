@@ -2,19 +2,18 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use froude_records::number::{interval, percent, significant};
-use froude_records::page::{DocumentSection, TextTable};
+use froude_records::block::{Block, ResultColumn, Section, TableBuilder, facts};
+use froude_records::number::{percent, significant};
+use froude_records::robot::RobotFile;
 use froude_records::text::counted;
-use froude_swim::blueprint::Blueprint;
-use froude_swim::draws::{Beyond, envelope_95};
-use froude_swim::robot::Robot;
-use froude_swim::sensitivity::{Effect, Sensitivities};
 use rayon::prelude::*;
-use serde_json::{Value, json};
 
 use super::moves::{Moves, Periodically, Wave, flat_gait_of};
-use super::{Job, SwimInput};
-use crate::Error;
+use super::{Job, VerbError};
+use crate::blueprint::Blueprint;
+use crate::draws::{Beyond, envelope_95};
+use crate::robot::Robot;
+use crate::sensitivity::{Effect, Sensitivities, Sensitivity};
 
 /// How many draws, and the seed of their random numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,62 +25,49 @@ pub struct Drawing {
 }
 
 /// What came of the draws.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Drawn {
-    /// What was asked for.
-    pub asked: Drawing,
+struct Drawn {
+    asked: Drawing,
     /// The laws that they are of, that of the estimate first: the others are those that the data do not contradict either. Each has as many draws.
-    pub laws: Vec<String>,
+    laws: Vec<String>,
     /// Laws that the data do not contradict either, and that this robot cannot have, or that cannot be drawn.
-    pub left_out: Vec<String>,
-    /// Draws that were no bodies.
-    pub beyond: Beyond,
-    /// Draws with which the gait has no answer.
-    pub without_answer: usize,
+    left_out: Vec<String>,
+    beyond: Beyond,
+    without_answer: usize,
     /// Draws whose figures are those of the motion that an unstable one settles into, and of a motion that stays unstable.
-    pub unstable: [usize; 2],
+    unstable: [usize; 2],
     /// 95 % of speed, m/s, net and positive power, W, and cost of transport, J/m: the envelope over the laws.
-    pub intervals: [[f64; 2]; 4],
-}
-
-/// What the uncertainty of coefficients makes of a gait.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Uncertain {
-    /// By draws.
-    pub drawn: Option<Drawn>,
-    /// By derivatives.
-    pub sensitivities: Option<Sensitivities>,
+    intervals: [[f64; 2]; 4],
 }
 
 /// Draws the coefficients, and changes each by itself, for the gait of a job; `tell` hears how many draws are done.
 ///
 /// # Errors
 ///
-/// As [`super::swim`]; records without a covariance where draws are asked for.
-pub fn uncertain(
+/// A gait without an answer; records without a covariance where draws are asked for.
+pub(super) fn uncertain(
+    file: &RobotFile,
     job: &Job,
-    drawing: Option<Drawing>,
-    is_sensitive: bool,
     tell: &(dyn Fn(usize, usize) + Sync),
-) -> Result<Uncertain, Error> {
-    let file = super::planar(&job.robot)?;
-    let drives = super::drives(&file, job.motor.as_deref())?;
-    let blueprint = Blueprint::of(&file)?;
+) -> Result<Vec<Block>, VerbError> {
+    if job.draws.is_none() && !job.is_sensitive {
+        return Ok(Vec::new());
+    }
+    let drives = super::drives(file, job.motor.as_deref())?;
+    let blueprint = Blueprint::of(file)?;
     let of = match &job.moves {
         Moves::Wave(gait) => Periodically { wave: Wave::Gait(gait.clone()), pitch: None, ramp_s: None },
         Moves::File { path, typed } => flat_gait_of(path, typed, file.modules.len() - 1)?,
         Moves::Track(path) => {
-            let problem = "is a recording; draws and sensitivities are of a gait".to_owned();
-            return Err(SwimInput { path: path.clone(), problem }.into());
+            return Err(VerbError::input(path, "is a recording; draws and sensitivities are of a gait"));
         }
     };
     let swim = |robot: &Robot| robot.swim(of.course(), &drives, job.step_s);
     // A gait without an answer says why before anything is drawn.
     swim(&blueprint.estimated())?;
-    let drawn = match drawing {
+    let drawn = match job.draws {
         None => None,
         Some(asked) => {
-            let (laws, left_out) = Blueprint::of_all_laws(&file)?;
+            let (laws, left_out) = Blueprint::of_all_laws(file)?;
             let (done, all) = (AtomicUsize::new(0), asked.n * laws.len());
             let mut beyond = Beyond::default();
             let mut by_law: Vec<Vec<([f64; 4], [bool; 2])>> = Vec::new();
@@ -108,63 +94,14 @@ pub fn uncertain(
             Some(Drawn { asked, laws, left_out, beyond, unstable, without_answer: all - answers, intervals })
         }
     };
-    let sensitivities = if is_sensitive {
+    let sensitivities = if job.is_sensitive {
         let answer = |robot: &Robot| swim(robot).ok().map(|s| [s.periodic.speed_m_s, s.cost_j_m]);
         blueprint.sensitivities(answer)
     } else {
         None
     };
-    Ok(Uncertain { drawn, sensitivities })
-}
-
-/// What intervals are of, with the unit and the name in JSON.
-const OF: [(&str, &str, &str); 4] = [
-    ("speed", "m/s", "speed_m_s"),
-    ("net power", "W", "power_net_w"),
-    ("positive power", "W", "power_positive_w"),
-    ("cost of transport", "J/m", "cost_of_transport_j_m"),
-];
-
-impl Uncertain {
-    /// What a person reads.
-    #[must_use]
-    pub fn sections(&self) -> Vec<DocumentSection> {
-        let drawn = self.drawn.as_ref().map(Drawn::section);
-        drawn.into_iter().chain(self.sensitivities.as_ref().map(of_sensitivities)).collect()
-    }
-
-    /// The same for a program, each number in SI.
-    #[must_use]
-    pub fn as_json(&self) -> Value {
-        json!({
-            "draws": self.drawn.as_ref().map(|d| json!({
-                "n": d.asked.n,
-                "laws": d.laws,
-                "left_out": d.left_out,
-                "seed": d.asked.seed,
-                "brought_back": d.beyond.brought_back,
-                "refused": d.beyond.refused,
-                "without_answer": d.without_answer,
-                "settled_from_unstable": d.unstable[0],
-                "unstable": d.unstable[1],
-                "interval_95": OF.iter().zip(d.intervals).map(|((.., key), ends)| ((*key).to_owned(), json!(ends))).collect::<serde_json::Map<_, _>>(),
-            })),
-            "sensitivities": self.sensitivities.as_ref().map(|s| json!({
-                "standard_uncertainty": s.standard.map(|[speed, cost]| json!({"speed_m_s": speed, "cost_of_transport_j_m": cost})),
-                "coefficients": s.each.iter().map(|one| {
-                    let effect = |e: Effect| json!({"elasticity": e.elasticity, "derivative": e.derivative, "variance_gone_if_known": e.known});
-                    json!({
-                        "name": one.number.name,
-                        "unit": one.number.unit,
-                        "value": one.number.value,
-                        "standard_uncertainty": one.number.standard,
-                        "speed": one.effects.map(|[speed, _]| effect(speed)),
-                        "cost_of_transport": one.effects.map(|[_, cost]| effect(cost)),
-                    })
-                }).collect::<Vec<_>>(),
-            })),
-        })
-    }
+    let sensitivities = sensitivities.map(|found| of_sensitivities(&found));
+    Ok(drawn.map(|drawn| drawn.section()).into_iter().chain(sensitivities).map(Block::from).collect())
 }
 
 /// What became of draws that are no bodies in water.
@@ -189,8 +126,20 @@ pub(super) fn bodies(n: usize, beyond: Beyond) -> Vec<String> {
     said
 }
 
+/// How often the coefficients of a sweep were drawn, for programs.
+pub(super) fn of_draws((drawing, laws, beyond): &(Drawing, usize, Beyond)) -> Vec<ResultColumn> {
+    let f = facts("", "", drawing);
+    vec![
+        f.count("draws/n", "", |d| d.n),
+        f.count("draws/laws", "", |_| *laws),
+        f.count("draws/seed", "", |d| d.seed as usize),
+        f.count("draws/brought_back", "", |_| beyond.brought_back),
+        f.count("draws/refused", "", |_| beyond.refused),
+    ]
+}
+
 impl Drawn {
-    fn section(&self) -> DocumentSection {
+    fn section(&self) -> Section {
         let mut paragraphs = bodies(self.asked.n * self.laws.len(), self.beyond);
         if self.laws.len() > 1 {
             paragraphs.push(format!(
@@ -219,27 +168,37 @@ impl Drawn {
                 "{words} an unstable motion that settles into none that repeats each period; the intervals use the unstable motion"
             ));
         }
-        let row = |((name, unit, _), ends): (&(&str, &str, &str), [f64; 2])| {
-            vec![(*name).to_owned(), interval(ends), (*unit).to_owned()]
-        };
-        DocumentSection {
-            title: "Intervals".to_owned(),
-            paragraphs,
-            tables: vec![TextTable {
-                caption: format!(
-                    "95 % intervals from the coefficients' covariance ({}, seed {})",
-                    counted(self.asked.n, "draw", "draws"),
-                    self.asked.seed
-                ),
-                head: ["quantity", "95 %", "unit"].map(str::to_owned).to_vec(),
-                rows: OF.iter().zip(self.intervals).map(row).collect(),
-            }],
-            charts: Vec::new(),
-        }
+        let caption = format!(
+            "95 % intervals from the coefficients' covariance ({}, seed {})",
+            counted(self.asked.n, "draw", "draws"),
+            self.asked.seed
+        );
+        let f = facts("interval_95", caption, self);
+        let intervals = f.build(vec![
+            f.interval("speed_m_s", "speed [m/s]", |d| d.intervals[0]),
+            f.interval("power_net_w", "net power [W]", |d| d.intervals[1]),
+            f.interval("power_positive_w", "positive power [W]", |d| d.intervals[2]),
+            f.interval("cost_of_transport_j_m", "cost of transport [J/m]", |d| d.intervals[3]),
+        ]);
+        let f = facts("", "", self);
+        let about = f.build(vec![
+            f.count("n", "", |d| d.asked.n),
+            f.texts("laws", "", |d| d.laws.clone()),
+            f.texts("left_out", "", |d| d.left_out.clone()),
+            f.count("seed", "", |d| d.asked.seed as usize),
+            f.count("brought_back", "", |d| d.beyond.brought_back),
+            f.count("refused", "", |d| d.beyond.refused),
+            f.count("without_answer", "", |d| d.without_answer),
+            f.count("settled_from_unstable", "", |d| d.unstable[0]),
+            f.count("unstable", "", |d| d.unstable[1]),
+        ]);
+        let blocks = vec![about.into(), intervals.into(), Block::text("", paragraphs)];
+        let (key, title) = ("uncertainty/draws".to_owned(), "Intervals".to_owned());
+        Section { key, title, blocks, ..Section::default() }
     }
 }
 
-fn of_sensitivities(found: &Sensitivities) -> DocumentSection {
+fn of_sensitivities(found: &Sensitivities) -> Section {
     let mut paragraphs = Vec::new();
     match found.standard {
         None => paragraphs.push(
@@ -248,7 +207,7 @@ fn of_sensitivities(found: &Sensitivities) -> DocumentSection {
         ),
         Some(standard) => {
             for (k, (of, unit)) in [("speed", "m/s"), ("cost of transport", "J/m")].iter().enumerate() {
-                let known = |s: &froude_swim::sensitivity::Sensitivity| s.effects.and_then(|e| e[k].known);
+                let known = |s: &Sensitivity| s.effects.and_then(|e| e[k].known);
                 let most = found.each.iter().filter_map(|s| Some((known(s)?, &s.number.name)));
                 if let Some((part, name)) = most.max_by(|a, b| a.0.total_cmp(&b.0)) {
                     paragraphs.push(format!(
@@ -260,32 +219,29 @@ fn of_sensitivities(found: &Sensitivities) -> DocumentSection {
             }
         }
     }
-    let cell = |x: Option<f64>| x.map_or_else(String::new, |x| significant(x, 3));
-    let rows = found.each.iter().map(|s| {
-        let of = |k: usize| s.effects.map(|e| e[k]);
-        let known = |k: usize| of(k).and_then(|e| e.known).map_or_else(String::new, percent);
-        let number = format!("{} {}", significant(s.number.value, 4), s.number.unit).trim_end_matches(" 1").to_owned();
-        let own = [s.number.name.clone(), number, cell(s.number.standard)];
-        let effects = [cell(of(0).map(|e| e.elasticity)), cell(of(1).map(|e| e.elasticity)), known(0), known(1)];
-        [own.to_vec(), effects.to_vec()].concat()
-    });
-    let head = [
-        "coefficient",
-        "value",
-        "standard",
-        "% of speed per %",
-        "% of cost per %",
-        "of the speed's variance",
-        "of the cost's variance",
-    ];
-    DocumentSection {
-        title: "Sensitivities".to_owned(),
-        paragraphs,
-        tables: vec![TextTable {
-            caption: "what speed and cost owe to each coefficient, and the part of their variance that goes when it is known exactly".to_owned(),
-            head: head.map(str::to_owned).to_vec(),
-            rows: rows.collect(),
-        }],
-        charts: Vec::new(),
-    }
+    let f = facts("standard_uncertainty", "", found);
+    let standard = f.build(vec![
+        f.number("speed_m_s", "", |f| f.standard.map(|[speed, _]| speed)),
+        f.number("cost_of_transport_j_m", "", |f| f.standard.map(|[_, cost]| cost)),
+    ]);
+    let caption = "what speed and cost owe to each coefficient, and the part of their variance that goes when it is known exactly";
+    let t = TableBuilder::new("coefficients", caption, &found.each);
+    let effect = |s: &Sensitivity, k: usize, of: fn(&Effect) -> Option<f64>| s.effects.as_ref().and_then(|e| of(&e[k]));
+    let elasticity = |e: &Effect| Some(e.elasticity);
+    let coefficients = t.build(vec![
+        t.text("name", "coefficient", |s| s.number.name.clone()),
+        t.number("value", "value", |s| s.number.value),
+        t.text("unit", "unit", |s| s.number.unit.clone()),
+        t.number("standard_uncertainty", "standard uncertainty", |s| s.number.standard).significant(3),
+        t.number("speed/elasticity", "% of speed per %", |s| effect(s, 0, elasticity)).significant(3),
+        t.number("speed/derivative", "", |s| effect(s, 0, |e| Some(e.derivative))),
+        t.number("speed/variance_gone_if_known", "of the speed's variance", |s| effect(s, 0, |e| e.known)).percent(),
+        t.number("cost_of_transport/elasticity", "% of cost per %", |s| effect(s, 1, elasticity)).significant(3),
+        t.number("cost_of_transport/derivative", "", |s| effect(s, 1, |e| Some(e.derivative))),
+        t.number("cost_of_transport/variance_gone_if_known", "of the cost's variance", |s| effect(s, 1, |e| e.known))
+            .percent(),
+    ]);
+    let blocks = vec![standard.into(), coefficients.into(), Block::text("", paragraphs)];
+    let (key, title) = ("uncertainty/sensitivities".to_owned(), "Sensitivities".to_owned());
+    Section { key, title, blocks, ..Section::default() }
 }

@@ -6,18 +6,17 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use froude_hydro::similarity::GRAVITY_M_S2;
-use froude_records::number::{fixed, percent, significant};
-use froude_records::page::{DocumentSection, TextTable};
+use froude_records::block::{Block, ResultTable, TableBuilder, facts};
+use froude_records::number::{percent, significant};
+use froude_records::outcome::Outcome;
 use froude_records::robot::{ModuleFile, RobotFile, read_robot};
-use froude_swim::blueprint::Blueprint;
-use froude_swim::chain::Link;
-use froude_swim::drag::LinkDrag;
-use froude_swim::robot::Robot;
-use serde_json::{Value, json};
 
+use super::VerbError;
 use super::told::NEUTRAL;
-use crate::Error;
-use froude_swim::spatial::robot::RIGHTS_ITSELF_M;
+use crate::blueprint::Blueprint;
+use crate::chain::Link;
+use crate::robot::Robot;
+use crate::spatial::robot::RIGHTS_ITSELF_M;
 
 /// Speed at which the force of the whole robot is stated, m/s.
 const SPEED_M_S: f64 = 0.3;
@@ -60,7 +59,7 @@ impl Kind {
 
 /// What a robot file comes to.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Look {
+struct Look {
     file: RobotFile,
     robot: Robot,
     kinds: Vec<Kind>,
@@ -73,7 +72,7 @@ pub struct Look {
 /// # Errors
 ///
 /// A robot file or record that cannot be used.
-pub fn look(path: &Path) -> Result<Look, Error> {
+pub fn look(path: &Path) -> Result<Outcome, VerbError> {
     let file = read_robot(path)?;
     let blueprint = Blueprint::of(&file)?;
     let robot = blueprint.estimated();
@@ -85,7 +84,8 @@ pub fn look(path: &Path) -> Result<Look, Error> {
         }
     }
     let driven = blueprint.driven_by_water(&robot);
-    Ok(Look { file, robot, kinds, driven })
+    let blocks = Look { file, robot, kinds, driven }.blocks();
+    Ok(Outcome { blocks, ..Outcome::default() })
 }
 
 /// Places along a straight robot, of mass and of buoyancy, and the depth of mass below buoyancy, m.
@@ -127,98 +127,76 @@ impl Look {
         Some(Trim { ahead_m: between(1), below_m: between(2) })
     }
 
-    /// What a person reads.
-    #[must_use]
-    pub fn section(&self) -> DocumentSection {
-        let number = |x: f64| significant(x, 4);
-        let modules = self.kinds.iter().map(|kind| {
-            let (m, link) = (&kind.file, &kind.link);
-            let litres = m.volume_m3.map_or_else(String::new, |v| number(1e3 * v));
-            let mm = |x: f64| fixed(1e3 * x, 1);
-            let [_, _, below] =
-                std::array::from_fn::<f64, 3, _>(|k| m.spatial.centre_of_mass_m[k] - m.spatial.centre_of_buoyancy_m[k]);
-            let body = [number(m.mass_kg), litres, number(m.inertia_kg_m2), mm(m.ahead_m), mm(below)];
-            [
-                vec![kind.numbers(), m.name.clone()],
-                body.to_vec(),
-                vec![number(link.added.x), number(link.added.y), number(link.added.turn)],
-            ]
-            .concat()
-        });
-        let drag = self.kinds.iter().map(|kind| {
-            let d: &LinkDrag = &kind.link.drag;
-            let cross = d.cross.map_or([0.0; 2], |c| c.of_speed);
-            let all = [d.along, d.across, cross].concat();
-            [vec![kind.numbers(), kind.file.name.clone()], all.into_iter().map(number).collect()].concat()
-        });
-        let head = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
+    fn blocks(&self) -> Vec<Block> {
+        vec![self.whole().into(), self.bodies().into(), self.drag().into(), Block::text("remarks", self.sentences())]
+    }
+
+    /// The straight robot.
+    fn whole(&self) -> ResultTable {
         let (along, across) = (self.force_n([SPEED_M_S, 0.0]), self.force_n([0.0, SPEED_M_S]));
-        let row = |name: &str, value: String, unit: &str| vec![name.to_owned(), value, unit.to_owned()];
-        let mut whole = vec![
-            row("modules", self.file.modules.len().to_string(), ""),
-            row("mass", number(self.robot.mass_kg), "kg"),
-        ];
-        if let Some(displaced) = self.displaced_kg() {
-            whole.push(row("mass of the water displaced", number(displaced), "kg"));
-        }
-        if let Some(trim) = self.trim() {
-            whole.push(row("centre of mass ahead of that of buoyancy", fixed(1e3 * trim.ahead_m, 1), "mm"));
-            whole.push(row("and below it", fixed(1e3 * trim.below_m, 1), "mm"));
-            let restoring = self.robot.mass_kg * GRAVITY_M_S2 * trim.below_m;
-            whole.push(row("restoring moment of a roll", number(restoring), "N m/rad"));
-        }
-        let [surge, sway] = self.added_kg();
-        whole.extend([
-            row("added mass along, straight", number(surge), "kg"),
-            row("added mass across, straight", number(sway), "kg"),
-            row("force along at 0.3 m/s", number(along[0]), "N"),
-            row("force across at 0.3 m/s", number(across[1]), "N"),
-        ]);
-        DocumentSection {
-            title: self.file.name.clone(),
-            paragraphs: self.sentences(),
-            tables: vec![
-                TextTable {
-                    caption: format!("{}, straight", self.file.name),
-                    head: head(&["quantity", "value", "unit"]),
-                    rows: whole,
-                },
-                TextTable {
-                    caption: "bodies and the water that they take along".to_owned(),
-                    head: head(&[
-                        "module",
-                        "name",
-                        "mass, kg",
-                        "volume, l",
-                        "inertia, kg m²",
-                        "mass ahead, mm",
-                        "mass below buoyancy, mm",
-                        "added surge, kg",
-                        "sway, kg",
-                        "yaw, kg m²",
-                    ]),
-                    rows: modules.collect(),
-                },
-                TextTable {
-                    caption: format!(
-                        "drag of {}: −(c₁ + c₂|v|) v; by flow across, against the motion along",
-                        self.robot.estimates.0
-                    ),
-                    head: head(&[
-                        "module",
-                        "name",
-                        "along c₁, kg/s",
-                        "c₂, kg/m",
-                        "across c₁, kg/s",
-                        "c₂, kg/m",
-                        "by flow across, kg/s",
-                        "kg/m",
-                    ]),
-                    rows: drag.collect(),
-                },
-            ],
-            charts: Vec::new(),
-        }
+        let ([surge, sway], trim, mass) = (self.added_kg(), self.trim(), self.robot.mass_kg);
+        let f = facts("", format!("{}, straight", self.file.name), self);
+        f.build(vec![
+            f.text("robot", "", |l| l.file.name.clone()),
+            f.count("modules", "modules", |l| l.file.modules.len()),
+            f.text("drag", "", |l| l.robot.estimates.0.clone()),
+            f.text("added_mass", "", |l| l.robot.estimates.1.clone()),
+            f.number("mass_kg", "mass [kg]", |_| mass),
+            f.number("displaced_kg", "mass of the water displaced [kg]", Self::displaced_kg),
+            f.number("mass_ahead_of_buoyancy_m", "centre of mass ahead of that of buoyancy [mm]", |_| {
+                trim.map(|t| t.ahead_m)
+            })
+            .places(1),
+            f.number("mass_below_buoyancy_m", "and below it [mm]", |_| trim.map(|t| t.below_m)).places(1),
+            f.number("restoring_n_m_rad", "restoring moment of a roll [N m/rad]", |_| {
+                trim.map(|t| mass * GRAVITY_M_S2 * t.below_m)
+            }),
+            f.number("added_mass_surge_kg", "added mass along, straight [kg]", |_| surge),
+            f.number("added_mass_sway_kg", "added mass across, straight [kg]", |_| sway),
+            f.number("force_along_at_0.3_m_s_n", "force along at 0.3 m/s [N]", |_| along[0]),
+            f.number("force_across_at_0.3_m_s_n", "force across at 0.3 m/s [N]", |_| across[1]),
+        ])
+    }
+
+    /// A row per kind of module: its body, and the water that it takes along.
+    fn bodies(&self) -> ResultTable {
+        let t = TableBuilder::new("kinds", "bodies and the water that they take along", &self.kinds);
+        let below = |m: &ModuleFile| m.spatial.centre_of_mass_m[2] - m.spatial.centre_of_buoyancy_m[2];
+        t.build(vec![
+            t.text("", "module", Kind::numbers),
+            t.count("first", "", |k| k.first),
+            t.count("last", "", |k| k.last),
+            t.text("name", "name", |k| k.file.name.clone()),
+            t.number("mass_kg", "mass [kg]", |k| k.file.mass_kg),
+            t.number("volume_m3", "volume [l]", |k| k.file.volume_m3),
+            t.number("inertia_kg_m2", "inertia [kg m²]", |k| k.file.inertia_kg_m2),
+            t.number("mass_ahead_m", "mass ahead [mm]", |k| k.file.ahead_m).places(1),
+            t.number("mass_below_buoyancy_m", "mass below buoyancy [mm]", |k| below(&k.file)).places(1),
+            t.numbers("center_of_mass_m", "", |k| k.file.spatial.centre_of_mass_m.to_vec()),
+            t.numbers("center_of_buoyancy_m", "", |k| k.file.spatial.centre_of_buoyancy_m.to_vec()),
+            t.number("added_mass/surge_kg", "added surge [kg]", |k| k.link.added.x),
+            t.number("added_mass/sway_kg", "sway [kg]", |k| k.link.added.y),
+            t.number("added_mass/yaw_kg_m2", "yaw [kg m²]", |k| k.link.added.turn),
+            t.number("added_mass/sway_yaw_kg_m", "", |k| k.link.added.turn_y),
+        ])
+    }
+
+    /// The same for its drag.
+    fn drag(&self) -> ResultTable {
+        let caption =
+            format!("drag of {}: −(c₁ + c₂|v|) v; by flow across, against the motion along", self.robot.estimates.0);
+        let t = TableBuilder::new("kinds", caption, &self.kinds);
+        let cross = |k: &Kind, i: usize| k.link.drag.cross.map(|c| c.of_speed[i]);
+        t.build(vec![
+            t.text("", "module", Kind::numbers),
+            t.text("", "name", |k| k.file.name.clone()),
+            t.number("drag/along_kg_s", "along c₁ [kg/s]", |k| k.link.drag.along[0]),
+            t.number("drag/along_kg_m", "c₂ [kg/m]", |k| k.link.drag.along[1]),
+            t.number("drag/across_kg_s", "across c₁ [kg/s]", |k| k.link.drag.across[0]),
+            t.number("drag/across_kg_m", "c₂ [kg/m]", |k| k.link.drag.across[1]),
+            t.number("drag/by_flow_across_kg_s", "by flow across c₁ [kg/s]", |k| cross(k, 0)),
+            t.number("drag/by_flow_across_kg_m", "c₂ [kg/m]", |k| cross(k, 1)),
+        ])
     }
 
     fn sentences(&self) -> Vec<String> {
@@ -292,48 +270,5 @@ impl Look {
             out.push(format!("not dissipative: still water gives power to module {module} at speeds of the fit; choose another law or, where it is by-origin, distribution = \"uniform\""));
         }
         out
-    }
-
-    /// The same for a program, each number in SI.
-    #[must_use]
-    pub fn as_json(&self) -> Value {
-        let kind = |kind: &Kind| {
-            let (m, link) = (&kind.file, &kind.link);
-            json!({
-                "first": kind.first,
-                "last": kind.last,
-                "name": m.name,
-                "mass_kg": m.mass_kg,
-                "volume_m3": m.volume_m3,
-                "inertia_kg_m2": m.inertia_kg_m2,
-                "center_of_mass_m": m.spatial.centre_of_mass_m,
-                "center_of_buoyancy_m": m.spatial.centre_of_buoyancy_m,
-                "added_mass": {"surge_kg": link.added.x, "sway_kg": link.added.y, "yaw_kg_m2": link.added.turn, "sway_yaw_kg_m": link.added.turn_y},
-                "drag": {
-                    "along_kg_s": link.drag.along[0],
-                    "along_kg_m": link.drag.along[1],
-                    "across_kg_s": link.drag.across[0],
-                    "across_kg_m": link.drag.across[1],
-                    "by_flow_across_kg_s": link.drag.cross.map(|c| c.of_speed[0]),
-                    "by_flow_across_kg_m": link.drag.cross.map(|c| c.of_speed[1]),
-                },
-            })
-        };
-        json!({
-            "robot": self.file.name,
-            "modules": self.file.modules.len(),
-            "drag": self.robot.estimates.0,
-            "added_mass": self.robot.estimates.1,
-            "mass_kg": self.robot.mass_kg,
-            "displaced_kg": self.displaced_kg(),
-            "mass_ahead_of_buoyancy_m": self.trim().map(|t| t.ahead_m),
-            "mass_below_buoyancy_m": self.trim().map(|t| t.below_m),
-            "added_mass_surge_kg": self.added_kg()[0],
-            "added_mass_sway_kg": self.added_kg()[1],
-            "force_along_at_0.3_m_s_n": self.force_n([SPEED_M_S, 0.0])[0],
-            "force_across_at_0.3_m_s_n": self.force_n([0.0, SPEED_M_S])[1],
-            "kinds": self.kinds.iter().map(kind).collect::<Vec<_>>(),
-            "remarks": self.sentences(),
-        })
     }
 }

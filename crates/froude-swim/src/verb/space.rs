@@ -1,91 +1,70 @@
 //! A swim in three dimensions: its answer for people and programs, and its trajectory.
 
 use std::f64::consts::FRAC_PI_2;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use froude_records::block::{Block, Section};
 use froude_records::estimate::DataFile;
-use froude_records::number::{count, fixed, percent, significant};
-use froude_records::page::{DocumentSection, TextTable};
-use froude_records::parquet_table::write_parquet;
+use froude_records::number::{percent, significant};
+use froude_records::outcome::Outcome;
 use froude_records::robot::RobotFile;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit, parse_unit};
-use froude_records::write::write_atomically;
-use froude_swim::course::Ramped;
-use froude_swim::gait::Course;
-use froude_swim::spatial::attitude::of_angles;
-use froude_swim::spatial::gait::SpatialGait;
-use froude_swim::spatial::path::State;
-use froude_swim::spatial::period::ONE;
-use froude_swim::spatial::robot::{RIGHTS_ITSELF_M, SpatialRobot};
-use froude_swim::spatial::swim::{SpatialMoment, SpatialSwim};
-use froude_swim::spatial::vector::Axis;
-use froude_swim::trajectory::Cut;
-use serde_json::{Value, json};
 
+use super::answer::{Figures, Repeats, Space};
 use super::leaves::Repeating;
-use super::moves::{self, Moves, Wave};
-use super::told;
-use super::{Job, MOMENTS, Pitching, SwimInput};
-use crate::{Error, results};
+use super::moves::{self, Asked, Moves, Wave};
+use super::{Job, MOMENTS, Pitching, VerbError, space_figures as figures};
+use crate::course::Ramped;
+use crate::gait::Course;
+use crate::spatial::attitude::of_angles;
+use crate::spatial::gait::SpatialGait;
+use crate::spatial::path::State;
+use crate::spatial::period::ONE;
+use crate::spatial::robot::{RIGHTS_ITSELF_M, SpatialRobot};
+use crate::spatial::swim::{SpatialMoment, SpatialSwim};
+use crate::spatial::vector::Axis;
+use crate::trajectory::Cut;
 
 /// A trim is none below this, m.
 const TRIMMED_M: f64 = 1e-4;
 
 /// What came of a swim in three dimensions.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpatialSwum {
-    /// The robot's name.
-    pub name: String,
-    /// What the gait comes to.
-    pub swim: SpatialSwim,
-    /// The robot.
-    pub robot: SpatialRobot,
+struct SpatialSwum {
+    name: String,
+    swim: SpatialSwim,
+    robot: SpatialRobot,
     /// Its period, s.
-    pub period_s: f64,
-    /// The files that were read.
-    pub data: Vec<DataFile>,
-    /// What was written, where it was asked for.
-    pub written: Option<SpatialWritten>,
+    period_s: f64,
 }
 
-/// Files of a swim in three dimensions.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SpatialWritten {
-    /// Moment by moment.
-    pub trajectory: PathBuf,
-    /// What a person reads.
-    pub report: PathBuf,
-    /// The same for a program.
-    pub record: PathBuf,
-}
-
-pub(super) fn swim(file: &RobotFile, job: &Job, pitching: &Pitching) -> Result<SpatialSwum, Error> {
-    let data = job.reads(file)?;
+pub(super) fn swim(file: &RobotFile, job: &Job) -> Result<Outcome, VerbError> {
+    let (data, pitching) = (job.reads(file)?.data()?, &job.pitching);
     let robot = SpatialRobot::of(file)?;
     let joints = robot.chain.joints.len();
-    let wrong = |path: &Path, problem: &str| SwimInput { path: path.to_owned(), problem: problem.to_owned() };
+    let wrong = VerbError::input;
     let drives = super::drives(file, job.motor.as_deref())?;
     if !drives.following.is_empty() {
         let problem =
             "has servos (kp and kd), and joints of three dimensions follow their gait exactly: leave them out";
-        return Err(wrong(&job.robot, problem).into());
+        return Err(wrong(&job.robot, problem));
     }
     let gait = match &job.moves {
         Moves::Wave(gait) => moves::Periodically { wave: Wave::Gait(gait.clone()), ramp_s: None, pitch: None },
         Moves::File { path, typed } => moves::gait_of(path, typed, joints)?,
         Moves::Track(path) => {
             let problem = "is a recording, which a robot swims in the plane: give a gait, or write space = \"planar\" in the robot file";
-            return Err(wrong(path, problem).into());
+            return Err(wrong(path, problem));
         }
     };
+    let asked = Asked::of(&job.moves, Some(&gait));
     let course: Box<dyn Course> = match gait.wave {
         Wave::Gait(yaw) => {
             let axes = robot.chain.joints.clone();
             let own = gait.pitch.unwrap_or_default();
             if !axes.contains(&Axis::Pitch) && (*pitching != Pitching::default() || gait.pitch.is_some()) {
                 let problem = "has no joint that pitches, and the gait has a wave of such: write axis = \"pitch\" in a [[joint]], or leave pitch out";
-                return Err(wrong(&job.robot, problem).into());
+                return Err(wrong(&job.robot, problem));
             }
             Box::new(SpatialGait {
                 yaw,
@@ -97,35 +76,43 @@ pub(super) fn swim(file: &RobotFile, job: &Job, pitching: &Pitching) -> Result<S
         }
         Wave::Table(_) if *pitching != Pitching::default() => {
             let problem = "is of three dimensions and swims by a table, which has the angles of all joints: leave the pitch options out";
-            return Err(wrong(&job.robot, problem).into());
+            return Err(wrong(&job.robot, problem));
         }
         Wave::Table(cycle) => Box::new(cycle),
     };
     let swim = robot.swim(&*course, &drives, job.step_s)?;
     let period_s = course.period_s();
-    let mut swum = SpatialSwum { name: file.name.clone(), swim, robot, period_s, data, written: None };
-    if let Some(out) = &job.out {
-        let (swim, robot) = (&swum.swim, &swum.robot);
-        let cut = Cut {
-            moments: job.periods.saturating_mul(MOMENTS),
-            apart_s: period_s / MOMENTS as f64,
-            steps: swim.steps.div_ceil(MOMENTS),
-        };
-        let [x, y] = file.current_m_s;
-        let current = [x, y, 0.0];
-        let moments = match gait.ramp_s {
-            Some(ramp_s) => robot.trajectory(&Ramped { course: &*course, ramp_s }, &start(file), cut, current)?,
-            None if file.start.is_some() => robot.trajectory(&*course, &start(file), cut, current)?,
-            None => robot.trajectory(&*course, &swim.periodic.begin(), cut, current)?,
-        };
-        swum.written = Some(SpatialWritten {
-            trajectory: out.join("trajectory.parquet"),
-            report: out.join("report.html"),
-            record: out.join("result.json"),
-        });
-        results::replace(out, |folder| write(&swum, &moments, job, folder))?;
+    let moments = match job.out {
+        None => None,
+        Some(_) => {
+            let cut = Cut {
+                moments: job.periods.saturating_mul(MOMENTS),
+                apart_s: period_s / MOMENTS as f64,
+                steps: swim.steps.div_ceil(MOMENTS),
+            };
+            let [x, y] = file.current_m_s;
+            let current = [x, y, 0.0];
+            Some(match gait.ramp_s {
+                Some(ramp_s) => robot.trajectory(&Ramped { course: &*course, ramp_s }, &start(file), cut, current)?,
+                None if file.start.is_some() => robot.trajectory(&*course, &start(file), cut, current)?,
+                None => robot.trajectory(&*course, &swim.periodic.begin(), cut, current)?,
+            })
+        }
+    };
+    let swum = SpatialSwum { name: file.name.clone(), swim, robot, period_s };
+    let f = swum.figures(&data, &asked);
+    let mut blocks = vec![Block::text("remarks", swum.warnings())];
+    blocks.extend(f.blocks());
+    blocks.push(Block::text("remarks", swum.sentences(&f)));
+    let detail =
+        |title: &str, blocks| Section { title: title.to_owned(), blocks, is_detail: true, ..Section::default() };
+    let moments = moments.as_deref();
+    if let Some(m) = moments {
+        blocks.push(detail("The way", vec![figures::path(m), figures::attitude(m), figures::motion(m)]).into());
+        blocks.push(detail("Joints", vec![figures::joints(m), figures::powers(m)]).into());
     }
-    Ok(swum)
+    let files = moments.zip(job.out.as_ref()).map(|(m, out)| (table(m, &out.join("trajectory.parquet")), None));
+    Ok(job.outcome(&swum.name, f.subtitle(), blocks, files))
 }
 
 /// As the robot file has it, level at the depth of nought.
@@ -138,13 +125,6 @@ fn start(file: &RobotFile) -> State {
         head: [0.0, 0.0, r, u, v, 0.0],
         ..State::default()
     }
-}
-
-fn write(swum: &SpatialSwum, moments: &[SpatialMoment], job: &Job, folder: &Path) -> Result<(), Error> {
-    let path = folder.join("trajectory.parquet");
-    write_parquet(&table(moments, &path), &path)?;
-    write_atomically(&folder.join("report.html"), swum.page(moments, job.date.clone())?.as_bytes())?;
-    Ok(write_atomically(&folder.join("result.json"), format!("{:#}\n", swum.as_json()).as_bytes())?)
 }
 
 /// Columns with their units, a row per moment.
@@ -190,65 +170,59 @@ fn table(moments: &[SpatialMoment], path: &Path) -> Table {
 }
 
 impl SpatialSwum {
-    /// What a person reads.
-    #[must_use]
-    pub fn section(&self) -> DocumentSection {
+    fn figures<'a>(&'a self, data: &'a [DataFile], asked: &'a Asked) -> Figures<'a> {
         let (s, p) = (&self.swim, &self.swim.periodic);
-        let row = |name: &str, value: String, unit: &str| vec![name.to_owned(), value, unit.to_owned()];
-        let range =
-            |[low, high]: [f64; 2]| format!("{} to {}", fixed(low.to_degrees(), 2), fixed(high.to_degrees(), 2));
-        let mut rows = vec![
-            row("speed, level", significant(p.speed_m_s, 4), "m/s"),
-            row("cost of transport", significant(s.cost_j_m, 4), "J/m"),
-            row("the same by positive power", significant(s.cost_positive_j_m, 4), "J/m"),
-            row("cost of transport over m g U", significant(s.cost, 3), "1"),
-            row("net power: what the water takes", significant(p.net_w, 4), "W"),
-            row("positive power: drives without recovery", significant(p.positive_w, 4), "W"),
-            row("power in both directions", significant(p.absolute_w, 4), "W"),
-        ];
-        if let Some(electric) = s.electric_w {
-            rows.push(row("power from the battery", significant(electric, 4), "W"));
-            rows.push(row("cost of transport from the battery", significant(electric / p.speed_m_s, 4), "J/m"));
-        }
-        rows.extend([
-            row("largest torque of a motor", significant(s.needs.torque_n_m, 3), "N m"),
-            row("largest rate of a joint", significant(s.needs.rate_rad_s.to_degrees(), 4), "deg/s"),
-            row("roll of the head", range(p.roll), "deg"),
-            row("pitch of the head", range(p.pitch), "deg"),
-            row("turn per period", fixed(p.turn.to_degrees(), 2), "deg"),
-            row("sinks per period", fixed(1e3 * p.way_m[2], 2), "mm"),
-            row("largest Floquet multiplier", significant(p.multipliers[0], 3), "1"),
-        ]);
-        rows.extend(s.unstable.iter().flat_map(|unstable| Repeating::from(&**unstable).rows()));
-        DocumentSection {
-            title: self.name.clone(),
-            paragraphs: self.sentences(),
-            tables: vec![TextTable {
-                caption: format!(
-                    "{}: {} modules in three dimensions, drag of {}",
-                    self.name,
-                    count(self.robot.chain.links.len()),
-                    self.robot.plane.estimates.0
-                ),
-                head: vec!["quantity".to_owned(), "value".to_owned(), "unit".to_owned()],
-                rows,
-            }],
-            charts: Vec::new(),
+        let unstable = s.unstable.as_deref().map(Repeating::from);
+        Figures {
+            name: &self.name,
+            robot: &self.robot.plane,
+            data,
+            asked,
+            speed_m_s: p.speed_m_s,
+            power_w: [p.net_w, p.positive_w, p.absolute_w, p.loss_w],
+            friction_w: None,
+            electric_w: s.electric_w,
+            needs: s.needs,
+            motor_share: None,
+            fastest_rad_s: None,
+            steps: s.steps,
+            stiffness: None,
+            extrapolated: s.extrapolated,
+            along: s.along,
+            median_angle_rad: s.median_angle_rad,
+            gain_w: None,
+            turn: p.turn,
+            repeats: Some(Repeats {
+                cost: s.cost,
+                multipliers: p.multipliers.to_vec(),
+                residual: p.residual,
+                unstable,
+            }),
+            track: None,
+            space: Some(Space {
+                roll: p.roll,
+                pitch: p.pitch,
+                way_m: p.way_m,
+                period_s: self.period_s,
+                lifting_w: p.lifting_w,
+                righting_m: self.robot.righting_m,
+                trim_m: self.robot.trim_m,
+            }),
         }
     }
 
     /// What is to be read before the figures: a motion that the swimmer leaves, a body that does not stay upright.
-    #[must_use]
-    pub fn warnings(&self) -> Vec<String> {
+    fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
         self.stability(&mut out);
         out
     }
 
-    fn sentences(&self) -> Vec<String> {
-        let mut out = self.warnings();
+    fn sentences(&self, f: &Figures<'_>) -> Vec<String> {
+        let mut out = Vec::new();
         self.trim(&mut out);
         self.water(&mut out);
+        f.losses(&mut out);
         self.drag(&mut out);
         out
     }
@@ -331,7 +305,6 @@ impl SpatialSwum {
 
     fn drag(&self, out: &mut Vec<String>) {
         let s = &self.swim;
-        told::losses(s.extrapolated, s.median_angle_rad, s.along, out);
         if let Some((joint, torque, limit)) = s.needs.beyond {
             out.push(format!(
                 "beyond the drives: joint {joint} needs {} N m, and it gives {} N m",
@@ -345,49 +318,5 @@ impl SpatialSwum {
                 significant(s.needs.share, 3)
             ));
         }
-    }
-
-    /// The same for a program, each number in SI with its unit in the name.
-    #[must_use]
-    pub fn as_json(&self) -> Value {
-        let (s, p) = (&self.swim, &self.swim.periodic);
-        json!({
-            "robot": self.name,
-            "data": self.data,
-            "space": "3d",
-            "modules": self.robot.chain.links.len(),
-            "drag": self.robot.plane.estimates.0,
-            "added_mass": self.robot.plane.estimates.1,
-            "speed_m_s": p.speed_m_s,
-            "sinking_m_s": p.way_m[2] / self.period_s,
-            "cost_of_transport_j_m": s.cost_j_m,
-            "cost_of_transport_positive_j_m": s.cost_positive_j_m,
-            "cost_of_transport": s.cost,
-            "power_net_w": p.net_w,
-            "power_positive_w": p.positive_w,
-            "power_absolute_w": p.absolute_w,
-            "power_loss_w": p.loss_w,
-            "power_lifting_w": p.lifting_w,
-            "power_electric_w": s.electric_w,
-            "torque_peak_n_m": s.needs.torque_n_m,
-            "rate_peak_rad_s": s.needs.rate_rad_s,
-            "steps": s.steps,
-            "roll_rad": p.roll,
-            "pitch_rad": p.pitch,
-            "turn_per_period_rad": p.turn,
-            "way_per_period_m": p.way_m,
-            "righting_m": self.robot.righting_m,
-            "trim_m": self.robot.trim_m,
-            "mass_less_displaced_kg": self.robot.plane.heavy_kg,
-            "floquet_multipliers": p.multipliers,
-            "periodic_residual": p.residual,
-            "unstable_motion": s.unstable.as_ref().map(|u| Repeating::from(&**u).as_json()),
-            "extrapolated_loss_by_speed": s.extrapolated[0],
-            "extrapolated_loss_by_angle": s.extrapolated[1],
-            "loss_along_links": s.along,
-            "median_angle_of_loss_rad": s.median_angle_rad,
-            "trajectory": self.written.as_ref().map(|w| &w.trajectory),
-            "remarks": self.sentences(),
-        })
     }
 }

@@ -1,0 +1,144 @@
+//! What a verb returns: blocks, declared once and shown by every front end.
+//!
+//! A column of a table is declared in one line: its key for programs, its head for people, and how it follows from a row. Terminal, page,
+//! JSON, CSV and schema follow from that.
+//!
+//! **Units.** Numbers are in SI, and a key ends in the SI unit of its numbers (`speed_m_s`). A head may name another unit in brackets
+//! (`speed [kn]`): people read the number in that one. **Missing numbers.** NaN and `None` are shown as "—", and are null in JSON.
+
+mod builder;
+mod cell;
+mod json;
+mod laid_out;
+#[cfg(test)]
+mod tests;
+
+pub use builder::{TableBuilder, facts};
+pub use json::Tree;
+pub(crate) use json::tree;
+pub use laid_out::laid_out;
+
+use crate::page::{Chart, Map};
+use crate::units::Unit;
+
+/// One part of an answer.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// Sentences; with a key, a program reads them as a list.
+    Text {
+        /// Their place in JSON; empty: people alone read them.
+        key: String,
+        /// One a paragraph.
+        texts: Vec<String>,
+    },
+    /// A table.
+    Table(ResultTable),
+    /// A figure.
+    Chart(Chart),
+    /// One quantity over two.
+    Map(Map),
+    /// Blocks under a heading.
+    Section(Section),
+}
+
+/// Blocks under a heading.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Section {
+    /// An object of JSON that holds the blocks; `draws[]` is one of a list of such, an empty key adds them to what the section lies in.
+    pub key: String,
+    /// Heading.
+    pub title: String,
+    /// In order.
+    pub blocks: Vec<Block>,
+    /// Pages alone show it.
+    pub is_detail: bool,
+}
+
+/// A table of results, column by column.
+///
+/// **JSON.** A list of objects at its key, or an object for a table of facts. A key with `/` nests: `added_mass/surge_kg`. Tables of one
+/// key are one list, of which each holds some columns.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ResultTable {
+    /// Its place in JSON; empty: a table of facts adds them to what it lies in, and another table is for people alone.
+    pub key: String,
+    /// Caption.
+    pub caption: String,
+    /// Columns, each with a cell per row.
+    pub columns: Vec<ResultColumn>,
+    /// How many.
+    pub n_rows: usize,
+    /// A table of one row, which people read as quantity, value and unit; what is missing is left out for them.
+    pub are_facts: bool,
+    /// Rows that people see; `None`: all of them.
+    pub shown_rows: Option<Vec<usize>>,
+}
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResultColumn {
+    /// Its place in the object of a row; empty: people alone read it.
+    pub key: String,
+    /// What people read above it, without its unit; empty: programs alone read it.
+    pub head: String,
+    /// The unit that people read, where there is one.
+    pub unit: Option<Unit>,
+    /// A cell per row.
+    pub cells: Cells,
+    /// How its numbers are written.
+    pub digits: Digits,
+}
+
+/// The cells of a column.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cells {
+    /// SI.
+    Number(Vec<f64>),
+    /// How many.
+    Count(Vec<Option<usize>>),
+    /// Ends of an interval, SI.
+    Interval(Vec<Option<[f64; 2]>>),
+    /// Numbers of one kind, SI.
+    Numbers(Vec<Option<Vec<f64>>>),
+    /// Words.
+    Text(Vec<Option<String>>),
+    /// Several words.
+    Texts(Vec<Vec<String>>),
+    /// Whether it is so.
+    Flag(Vec<Option<bool>>),
+}
+
+/// How a number is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Digits {
+    /// So many digits that count.
+    Significant(u8),
+    /// As a person would type it, with at most so many digits that count.
+    Plain(u8),
+    /// So many places behind the point.
+    Places(u8),
+    /// A part of the whole in percent.
+    Percent,
+    /// A probability.
+    PValue,
+}
+
+impl Block {
+    /// Sentences; with a key, a program reads them as a list.
+    #[must_use]
+    pub fn text(key: &str, texts: Vec<String>) -> Self {
+        Self::Text { key: key.to_owned(), texts }
+    }
+}
+
+impl From<ResultTable> for Block {
+    fn from(table: ResultTable) -> Self {
+        Self::Table(table)
+    }
+}
+
+impl From<Section> for Block {
+    fn from(section: Section) -> Self {
+        Self::Section(section)
+    }
+}

@@ -1,0 +1,40 @@
+//! A cell as people read it.
+
+use super::{Cells, Digits, ResultColumn};
+use crate::number::{count, fixed, interval, p_value, percent, plain, significant};
+
+impl ResultColumn {
+    /// The text of a cell; `None` where it has none.
+    #[must_use]
+    pub fn text(&self, row: usize) -> Option<String> {
+        match &self.cells {
+            Cells::Number(all) => all.get(row).copied().and_then(|si| self.number(si)),
+            Cells::Count(all) => all.get(row).copied().flatten().map(count),
+            Cells::Interval(all) => all.get(row).copied().flatten().map(|ends| interval(ends.map(|si| self.shown(si)))),
+            Cells::Numbers(all) => {
+                let numbers = all.get(row)?.as_ref()?;
+                let texts: Option<Vec<String>> = numbers.iter().map(|si| self.number(*si)).collect();
+                texts.map(|texts| texts.join(", "))
+            }
+            Cells::Text(all) => all.get(row).cloned().flatten(),
+            Cells::Texts(all) => all.get(row).filter(|texts| !texts.is_empty()).map(|texts| texts.join(", ")),
+            Cells::Flag(all) => all.get(row).copied().flatten().map(|is| if is { "yes" } else { "no" }.to_owned()),
+        }
+    }
+
+    /// In the unit that people read.
+    fn shown(&self, si: f64) -> f64 {
+        self.unit.as_ref().map_or(si, |unit| unit.from_si(si))
+    }
+
+    fn number(&self, si: f64) -> Option<String> {
+        let x = self.shown(si);
+        x.is_finite().then(|| match self.digits {
+            Digits::Significant(n) => significant(x, n.into()),
+            Digits::Plain(n) => plain(x, n.into()),
+            Digits::Places(n) => fixed(x, n.into()),
+            Digits::Percent => percent(x),
+            Digits::PValue => p_value(x),
+        })
+    }
+}

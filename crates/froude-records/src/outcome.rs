@@ -1,0 +1,79 @@
+//! What a verb returns: its blocks, what its checks found, and the files that it writes.
+//!
+//! A verb builds it once. Terminal, page, JSON and the writer of files know no verb.
+
+use std::fs::File;
+use std::path::PathBuf;
+
+use crate::block::{Block, Tree, tree};
+use crate::finding::Finding;
+use crate::table::Table;
+
+/// What a verb returns.
+#[derive(Debug, Default)]
+pub struct Outcome {
+    /// In order.
+    pub blocks: Vec<Block>,
+    /// What its checks found; `None` for a verb that checks nothing.
+    pub findings: Option<Vec<Finding>>,
+    /// Files, in the order in which a person is told of them.
+    pub files: Vec<OutputFile>,
+    /// What the files were made from, piece by piece.
+    pub scratch: Option<Scratch>,
+}
+
+/// A folder with the pieces of a long work, which another start goes on from. It goes away when the files that they become are written.
+#[derive(Debug)]
+pub struct Scratch {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Held until then.
+    pub lock: File,
+}
+
+/// A file that a verb writes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputFile {
+    /// What it is, in a word: its name in JSON, and what people read before its path.
+    pub key: &'static str,
+    /// Where it lies.
+    pub path: PathBuf,
+    /// What is in it.
+    pub content: Content,
+}
+
+/// What is in a file.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Content {
+    /// The outcome as one self-contained HTML file.
+    Page(Head),
+    /// The outcome as JSON.
+    Result,
+    /// A table, as the name of its file has it.
+    Table(Table),
+    /// Bytes of a format of its own.
+    Bytes(Vec<u8>),
+}
+
+/// The head of a page.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Head {
+    /// What sort of page, above the title.
+    pub sort: String,
+    /// Title.
+    pub title: String,
+    /// Second line.
+    pub subtitle: String,
+    /// Heading of what stands before the first section.
+    pub summary: String,
+    /// Date as text.
+    pub date: Option<String>,
+}
+
+impl Outcome {
+    /// As a JSON document.
+    #[must_use]
+    pub fn json(&self) -> Tree<'_> {
+        tree(self)
+    }
+}

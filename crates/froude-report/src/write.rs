@@ -1,0 +1,70 @@
+//! The files of an outcome: all of them, or none.
+
+use std::io::Write as _;
+use std::path::Path;
+
+use froude_records::RecordError;
+use froude_records::manifest::take_own_place;
+use froude_records::outcome::{Content, Outcome, OutputFile};
+use froude_records::results::replace;
+use froude_records::table::prepare_table;
+use froude_records::write::Prepared;
+
+use crate::input::ReportError;
+use crate::outcome::page;
+
+/// Why the files of an outcome are not written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The folder, or a file in it.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// The page.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+}
+
+/// Replaces a folder of results by the files of an outcome, which lie in it.
+///
+/// # Errors
+///
+/// A folder that holds what a person wrote, a full disk, a figure that cannot be drawn: what stood there is untouched.
+pub fn write_folder(outcome: &Outcome, out: &Path) -> Result<(), WriteError> {
+    replace(out, |folder| {
+        for file in &outcome.files {
+            let path = folder.join(file.path.strip_prefix(out).unwrap_or(&file.path));
+            prepared(outcome, file, &path)?.take_place()?;
+        }
+        Ok(())
+    })
+}
+
+/// Writes the files of an outcome one by one into a folder that holds others too. All of them are made before the first takes its place.
+///
+/// # Errors
+///
+/// As [`write_folder`]; a file in the place of another that Froude did not write.
+pub fn write_files(outcome: &Outcome) -> Result<(), WriteError> {
+    let all = outcome.files.iter().map(|file| prepared(outcome, file, &file.path)).collect::<Result<Vec<_>, _>>()?;
+    all.into_iter().try_for_each(take_own_place)?;
+    if let Some(scratch) = &outcome.scratch {
+        // What is left is found by the next start.
+        let _ = std::fs::remove_dir_all(&scratch.folder);
+    }
+    Ok(())
+}
+
+fn prepared(outcome: &Outcome, file: &OutputFile, path: &Path) -> Result<Prepared, WriteError> {
+    Ok(match &file.content {
+        Content::Page(head) => {
+            let page = page(outcome, head)?;
+            Prepared::new(path, |out| out.write_all(page.as_bytes()))?
+        }
+        Content::Result => Prepared::new(path, |out| {
+            serde_json::to_writer_pretty(&mut *out, &outcome.json())?;
+            writeln!(out)
+        })?,
+        Content::Table(table) => prepare_table(table, path)?,
+        Content::Bytes(bytes) => Prepared::new(path, |out| out.write_all(bytes))?,
+    })
+}

@@ -1,0 +1,176 @@
+//! `froude swim` and `froude robot inspect`: a robot file and a gait become speed, powers and cost of transport, and a trajectory.
+
+mod animation;
+mod answer;
+mod columns;
+mod figures;
+mod leaves;
+mod look;
+mod moves;
+mod optimise;
+mod plane;
+mod reads;
+mod space;
+mod space_figures;
+mod sweep;
+mod told;
+mod uncertain;
+mod water;
+
+use std::path::{Path, PathBuf};
+
+use froude_records::RecordError;
+use froude_records::block::Block;
+pub use froude_records::gait_file::PitchFile as Pitching;
+use froude_records::outcome::{Content, Head, Outcome, OutputFile};
+use froude_records::robot::{RobotFile, read_robot};
+use froude_records::table::Table;
+
+use crate::draws::DrawError;
+use crate::joints::Drives;
+use crate::robot::RobotError;
+use crate::swim::SwimError;
+pub use look::look;
+pub use moves::{Moves, Typed};
+pub use optimise::optimise;
+use reads::Reads;
+pub use sweep::{Ranges, SweepError, SweepJob, sweep};
+pub use uncertain::Drawing;
+
+/// What is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Job {
+    /// The robot file.
+    pub robot: PathBuf,
+    /// What its joints do.
+    pub moves: Moves,
+    /// The wave of joints that pitch.
+    pub pitching: Pitching,
+    /// The motor of its joints.
+    pub motor: Option<PathBuf>,
+    /// The longest step, s.
+    pub step_s: Option<f64>,
+    /// Folder of trajectory, report, animation and record; without it there are none.
+    pub out: Option<PathBuf>,
+    /// Periods of the trajectory.
+    pub periods: usize,
+    /// Date of the report.
+    pub date: Option<String>,
+    /// Draws of the coefficients.
+    pub draws: Option<Drawing>,
+    /// Whether each coefficient is changed by itself.
+    pub is_sensitive: bool,
+}
+
+/// Why a robot does not swim.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum VerbError {
+    /// A file could not be read or written, or says something impossible.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// A robot file gives no robot.
+    #[error(transparent)]
+    Robot(#[from] RobotError),
+    /// A file does not fit the robot, or what is asked of it.
+    #[error("{}: {problem}", .path.display())]
+    Input {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// A sweep does not begin.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    /// Nothing can be drawn.
+    #[error(transparent)]
+    Draws(#[from] DrawError),
+    /// A gait has no answer.
+    #[error(transparent)]
+    Swim(#[from] SwimError),
+}
+
+impl VerbError {
+    fn input(path: &Path, problem: impl Into<String>) -> Self {
+        Self::Input { path: path.to_owned(), problem: problem.into() }
+    }
+}
+
+/// Moments of a period in a trajectory.
+const MOMENTS: usize = 100;
+
+/// Swims, in the plane or in three dimensions, as the robot file has it; `tell` hears how many draws of how many are done.
+///
+/// # Errors
+///
+/// A robot file or record that cannot be used, joints beyond their limits, a gait without a motion that repeats, a wave of joints that pitch where there are none,
+/// results in the place of what is read, records without a covariance where draws are asked for.
+pub fn swim(job: &Job, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Outcome, VerbError> {
+    let file = read_robot(&job.robot)?;
+    if file.spatial.is_3d {
+        if job.draws.is_some() || job.is_sensitive {
+            planar(&job.robot)?;
+        }
+        return space::swim(&file, job);
+    }
+    if job.pitching != Pitching::default() {
+        let problem = "is of the plane, and the pitch options are of joints that pitch: write space = \"3d\" in [model], or leave them out";
+        return Err(VerbError::input(&job.robot, problem));
+    }
+    plane::swim(file, job, tell)
+}
+
+/// The robot file of a swimmer in a plane.
+fn planar(path: &Path) -> Result<RobotFile, VerbError> {
+    let file = read_robot(path)?;
+    if file.spatial.is_3d {
+        let problem = "is of three dimensions, and this is of the plane: write space = \"planar\" in [model]";
+        return Err(VerbError::input(path, problem));
+    }
+    Ok(file)
+}
+
+/// What its joints allow and what drives them, with the motor of a file.
+fn drives(file: &RobotFile, motor: Option<&Path>) -> Result<Drives, VerbError> {
+    let drives = Drives::of(&file.joint, &file.joints);
+    Ok(match motor {
+        Some(motor) => moves::with_motor(drives, motor)?,
+        None => drives,
+    })
+}
+
+impl Job {
+    /// The files that are read; refused where results would take the place of one.
+    fn reads(&self, file: &RobotFile) -> Result<Reads, VerbError> {
+        let reads = Reads::of(file, &self.robot, &self.moves, self.motor.as_deref());
+        if let Some(out) = &self.out {
+            reads.spared_by(out)?;
+        }
+        Ok(reads)
+    }
+
+    /// The answer, with its files where a folder is named.
+    fn outcome(&self, title: &str, subtitle: String, blocks: Vec<Block>, files: Written) -> Outcome {
+        let mut out = Outcome { blocks, ..Outcome::default() };
+        if let (Some(folder), Some((trajectory, animation))) = (&self.out, files) {
+            let head = Head {
+                sort: "Swimming robot".to_owned(),
+                title: title.to_owned(),
+                subtitle,
+                summary: "The answer".to_owned(),
+                date: self.date.clone(),
+            };
+            let file = |key, name, content| OutputFile { key, path: folder.join(name), content };
+            out.files.push(file("report", "report.html", Content::Page(head)));
+            out.files
+                .extend(animation.map(|page| file("animation", "animation.html", Content::Bytes(page.into_bytes()))));
+            out.files.push(file("trajectory", "trajectory.parquet", Content::Table(trajectory)));
+            out.files.push(file("record", "result.json", Content::Result));
+        }
+        out
+    }
+}
+
+/// Trajectory and animation.
+type Written = Option<(Table, Option<String>)>;
