@@ -54,6 +54,7 @@
 //! | [`surface_pressure`] | the pressure on the body's surface |
 //! | [`surface`] | a closed surface as a body: its lengths, its symmetry |
 //! | [`transient`] | a case in time |
+//! | [`verb`] | `froude cfd` |
 //! | [`warm`] | starting from another case's last fields, scaled |
 //! | [`work`] | one case, done once |
 //!
@@ -119,6 +120,7 @@ pub mod suggest;
 pub mod surface;
 pub mod surface_pressure;
 pub mod transient;
+pub mod verb;
 pub mod wall;
 pub mod warm;
 pub mod window;

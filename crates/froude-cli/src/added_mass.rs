@@ -7,8 +7,9 @@ use froude::methods::added_mass::load::Loaded;
 use froude::methods::added_mass::options::{Asked, weld_m};
 use froude::methods::added_mass::record::{place_in, replaces_another_frame};
 use froude::methods::added_mass::repair::repair;
-use froude::panel::refine::{Forecast, duration};
+use froude::panel::refine::Forecast;
 use froude::pipeline::{Input, Job};
+use froude::records::number::duration;
 use froude::records::page::TextTable;
 
 use crate::args::AddedMassArgs;

@@ -5,8 +5,12 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread::available_parallelism;
 
-use froude::cfd::run::{Engine, Job, Running, SlurmOptions, run, run_case};
-use froude::cfd::{collect, plan, report, retry, status, suggest, swing};
+use froude::cfd::verb::{self, Engine, Job, Running, SlurmOptions};
+use froude::pipeline::default_out;
+use froude::records::outcome::Outcome;
+use froude::records::results::can_be_written;
+use froude::report::write::write_folder;
+use froude::swing::swing;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 
@@ -17,15 +21,13 @@ use crate::print;
 use crate::signals::{self, STOPPED};
 
 pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
-    match job {
+    let found = match job {
         CfdJob::Plan { of, jobs } => {
             let (bar, cancel) = (Spinner::new(), cancel()?);
-            let planned = plan::plan(&of.campaign, of.source.as_deref(), &cancel, &|what| bar.set_message(what))?;
+            let tell = |what: &str| bar.set_message(what);
+            let found = verb::plan(&of.campaign, of.source.as_deref(), processors(jobs), &cancel, &tell)?;
             bar.finish_and_clear();
-            if json {
-                return print::json(&planned.as_json());
-            }
-            print::summary(&planned.section(processors(jobs)));
+            found
         }
         CfdJob::Run { of, engine, jobs, ranks, batch, time, memory, partition } => {
             let engine = match engine {
@@ -45,79 +47,33 @@ pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
                     })
                 }
             };
-            start(&of, engine, json)?;
+            start(&of, engine, json)?
         }
-        CfdJob::Status { of } => {
-            let found = status::status(&of.campaign, of.source.as_deref())?;
-            if json {
-                return print::json(&found.as_json());
-            }
-            print::summary(&found.section());
-        }
-        CfdJob::Collect { of } => {
-            let found = collect::collect(&of.campaign, of.source.as_deref())?;
-            if json {
-                return print::json(&found.as_json());
-            }
-            found.sections().iter().for_each(print::summary);
-        }
+        CfdJob::Status { of } => verb::status(&of.campaign, of.source.as_deref())?,
+        CfdJob::Collect { of } => verb::collect(&of.campaign, of.source.as_deref())?,
         CfdJob::Report { of, cases, out } => {
+            let out = out.unwrap_or_else(|| default_out(&of.campaign, "cfd"));
+            can_be_written(&out)?;
             let bar = Spinner::new();
             let tell = |what: &str| bar.set_message(what);
-            let source = of.source.as_deref();
-            let found = report::report(&of.campaign, source, &cases, out.as_deref(), Some(crate::today()), &tell)?;
+            let found = verb::report(&of.campaign, of.source.as_deref(), &cases, &out, Some(crate::today()), &tell)?;
+            tell("the page");
+            write_folder(&found, &out)?;
             bar.finish_and_clear();
-            if json {
-                return print::json(&found.as_json());
-            }
-            print::summary(&found.section());
-            say!("");
-            say!("report     {}", found.report.display());
-            say!("figures    {} in {}", found.figures.len(), found.report.with_file_name("figures").display());
+            found
         }
-        CfdJob::Retry { of, cases } => {
-            let again = retry(&of.campaign, of.source.as_deref(), &cases)?;
-            if json {
-                return print::json(&again);
-            }
-            for id in &again {
-                say!("{id}");
-            }
-            say!("{} to be computed again: froude cfd run {}", again.len(), of.campaign.display());
-        }
-        CfdJob::Suggest { of, count } => {
-            let found = suggest::suggest(&of.campaign, of.source.as_deref(), count)?;
-            if json {
-                return print::json(&found.as_json());
-            }
-            print::summary(&found.section());
-            if !found.next.is_empty() {
-                say!("");
-                for line in found.plan().lines() {
-                    say!("{line}");
-                }
-            }
-        }
+        CfdJob::Retry { of, cases } => verb::retry(&of.campaign, of.source.as_deref(), &cases)?,
+        CfdJob::Suggest { of, count } => verb::suggest(&of.campaign, of.source.as_deref(), count)?,
         CfdJob::Swing { campaign, source, jobs } => {
             let (bar, cancel) = (Spinner::new(), cancel()?);
             let now = |what: &str| bar.set_message(what);
-            let found = swing::swing(&campaign, source.as_deref(), processors(jobs), &cancel, &now)?;
+            let found = swing(&campaign, source.as_deref(), processors(jobs), &cancel, &now)?;
             bar.finish_and_clear();
-            if json {
-                print::json(&found.as_json())?;
-            } else {
-                print::summary(&found.section());
-            }
-            if found.was_cancelled {
-                return Err(Failure::Cancelled { verb: "swing", again: campaign });
-            }
-            if !found.failed.is_empty() {
-                return Err(Failure::RunsFailed { count: found.failed.len() });
-            }
+            found
         }
         CfdJob::Case { folders, ranks } => return cases(&folders, ranks),
-    }
-    Ok(())
+    };
+    print::answer(&found, json)
 }
 
 fn processors(jobs: Option<usize>) -> usize {
@@ -135,7 +91,7 @@ fn cancel() -> Result<Arc<AtomicBool>, Failure> {
     Ok(cancel)
 }
 
-fn start(of: &CfdCampaign, engine: Engine, json: bool) -> Result<(), Failure> {
+fn start(of: &CfdCampaign, engine: Engine, json: bool) -> Result<Outcome, Failure> {
     out::go_on_unread();
     let cancel = cancel()?;
     let bar = Spinner::new();
@@ -147,14 +103,9 @@ fn start(of: &CfdCampaign, engine: Engine, json: bool) -> Result<(), Failure> {
     };
     let running = Running::new(&now, &line);
     let job = Job { campaign: of.campaign.clone(), source: of.source.clone(), engine };
-    let ran = run(&job, &cancel, &running)?;
+    let ran = verb::run(&job, &cancel, &running)?;
     bar.finish_and_clear();
-    if json {
-        print::json(&ran.as_json())?;
-    } else {
-        print::summary(&ran.section());
-    }
-    if ran.was_cancelled { Err(Failure::Cancelled { verb: "run", again: of.campaign.clone() }) } else { Ok(()) }
+    Ok(ran)
 }
 
 /// What any queue runs: each folder is one case.
@@ -162,7 +113,7 @@ fn cases(folders: &[PathBuf], ranks: usize) -> Result<(), Failure> {
     let cancel = cancel()?;
     let mut failed = None;
     for folder in folders {
-        match run_case(folder, ranks, &cancel) {
+        match verb::run_case(folder, ranks, &cancel) {
             Ok(line) => say!("{}: {line}", name(folder)),
             Err(error) if error.was_stopped() => return Err(error.into()),
             // Another case may do better.

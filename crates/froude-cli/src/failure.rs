@@ -40,20 +40,12 @@ pub enum Failure {
     Program(std::io::Error),
 
     /// Stopped as asked.
-    #[error("stopped as asked, nothing is lost: froude cfd {verb} {} goes on where it was", .again.display())]
-    Cancelled {
-        /// What was stopped.
-        verb: &'static str,
-        /// The campaign.
-        again: PathBuf,
-    },
+    #[error("{0}")]
+    Stopped(String),
 
-    /// Runs without a result, each with its reason among what was printed.
-    #[error("{count} of the runs failed, each for the reason above; the others are done")]
-    RunsFailed {
-        /// How many.
-        count: usize,
-    },
+    /// A part of the work is undone.
+    #[error("{0}")]
+    Part(String),
 
     /// An option that is called otherwise now.
     #[error("{old} is now {new}: write {instead}")]
@@ -162,8 +154,8 @@ impl Failure {
         match self {
             Self::Froude(error) if error.was_stopped() => STOPPED,
             Self::Froude(error) => 1 + u8::from(error.is_bad_input()),
-            Self::Cancelled { .. } => STOPPED,
-            Self::RunsFailed { .. } => 1,
+            Self::Stopped(_) => STOPPED,
+            Self::Part(_) => 1,
             _ => 2,
         }
     }

@@ -10,7 +10,7 @@ use froude::records::block::{Block, laid_out};
 use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
 use froude::records::number;
-use froude::records::outcome::Outcome as Answered;
+use froude::records::outcome::{Exit, Outcome as Answered};
 use froude::records::page::{DocumentSection, TextTable};
 use froude::records::text::{counted, visible_json};
 use froude::results::Written;
@@ -57,19 +57,24 @@ pub fn outcome(outcome: &Outcome, all: bool) {
 /// What a verb returns, for a person or as one JSON document.
 pub fn answer(answer: &Answered, is_json: bool) -> Result<(), Failure> {
     if is_json {
-        return json(&answer.json());
+        json(&answer.json())?;
+    } else {
+        blocks(&answer.blocks);
+        if let Some(found) = &answer.findings {
+            findings(found);
+        }
+        if !answer.files.is_empty() {
+            say!("");
+        }
+        for file in &answer.files {
+            say!("{:<10} {}", file.key, file.path.display());
+        }
     }
-    blocks(&answer.blocks);
-    if let Some(found) = &answer.findings {
-        findings(found);
+    match &answer.exit {
+        Exit::Done => Ok(()),
+        Exit::Failed(why) => Err(Failure::Part(why.clone())),
+        Exit::Stopped(why) => Err(Failure::Stopped(why.clone())),
     }
-    if !answer.files.is_empty() {
-        say!("");
-    }
-    for file in &answer.files {
-        say!("{:<10} {}", file.key, file.path.display());
-    }
-    Ok(())
 }
 
 fn blocks(all: &[Block]) {
@@ -90,7 +95,7 @@ fn blocks(all: &[Block]) {
                 text_table(&table);
             }
             Block::Section(section) if !section.is_detail => blocks(&section.blocks),
-            Block::Section(_) | Block::Chart(_) | Block::Map(_) => {}
+            Block::Section(_) | Block::Chart(_) | Block::Map(_) | Block::Field(_) => {}
         }
     }
 }

@@ -17,7 +17,8 @@ use crate::solve;
 use crate::study::{SLOW, Size, Study, study};
 use crate::tank::{Surface, Tank};
 
-pub use crate::refine::forecast::{Forecast, duration, forecast};
+use crate::refine::forecast::duration;
+pub use crate::refine::forecast::{Forecast, forecast};
 pub use crate::refine::stop::{NoMemory, RefineError, Stop};
 
 /// What is asked for.

@@ -16,9 +16,9 @@ mod tests;
 pub use builder::{TableBuilder, facts};
 pub use json::Tree;
 pub(crate) use json::tree;
-pub use laid_out::laid_out;
+pub use laid_out::{laid_out, sections};
 
-use crate::page::{Chart, Map};
+use crate::page::{Chart, Field, Map};
 use crate::units::Unit;
 
 /// One part of an answer.
@@ -37,6 +37,8 @@ pub enum Block {
     Chart(Chart),
     /// One quantity over two.
     Map(Map),
+    /// A quantity over a plane.
+    Field(Field),
     /// Blocks under a heading.
     Section(Section),
 }
@@ -85,6 +87,8 @@ pub struct ResultColumn {
     pub unit: Option<Unit>,
     /// A cell per row.
     pub cells: Cells,
+    /// Standard uncertainties of its numbers, SI, with their place in JSON.
+    pub standard: Option<(String, Vec<f64>)>,
     /// How its numbers are written.
     pub digits: Digits,
 }
@@ -121,6 +125,10 @@ pub enum Digits {
     Percent,
     /// A probability.
     PValue,
+    /// A time as a person says it.
+    Duration,
+    /// A size on a disk.
+    Bytes,
 }
 
 impl Block {

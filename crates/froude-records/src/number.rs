@@ -320,6 +320,24 @@ pub fn count(n: usize) -> String {
     out
 }
 
+/// A time as a person says it.
+#[must_use]
+pub fn duration(seconds: f64) -> String {
+    if seconds < 1.0 {
+        "less than a second".to_owned()
+    } else if seconds < 120.0 {
+        format!("{seconds:.0} s")
+    } else {
+        format!("{:.0} min", seconds / 60.0)
+    }
+}
+
+/// A size on a disk, in the decimal units of disks.
+#[must_use]
+pub fn bytes(n: f64) -> String {
+    if n < 1e9 { format!("{} MB", significant(n / 1e6, 2)) } else { format!("{} GB", significant(n / 1e9, 2)) }
+}
+
 /// An angle in degrees, without zeros at the end.
 #[must_use]
 pub fn degrees(angle_rad: f64) -> String {

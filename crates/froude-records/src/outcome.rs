@@ -20,6 +20,20 @@ pub struct Outcome {
     pub files: Vec<OutputFile>,
     /// What the files were made from, piece by piece.
     pub scratch: Option<Scratch>,
+    /// How the verb ended.
+    pub exit: Exit,
+}
+
+/// How a verb ended that has an outcome.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Exit {
+    /// As it was asked to.
+    #[default]
+    Done,
+    /// With a part of its work undone, and why.
+    Failed(String),
+    /// It was stopped, and how it goes on.
+    Stopped(String),
 }
 
 /// A folder with the pieces of a long work, which another start goes on from. It goes away when the files that they become are written.
@@ -51,6 +65,8 @@ pub enum Content {
     Result,
     /// A table, as the name of its file has it.
     Table(Table),
+    /// A folder with each figure of the outcome as SVG.
+    Figures,
     /// Bytes of a format of its own.
     Bytes(Vec<u8>),
 }
@@ -68,6 +84,19 @@ pub struct Head {
     pub summary: String,
     /// Date as text.
     pub date: Option<String>,
+}
+
+/// Names of the files of a folder of figures.
+#[must_use]
+pub fn names_of_figures(blocks: &[Block]) -> Vec<String> {
+    let of = |block: &Block| match block {
+        Block::Chart(chart) => vec![format!("{}.svg", chart.name)],
+        Block::Map(map) => vec![format!("{}.svg", map.name)],
+        Block::Field(field) => vec![format!("{}.svg", field.name)],
+        Block::Section(section) => names_of_figures(&section.blocks),
+        Block::Text { .. } | Block::Table(_) => Vec::new(),
+    };
+    blocks.iter().flat_map(of).collect()
 }
 
 impl Outcome {

@@ -125,3 +125,48 @@ pub struct Map {
     /// Column and row of the cell that is marked, with its name.
     pub best: Option<(usize, usize, String)>,
 }
+
+/// A quantity over a plane, in one view or several.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Field {
+    /// Stem of the file's name.
+    pub name: String,
+    /// Title, for readers who do not see the picture.
+    pub title: String,
+    /// Caption below the figure; what was left out is said behind it.
+    pub caption: String,
+    /// Name of what is shown, unit included.
+    pub value_label: String,
+    /// From top to bottom, all of one scale and with the same colours.
+    pub views: Vec<View>,
+}
+
+/// One view.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct View {
+    /// Above it.
+    pub title: String,
+    /// Label of the abscissa, unit included.
+    pub x_label: String,
+    /// Label of the ordinate, unit included.
+    pub y_label: String,
+    /// Abscissae at the left and at the right edge; they may fall.
+    pub x: [f64; 2],
+    /// Ordinates at the lower and at the upper edge; they may fall.
+    pub y: [f64; 2],
+    /// What is filled; a later one covers an earlier one, and what leaves the edges is cut.
+    pub polygons: Vec<Polygon>,
+    /// Lines over them.
+    pub lines: Vec<[[f64; 2]; 2]>,
+    /// Direction of a flow, with its name.
+    pub flow: Option<([f64; 2], String)>,
+}
+
+/// A convex polygon of one value.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Polygon {
+    /// Its corners in their order around it.
+    pub corners: Vec<[f64; 2]>,
+    /// Its value.
+    pub value: f64,
+}

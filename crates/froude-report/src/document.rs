@@ -9,7 +9,6 @@ use froude_records::text::visible;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::chart;
-use crate::field::Field;
 use crate::findings::findings_by_severity;
 use crate::input::ReportError;
 use crate::style::{POLICY, STYLE};
@@ -31,8 +30,6 @@ pub struct Document {
     pub date: Option<String>,
     /// Sections in order; the first is the summary.
     pub sections: Vec<DocumentSection>,
-    /// Quantities over a plane, behind the sections.
-    pub fields: Vec<Field>,
     /// What the checks found.
     pub findings: Vec<Finding>,
 }
@@ -50,14 +47,12 @@ impl Document {
         for (i, section) in self.sections.iter().enumerate() {
             body.push(section_markup(i, section, &mut tables, &mut figure)?);
         }
-        let fields = self.fields.iter().map(Field::svg).collect::<Result<Vec<_>, _>>()?;
         let findings = findings_by_severity(&self.findings, &mut tables);
         let contents = html! {
             ol {
                 @for (i, section) in self.sections.iter().enumerate() {
                     li { a href={ "#section-" (i + 1) } { span { (i + 1) } (section.title) } }
                 }
-                @if !fields.is_empty() { li { a href="#pictures" { span {} "Pictures" } } }
                 @if !self.findings.is_empty() { li { a href="#findings" { span {} "Findings" } } }
             }
         };
@@ -69,17 +64,6 @@ impl Document {
                 @if let Some(date) = &self.date { p class="meta" { span { (date) } } }
             }
             @for part in &body { (part) }
-            @if !fields.is_empty() {
-                section {
-                    h2 id="pictures" { "Pictures" }
-                    @for (field, svg) in self.fields.iter().zip(&fields) {
-                        figure {
-                            (PreEscaped(svg))
-                            figcaption { b { "Figure " (count(&mut figure)) ". " } (field.caption()) }
-                        }
-                    }
-                }
-            }
             @if !self.findings.is_empty() {
                 section { h2 id="findings" { "Findings" } (findings) }
             }

@@ -4,7 +4,7 @@
 //! **Size.** A file stays small: polygons that no screen shows are left out, and of more than [`MOST`] the smallest; the caption says how many.
 
 use froude_records::number::count;
-use froude_records::page::Scale;
+use froude_records::page::{Field, Polygon, Scale, View};
 
 use crate::canvas::{Align, Canvas, Ink, WHITE, Xy};
 use crate::filled::{BAR, GAP, RIGHT, SHADES, axes, bar, shade};
@@ -31,51 +31,6 @@ const UNSEEN: f64 = 0.005;
 /// Viridis at every eighth, as `viridis(9)` of viridisLite prints it.
 const VIRIDIS: [u32; 9] = [0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21908c, 0x27ad81, 0x5dc863, 0xaadc32, 0xfde725];
 
-/// A quantity over a plane, in one view or several.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Field {
-    /// Stem of the file's name.
-    pub name: String,
-    /// Title, for readers who do not see the picture.
-    pub title: String,
-    /// Caption below the figure; what was left out is said behind it.
-    pub caption: String,
-    /// Name of what is shown, unit included.
-    pub value_label: String,
-    /// From top to bottom, all of one scale and with the same colours.
-    pub views: Vec<View>,
-}
-
-/// One view.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct View {
-    /// Above it.
-    pub title: String,
-    /// Label of the abscissa, unit included.
-    pub x_label: String,
-    /// Label of the ordinate, unit included.
-    pub y_label: String,
-    /// Abscissae at the left and at the right edge; they may fall.
-    pub x: [f64; 2],
-    /// Ordinates at the lower and at the upper edge; they may fall.
-    pub y: [f64; 2],
-    /// What is filled; a later one covers an earlier one, and what leaves the edges is cut.
-    pub polygons: Vec<Polygon>,
-    /// Lines over them.
-    pub lines: Vec<[[f64; 2]; 2]>,
-    /// Direction of a flow, with its name.
-    pub flow: Option<([f64; 2], String)>,
-}
-
-/// A convex polygon of one value.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Polygon {
-    /// Its corners in their order around it.
-    pub corners: Vec<[f64; 2]>,
-    /// Its value.
-    pub value: f64,
-}
-
 /// A polygon in the picture.
 struct Placed {
     places: Vec<Xy>,
@@ -83,112 +38,108 @@ struct Placed {
     value: f64,
 }
 
-impl Field {
-    /// The picture as SVG.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Figure`] when the drawing library refuses it.
-    pub fn svg(&self) -> Result<String, ReportError> {
-        self.drawn()
-            .0
-            .svg(&crate::figures::drawing::slug(&self.name), &self.title, &self.caption())
-            .map_err(|reason| ReportError::Figure { figure: self.title.clone(), reason })
-    }
+/// The picture as SVG.
+///
+/// # Errors
+///
+/// [`ReportError::Figure`] when the drawing library refuses it.
+pub fn svg(field: &Field) -> Result<String, ReportError> {
+    drawn(field)
+        .0
+        .svg(&crate::figures::drawing::slug(&field.name), &field.title, &caption(field))
+        .map_err(|reason| ReportError::Figure { figure: field.title.clone(), reason })
+}
 
-    /// The caption, with how many polygons are not drawn.
-    #[must_use]
-    pub fn caption(&self) -> String {
-        match self.drawn().1 {
-            0 => self.caption.clone(),
-            n => format!("{} The {} smallest polygons are not drawn.", self.caption, count(n)),
-        }
-    }
-
-    /// The picture, and how many polygons that could be seen are not in it.
-    fn drawn(&self) -> (Canvas, usize) {
-        let frames = self.frames();
-        let views = self.views.iter().zip(&frames);
-        let mut placed: Vec<Placed> =
-            views.flat_map(|(view, frame)| view.polygons.iter().filter_map(move |p| place(p, frame))).collect();
-        let mut largest: Vec<usize> = (0..placed.len()).collect();
-        largest.sort_by(|a, b| placed[*b].area.total_cmp(&placed[*a].area));
-        let mut kept = vec![false; placed.len()];
-        for index in largest.iter().take(MOST) {
-            kept[*index] = true;
-        }
-        let mut kept = kept.into_iter();
-        placed.retain(|_| kept.next().unwrap_or(false));
-        let left_out = largest.len() - placed.len();
-        let range = Span::of(placed.iter().map(|p| p.value)).unwrap_or(Span { low: 0.0, high: 1.0 });
-        let range = if range.width() > 0.0 { range } else { range.aired(0.0) };
-        let height = frames.last().map_or(0.0, Panel::bottom).max(HEAD + BAR_HEIGHT);
-        let mut canvas = Canvas::new(WIDTH, height + FOOT);
-        for Placed { places, value, .. } in &placed {
-            let part = ((value - range.low) / range.width() * SHADES as f64) as usize;
-            canvas.mosaic(places, viridis(shade(part.min(SHADES - 1))));
-        }
-        for (view, frame) in self.views.iter().zip(&frames) {
-            view.around(&mut canvas, frame);
-        }
-        let right = frames.iter().map(Panel::right).fold(LEFT, f64::max);
-        let place = Panel {
-            left: right + GAP,
-            top: HEAD,
-            width: BAR,
-            height: height - HEAD,
-            x: Span { low: 0.0, high: 1.0 },
-            y: range,
-        };
-        bar(&mut canvas, &place, Scale::Linear, &self.value_label, place.right() + RIGHT - 14.0, viridis);
-        (canvas, left_out)
-    }
-
-    /// Places of the views: below each other, of one scale.
-    fn frames(&self) -> Vec<Panel> {
-        let long = |[a, b]: [f64; 2]| (b - a).abs();
-        let widest = self.views.iter().map(|view| long(view.x)).fold(0.0, f64::max);
-        let tall: f64 = self.views.iter().map(|view| long(view.y)).sum();
-        let room = WIDTH - LEFT - GAP - BAR - RIGHT;
-        let scale = (room / widest).min(HEIGHT / tall);
-        if !(scale.is_finite() && scale > 0.0) {
-            return Vec::new();
-        }
-        let mut top = 0.0;
-        let frame = |view: &View| {
-            let (x, y) = (Span { low: view.x[0], high: view.x[1] }, Span { low: view.y[0], high: view.y[1] });
-            let (width, height) = (scale * long(view.x), scale * long(view.y));
-            let frame = Panel { left: LEFT, top: top + HEAD, width, height, x, y };
-            top = frame.bottom() + FOOT;
-            frame
-        };
-        self.views.iter().map(frame).collect()
+/// The caption, with how many polygons are not drawn.
+#[must_use]
+pub fn caption(field: &Field) -> String {
+    match drawn(field).1 {
+        0 => field.caption.clone(),
+        n => format!("{} The {} smallest polygons are not drawn.", field.caption, count(n)),
     }
 }
 
-impl View {
-    /// What stands over and around the polygons.
-    fn around(&self, canvas: &mut Canvas, frame: &Panel) {
-        for [from, to] in &self.lines {
-            let at = |[x, y]: [f64; 2]| Some((frame.at_x(x), frame.at_y(y))).filter(|at| is_within(*at, frame));
-            if let Some((from, to)) = at(*from).zip(at(*to)) {
-                canvas.line(from, to, TEXT, 1.0);
-            }
+/// The picture, and how many polygons that could be seen are not in it.
+fn drawn(field: &Field) -> (Canvas, usize) {
+    let frames = frames(field);
+    let views = field.views.iter().zip(&frames);
+    let mut placed: Vec<Placed> =
+        views.flat_map(|(view, frame)| view.polygons.iter().filter_map(move |p| place(p, frame))).collect();
+    let mut largest: Vec<usize> = (0..placed.len()).collect();
+    largest.sort_by(|a, b| placed[*b].area.total_cmp(&placed[*a].area));
+    let mut kept = vec![false; placed.len()];
+    for index in largest.iter().take(MOST) {
+        kept[*index] = true;
+    }
+    let mut kept = kept.into_iter();
+    placed.retain(|_| kept.next().unwrap_or(false));
+    let left_out = largest.len() - placed.len();
+    let range = Span::of(placed.iter().map(|p| p.value)).unwrap_or(Span { low: 0.0, high: 1.0 });
+    let range = if range.width() > 0.0 { range } else { range.aired(0.0) };
+    let height = frames.last().map_or(0.0, Panel::bottom).max(HEAD + BAR_HEIGHT);
+    let mut canvas = Canvas::new(WIDTH, height + FOOT);
+    for Placed { places, value, .. } in &placed {
+        let part = ((value - range.low) / range.width() * SHADES as f64) as usize;
+        canvas.mosaic(places, viridis(shade(part.min(SHADES - 1))));
+    }
+    for (view, frame) in field.views.iter().zip(&frames) {
+        around(view, &mut canvas, frame);
+    }
+    let right = frames.iter().map(Panel::right).fold(LEFT, f64::max);
+    let place = Panel {
+        left: right + GAP,
+        top: HEAD,
+        width: BAR,
+        height: height - HEAD,
+        x: Span { low: 0.0, high: 1.0 },
+        y: range,
+    };
+    bar(&mut canvas, &place, Scale::Linear, &field.value_label, place.right() + RIGHT - 14.0, viridis);
+    (canvas, left_out)
+}
+
+/// Places of the views: below each other, of one scale.
+fn frames(field: &Field) -> Vec<Panel> {
+    let long = |[a, b]: [f64; 2]| (b - a).abs();
+    let widest = field.views.iter().map(|view| long(view.x)).fold(0.0, f64::max);
+    let tall: f64 = field.views.iter().map(|view| long(view.y)).sum();
+    let room = WIDTH - LEFT - GAP - BAR - RIGHT;
+    let scale = (room / widest).min(HEIGHT / tall);
+    if !(scale.is_finite() && scale > 0.0) {
+        return Vec::new();
+    }
+    let mut top = 0.0;
+    let frame = |view: &View| {
+        let (x, y) = (Span { low: view.x[0], high: view.x[1] }, Span { low: view.y[0], high: view.y[1] });
+        let (width, height) = (scale * long(view.x), scale * long(view.y));
+        let frame = Panel { left: LEFT, top: top + HEAD, width, height, x, y };
+        top = frame.bottom() + FOOT;
+        frame
+    };
+    field.views.iter().map(frame).collect()
+}
+
+/// What stands over and around the polygons.
+fn around(view: &View, canvas: &mut Canvas, frame: &Panel) {
+    for [from, to] in &view.lines {
+        let at = |[x, y]: [f64; 2]| Some((frame.at_x(x), frame.at_y(y))).filter(|at| is_within(*at, frame));
+        if let Some((from, to)) = at(*from).zip(at(*to)) {
+            canvas.line(from, to, TEXT, 1.0);
         }
-        let corners = [
-            (frame.left, frame.top),
-            (frame.right(), frame.top),
-            (frame.right(), frame.bottom()),
-            (frame.left, frame.bottom()),
-        ];
-        canvas.path(corners.iter().chain(&corners[..1]).copied().collect(), AXIS, 1.0);
-        let title = Rich::plain(&self.title);
-        canvas.text(title, (frame.left, frame.top - 12.0), LABEL_SIZE, TEXT, Align::Left);
-        let ticks = [(frame.width / 80.0) as usize, (frame.height / 40.0) as usize].map(|n| n.clamp(2, 9));
-        axes(canvas, frame, [&self.x_label, &self.y_label], ticks);
-        if let Some((direction, name)) = &self.flow {
-            arrow(canvas, frame, *direction, name);
-        }
+    }
+    let corners = [
+        (frame.left, frame.top),
+        (frame.right(), frame.top),
+        (frame.right(), frame.bottom()),
+        (frame.left, frame.bottom()),
+    ];
+    canvas.path(corners.iter().chain(&corners[..1]).copied().collect(), AXIS, 1.0);
+    let title = Rich::plain(&view.title);
+    canvas.text(title, (frame.left, frame.top - 12.0), LABEL_SIZE, TEXT, Align::Left);
+    let ticks = [(frame.width / 80.0) as usize, (frame.height / 40.0) as usize].map(|n| n.clamp(2, 9));
+    axes(canvas, frame, [&view.x_label, &view.y_label], ticks);
+    if let Some((direction, name)) = &view.flow {
+        arrow(canvas, frame, *direction, name);
     }
 }
 
@@ -297,23 +248,23 @@ mod tests {
 
     #[test]
     fn a_field_has_its_polygons_within_the_view_its_labels_and_its_bar() {
-        let drawn = field(10).svg().unwrap();
+        let drawn = svg(&field(10)).unwrap();
         assert_eq!(polygons(&drawn), 90);
         for text in ["x [m]", "y [m]", "from below", "|U|/U∞ [-]", "U", "1.0"] {
             assert!(drawn.lines().any(|line| line.trim() == text), "{text} is missing");
         }
         assert_eq!(drawn.matches("<rect").count(), SHADES + 1);
         assert!(drawn.ends_with("</svg>\n") && drawn.matches("<g ").count() == drawn.matches("</g>").count());
-        assert_eq!(field(10).caption(), "Speeds.");
+        assert_eq!(caption(&field(10)), "Speeds.");
     }
 
     #[test]
     fn of_too_many_the_smallest_are_left_out_and_counted() {
         let n = 120;
-        let drawn = field(n).svg().unwrap();
+        let drawn = svg(&field(n)).unwrap();
         assert_eq!(polygons(&drawn), MOST);
         let left_out = count(n * (n - 1) - MOST);
-        assert_eq!(field(n).caption(), format!("Speeds. The {left_out} smallest polygons are not drawn."));
+        assert_eq!(caption(&field(n)), format!("Speeds. The {left_out} smallest polygons are not drawn."));
     }
 
     /// CIE 1976 lightness rises evenly from dark to light: what makes a map of colours fair.
@@ -349,9 +300,9 @@ mod tests {
                 flow: Some(([l, a], String::new())),
                 ..View::default()
             };
-            let drawn = Field { views: vec![view], ..Field::default() }.svg();
+            let drawn = svg(&Field { views: vec![view], ..Field::default() });
             prop_assert!(drawn.is_ok_and(|svg| !svg.contains("NaN") && !svg.contains("inf")));
-            prop_assert!(Field::default().svg().is_ok());
+            prop_assert!(svg(&Field::default()).is_ok());
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::document::{count, sheet, table_markup};
 use crate::findings::findings_by_severity;
 use crate::input::ReportError;
 use crate::tables::Tables;
-use crate::{chart, map};
+use crate::{chart, field, map};
 
 /// An outcome as one self-contained HTML file.
 ///
@@ -66,6 +66,7 @@ impl Numbers {
                 },
                 Block::Chart(chart) => self.figure(&chart::svg(chart)?, &chart.caption),
                 Block::Map(map) => self.figure(&map::svg(map)?, &map.caption),
+                Block::Field(field) => self.figure(&field::svg(field)?, &field::caption(field)),
                 Block::Section(section) => {
                     let inner = self.markup(&section.blocks.iter().collect::<Vec<_>>())?;
                     html! { h3 { (section.title) } (inner) }

@@ -4,14 +4,16 @@ use std::io::Write as _;
 use std::path::Path;
 
 use froude_records::RecordError;
+use froude_records::block::Block;
 use froude_records::manifest::take_own_place;
 use froude_records::outcome::{Content, Outcome, OutputFile};
 use froude_records::results::replace;
 use froude_records::table::prepare_table;
-use froude_records::write::Prepared;
+use froude_records::write::{Prepared, write_atomically};
 
 use crate::input::ReportError;
 use crate::outcome::page;
+use crate::{chart, field, map};
 
 /// Why the files of an outcome are not written.
 #[derive(Debug, thiserror::Error)]
@@ -33,7 +35,12 @@ pub fn write_folder(outcome: &Outcome, out: &Path) -> Result<(), WriteError> {
     replace(out, |folder| {
         for file in &outcome.files {
             let path = folder.join(file.path.strip_prefix(out).unwrap_or(&file.path));
-            prepared(outcome, file, &path)?.take_place()?;
+            if file.content == Content::Figures {
+                std::fs::create_dir(&path).map_err(|e| RecordError::output(&path, &e))?;
+                figures(&outcome.blocks, &path)?;
+            } else {
+                prepared(outcome, file, &path)?.take_place()?;
+            }
         }
         Ok(())
     })
@@ -54,6 +61,23 @@ pub fn write_files(outcome: &Outcome) -> Result<(), WriteError> {
     Ok(())
 }
 
+fn figures(blocks: &[Block], folder: &Path) -> Result<(), WriteError> {
+    for block in blocks {
+        let (name, svg) = match block {
+            Block::Chart(chart) => (&chart.name, chart::svg(chart)?),
+            Block::Map(map) => (&map.name, map::svg(map)?),
+            Block::Field(field) => (&field.name, field::svg(field)?),
+            Block::Section(section) => {
+                figures(&section.blocks, folder)?;
+                continue;
+            }
+            Block::Text { .. } | Block::Table(_) => continue,
+        };
+        write_atomically(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
+    }
+    Ok(())
+}
+
 fn prepared(outcome: &Outcome, file: &OutputFile, path: &Path) -> Result<Prepared, WriteError> {
     Ok(match &file.content {
         Content::Page(head) => {
@@ -65,6 +89,8 @@ fn prepared(outcome: &Outcome, file: &OutputFile, path: &Path) -> Result<Prepare
             writeln!(out)
         })?,
         Content::Table(table) => prepare_table(table, path)?,
+        // A folder of its own.
+        Content::Figures => Prepared::new(path, |_| Ok(()))?,
         Content::Bytes(bytes) => Prepared::new(path, |out| out.write_all(bytes))?,
     })
 }

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_cfd::openfoam::OpenFoamError;
 use froude_identify::compare::too_many;
 use froude_identify::method::MethodError;
 use froude_records::run::FREE_DECAY;
@@ -68,21 +67,9 @@ pub enum Error {
     #[error(transparent)]
     Swim(VerbError),
 
-    /// A campaign of flow computations cannot be used.
+    /// A campaign of flow computations does not go on.
     #[error(transparent)]
-    CfdInput(#[from] crate::cfd::CfdInput),
-
-    /// The folder of computed cases cannot be worked with.
-    #[error(transparent)]
-    CfdStore(#[from] froude_cfd::store_error::StoreError),
-
-    /// OpenFOAM cannot be run.
-    #[error(transparent)]
-    OpenFoam(#[from] froude_cfd::openfoam::OpenFoamError),
-
-    /// Stopped as asked, where nothing else says so.
-    #[error("stopped as asked, nothing is lost: the same command resumes")]
-    Stopped,
+    Cfd(froude_cfd::verb::VerbError),
 
     /// The report could not be drawn.
     #[error(transparent)]
@@ -198,6 +185,17 @@ impl From<VerbError> for Error {
     }
 }
 
+impl From<froude_cfd::verb::VerbError> for Error {
+    fn from(error: froude_cfd::verb::VerbError) -> Self {
+        match error {
+            froude_cfd::verb::VerbError::Record(error) => Self::Record(error),
+            froude_cfd::verb::VerbError::Method(error) => error.into(),
+            froude_cfd::verb::VerbError::Surface(error) => error.into(),
+            error => Self::Cfd(error),
+        }
+    }
+}
+
 impl From<WriteError> for Error {
     fn from(error: WriteError) -> Self {
         match error {
@@ -224,6 +222,7 @@ impl Error {
             Self::Method(e) => e.is_bad_input(),
             Self::Campaign(e) => e.is_bad_input(),
             Self::Simulate(e) => e.is_bad_input(),
+            Self::Cfd(e) => e.is_bad_input(),
             Self::Identify(_)
             | Self::NotEmpty { .. }
             | Self::NoSource { .. }
@@ -234,10 +233,8 @@ impl Error {
             | Self::Drag(_)
             | Self::Servo(_)
             | Self::Tuning(_)
-            | Self::CfdInput(_)
-            | Self::CfdStore(_)
             | Self::Swim(_) => true,
-            Self::Stopped | Self::Runner(_) | Self::OpenFoam(_) | Self::Report(_) => false,
+            Self::Runner(_) | Self::Report(_) => false,
         }
     }
 
@@ -246,7 +243,7 @@ impl Error {
     pub fn was_stopped(&self) -> bool {
         let is_asked = |e: &RunnerError| matches!(e, RunnerError::Stopped { .. } | RunnerError::StoppedWaiting { .. });
         match self {
-            Self::Stopped | Self::OpenFoam(OpenFoamError::Cancelled { .. }) => true,
+            Self::Cfd(e) => e.was_stopped(),
             Self::Runner(e) | Self::Campaign(CampaignError::Runner(e)) => is_asked(e),
             _ => false,
         }

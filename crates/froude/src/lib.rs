@@ -12,6 +12,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub use error::Error;
+pub use froude_cfd as cfd;
 pub use froude_control as control;
 pub use froude_fit as fit;
 pub use froude_hydro as hydro;
@@ -32,7 +33,6 @@ pub mod methods {
 
 mod campaign_page;
 pub mod carriage;
-pub mod cfd;
 pub mod demo;
 mod error;
 pub mod inspect;
@@ -43,6 +43,7 @@ pub mod predict;
 mod registry;
 pub mod results;
 mod steps_page;
+pub mod swing;
 pub mod twin;
 
 /// What most programs need.

@@ -13,9 +13,9 @@ use froude_records::nearest::meant;
 use froude_records::run::is_servo_log;
 
 use crate::Error;
-use crate::cfd::Computed;
 use crate::pipeline::Purpose;
 use crate::registry::METHODS;
+use froude_cfd::verb::Computed;
 
 /// A method with the names that it is asked for.
 pub(crate) type Asked = (&'static dyn Method, Vec<&'static str>);

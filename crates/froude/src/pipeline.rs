@@ -29,7 +29,7 @@ use indexmap::IndexMap;
 use crate::predict::{of_rows, same_rows};
 use crate::{Error, campaign_page, method, results};
 
-pub(crate) use crate::pipeline::job::default_out;
+pub use crate::pipeline::job::default_out;
 pub use crate::pipeline::job::{Input, Job, Outcome, Purpose, Summary};
 
 /// Reads, fits, chooses, compares, reports; `progress` receives each step.

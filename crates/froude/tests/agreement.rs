@@ -91,7 +91,7 @@ fn agrees(blocks: &[Block], place: &Value) {
                 assert!(texts.iter().all(|text| said.iter().any(|said| said == text)), "{key}");
             }
             Block::Section(section) => agrees(&section.blocks, at(place, &section.key)),
-            Block::Text { .. } | Block::Chart(_) | Block::Map(_) => {}
+            Block::Text { .. } | Block::Chart(_) | Block::Map(_) | Block::Field(_) => {}
         }
     }
 }

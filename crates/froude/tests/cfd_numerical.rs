@@ -4,14 +4,17 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use froude::cfd::{collect, plan};
+use froude::cfd::store::Store;
+use froude::cfd::verb::{collect, plan, status};
 use froude::pipeline::{Job, identify};
 use froude::records::estimate::Estimate;
+use froude::records::outcome::Outcome as Answer;
 use froude_cfd::engine::local;
 use froude_cfd::foam_mesh::FoamMesh;
 use froude_cfd::outcome::{Outcome, Status};
 use froude_cfd::wall::{MeshQuality, WallLayers};
 use froude_cfd::work::{Solve, Task};
+use serde_json::Value;
 
 const BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
      link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }\nends = { length = \"31 mm\" }\n";
@@ -81,13 +84,21 @@ fn at(cells: f64) -> f64 {
     ERROR * (OWN_CELLS / cells).powf(2.0 / 3.0)
 }
 
+fn planned(path: &Path) -> Value {
+    json(&plan(path, None, 2, &AtomicBool::new(false), &|_| ()).unwrap())
+}
+
+fn json(answer: &Answer) -> Value {
+    serde_json::to_value(answer.json()).unwrap()
+}
+
 /// A campaign with what it computes again, computed.
 fn computed(folder: &Path, again: &str) -> PathBuf {
     std::fs::write(folder.join("body.toml"), BODY).unwrap();
     let path = folder.join("campaign.toml");
     std::fs::write(&path, CAMPAIGN.replace("STUDY", again)).unwrap();
-    let planned = plan::plan(&path, None, &AtomicBool::new(false), &|_| ()).unwrap();
-    local::run(&planned.store, &Known, 2, &AtomicBool::new(false), &|_| ()).unwrap();
+    planned(&path);
+    local::run(&Store::open(&folder.join("flow")).unwrap(), &Known, 2, &AtomicBool::new(false), &|_| ()).unwrap();
     path
 }
 
@@ -114,11 +125,11 @@ fn part(estimate: &Estimate, name: &str) -> f64 {
 fn an_error_of_the_mesh_widens_a_coefficient_by_as_much() {
     let folder = tempfile::tempdir().unwrap();
     let path = computed(folder.path(), STUDY);
-    let found = collect::collect(&path, None).unwrap().as_json();
+    let found = json(&collect(&path, None).unwrap());
     assert_eq!(found["observations"].as_u64(), Some(12), "{found}");
     let studies = found["numerical"]["studies"].as_array().unwrap();
     assert_eq!(studies.len(), 6);
-    let f_y = &studies[1]["error"]["f_y"];
+    let f_y = &studies[1]["error"].as_array().unwrap().iter().find(|e| e["load"] == "f_y").unwrap();
     assert_eq!(studies[1]["grids"].as_array().unwrap().len(), 4);
     assert!((f_y["order"].as_f64().unwrap() - 2.0).abs() < 1e-6, "{f_y}");
     let limit_n = K_KG_M * 0.16 * 0.5;
@@ -148,10 +159,9 @@ fn a_finer_mesh_at_some_cases_corrects_all() {
     let folder = tempfile::tempdir().unwrap();
     let fine = "fine = { mesh = { stations = 40, layers = 40, azimuth = 16, first_layer = \"0.25 mm\" }, every = 1 }\n";
     let path = computed(folder.path(), &format!("{fine}{STUDY}"));
-    let collected = collect::collect(&path, None).unwrap();
-    let found = collected.as_json();
+    let found = json(&collect(&path, None).unwrap());
     assert_eq!(found["numerical"]["fine"].as_array().unwrap().len(), 12, "{found}");
-    let words = collected.sections().into_iter().flat_map(|s| s.paragraphs).collect::<Vec<_>>().join("\n");
+    let words = found["findings"].to_string();
     assert!(words.contains("loads are corrected to the finer mesh by 12 cases"), "{words}");
 
     let estimate = fitted(&path);
@@ -166,15 +176,14 @@ fn a_finer_mesh_at_some_cases_corrects_all() {
 fn a_mesh_that_nothing_is_known_of_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let path = computed(folder.path(), "");
-    let collected = collect::collect(&path, None).unwrap();
-    let words = &collected.sections()[0].paragraphs;
-    assert!(words.iter().any(|w| w.starts_with("the error of the mesh is in no interval")), "{words:?}");
+    let words = json(&collect(&path, None).unwrap())["findings"].to_string();
+    assert!(words.contains("the error of the mesh is in no interval"), "{words}");
     let table = std::fs::read_to_string(folder.path().join("flow/observations.csv")).unwrap();
     assert!(!table.contains("std_numerical"), "{table}");
     assert_eq!(part(&fitted(&path), "mesh (f_y)"), 0.0);
     let refused = |again: &str| {
         std::fs::write(&path, CAMPAIGN.replace("STUDY", again)).unwrap();
-        plan::plan(&path, None, &AtomicBool::new(false), &|_| ()).unwrap_err().to_string()
+        plan(&path, None, 2, &AtomicBool::new(false), &|_| ()).unwrap_err().to_string()
     };
     let other = refused("[[source.cfd.study]]\nspeed = \"0.3 m/s\"\n");
     assert!(other.contains("campaign.toml") && other.contains("H1LT at 0.3 m/s and 0°"), "{other}");
@@ -207,8 +216,8 @@ fn at_wall(folder: &Path, solver: &AtWall) -> PathBuf {
     std::fs::write(folder.join("body.toml"), BODY).unwrap();
     let path = folder.join("campaign.toml");
     std::fs::write(&path, CAMPAIGN.replace("STUDY", "")).unwrap();
-    let planned = plan::plan(&path, None, &AtomicBool::new(false), &|_| ()).unwrap();
-    local::run(&planned.store, solver, 2, &AtomicBool::new(false), &|_| ()).unwrap();
+    planned(&path);
+    local::run(&Store::open(&folder.join("flow")).unwrap(), solver, 2, &AtomicBool::new(false), &|_| ()).unwrap();
     path
 }
 
@@ -244,9 +253,9 @@ fn a_wall_that_is_not_resolved_leaves_no_result() {
     {
         let folder = tempfile::tempdir().unwrap();
         let path = at_wall(folder.path(), &AtWall { mean_y_plus, area_coverage });
-        let refused = collect::collect(&path, None).unwrap_err().to_string();
+        let refused = collect(&path, None).unwrap_err().to_string();
         assert!(refused.contains(said), "{refused}");
-        let status = froude::cfd::status::status(&path, None).unwrap().as_json();
+        let status = json(&status(&path, None).unwrap());
         assert_eq!(status["counts"]["failed"].as_u64(), Some(12), "{status}");
     }
 }
@@ -257,8 +266,7 @@ fn meshes_of_a_study_are_planned_and_priced() {
     let folder = tempfile::tempdir().unwrap();
     let again = format!("{STUDY}grids = 3\nradius = [12]\n");
     let path = computed(folder.path(), &again);
-    let planned = plan::plan(&path, None, &AtomicBool::new(false), &|_| ()).unwrap();
-    let rows = planned.as_json();
+    let rows = planned(&path);
     let rows = rows["configurations"].as_array().unwrap();
     let of = |name: &str| rows.iter().find(|r| r["mesh"] == name && r["configuration"] == "H2LT").unwrap();
     let cells = |name: &str| of(name)["cells"].as_f64().unwrap();
@@ -267,6 +275,6 @@ fn meshes_of_a_study_are_planned_and_priced() {
         assert!((cells(name) / (OWN_CELLS * ratio) - 1.0).abs() < 0.1, "{name}: {}", cells(name));
     }
     assert!((1.0..1.2).contains(&(cells("r12") / OWN_CELLS)), "{}", cells("r12"));
-    let found = collect::collect(&path, None).unwrap().as_json();
+    let found = json(&collect(&path, None).unwrap());
     assert_eq!(found["numerical"]["studies"][0]["domains"][0]["radius"].as_f64(), Some(12.0), "{found}");
 }

@@ -44,8 +44,7 @@ pub fn forecast(problem: &Problem) -> Forecast {
 }
 
 /// A time as a person says it.
-#[must_use]
-pub fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     if seconds < 1.0 {
         "less than a second".to_owned()
     } else if seconds < 120.0 {

@@ -33,6 +33,18 @@ impl<'r, R> TableBuilder<'r, R> {
         ResultColumn::new(key, head, Cells::Number(self.cells(|row| of(row).into().unwrap_or(f64::NAN))))
     }
 
+    /// A number in SI with its standard uncertainty, which has a key of its own.
+    pub fn uncertain<N: Into<Option<f64>>, S: Into<Option<f64>>>(
+        &self,
+        [key, standard]: [&str; 2],
+        head: &str,
+        of: impl Fn(&'r R) -> N,
+        standard_of: impl Fn(&'r R) -> S,
+    ) -> ResultColumn {
+        let standards = self.cells(|row| standard_of(row).into().unwrap_or(f64::NAN));
+        ResultColumn { standard: Some((standard.to_owned(), standards)), ..self.number(key, head, of) }
+    }
+
     /// How many.
     pub fn count<N: Into<Option<usize>>>(&self, key: &str, head: &str, of: impl Fn(&'r R) -> N) -> ResultColumn {
         ResultColumn::new(key, head, Cells::Count(self.cells(|row| of(row).into())))
@@ -74,7 +86,7 @@ impl<'r, R> TableBuilder<'r, R> {
 impl ResultColumn {
     fn new(key: &str, head: &str, cells: Cells) -> Self {
         let (head, unit) = named(head);
-        Self { key: key.to_owned(), head: head.to_owned(), unit, cells, digits: Digits::Significant(4) }
+        Self { key: key.to_owned(), head: head.to_owned(), unit, cells, standard: None, digits: Digits::Significant(4) }
     }
 
     /// Its numbers have so many digits that count.
@@ -99,6 +111,18 @@ impl ResultColumn {
     #[must_use]
     pub fn percent(self) -> Self {
         Self { digits: Digits::Percent, ..self }
+    }
+
+    /// Its numbers are times, s.
+    #[must_use]
+    pub fn duration(self) -> Self {
+        Self { digits: Digits::Duration, ..self }
+    }
+
+    /// Its numbers are sizes on a disk, bytes.
+    #[must_use]
+    pub fn bytes(self) -> Self {
+        Self { digits: Digits::Bytes, ..self }
     }
 
     /// Its numbers are probabilities.

@@ -1,14 +1,20 @@
 //! A cell as people read it.
 
 use super::{Cells, Digits, ResultColumn};
-use crate::number::{count, fixed, interval, p_value, percent, plain, significant};
+use crate::number::{bytes, count, duration, fixed, interval, p_value, percent, plain, short_form, significant};
 
 impl ResultColumn {
     /// The text of a cell; `None` where it has none.
     #[must_use]
     pub fn text(&self, row: usize) -> Option<String> {
         match &self.cells {
-            Cells::Number(all) => all.get(row).copied().and_then(|si| self.number(si)),
+            Cells::Number(all) => {
+                let (si, standard) = (*all.get(row)?, self.standard.as_ref().and_then(|(_, all)| all.get(row)));
+                match standard {
+                    Some(u) if si.is_finite() && *u > 0.0 => Some(short_form(self.shown(si), self.shown(*u))),
+                    _ => self.number(si),
+                }
+            }
             Cells::Count(all) => all.get(row).copied().flatten().map(count),
             Cells::Interval(all) => all.get(row).copied().flatten().map(|ends| interval(ends.map(|si| self.shown(si)))),
             Cells::Numbers(all) => {
@@ -35,6 +41,8 @@ impl ResultColumn {
             Digits::Places(n) => fixed(x, n.into()),
             Digits::Percent => percent(x),
             Digits::PValue => p_value(x),
+            Digits::Duration => duration(x),
+            Digits::Bytes => bytes(x),
         })
     }
 }

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
-use super::{Block, Cells, ResultColumn, ResultTable};
+use super::{Block, Cells, ResultTable};
 use crate::finding::Finding;
-use crate::outcome::Outcome;
+use crate::outcome::{Content, Outcome, names_of_figures};
 
 /// A place in a JSON document: a value, a list where it has items, else an object.
 #[derive(Debug, Default)]
@@ -24,9 +24,12 @@ pub struct Tree<'a> {
 enum Value<'a> {
     /// An object for each row, with the columns of all these tables.
     Rows(Vec<&'a ResultTable>),
-    Cell(&'a ResultColumn, usize),
+    Cell(&'a Cells, usize),
+    Number(Option<f64>),
     Texts(Vec<&'a String>),
     Path(&'a Path),
+    /// Files of a folder.
+    Figures(&'a Path, Vec<String>),
     Findings(&'a [Finding]),
 }
 
@@ -35,7 +38,10 @@ pub(crate) fn tree(outcome: &Outcome) -> Tree<'_> {
     let mut root = Tree::default();
     root.put_all(&outcome.blocks);
     for file in &outcome.files {
-        root.put(file.key, Value::Path(&file.path));
+        match file.content {
+            Content::Figures => root.put(file.key, Value::Figures(&file.path, names_of_figures(&outcome.blocks))),
+            _ => root.put(file.key, Value::Path(&file.path)),
+        }
     }
     if let Some(findings) = &outcome.findings {
         root.put("findings", Value::Findings(findings));
@@ -51,7 +57,7 @@ impl<'a> Tree<'a> {
                 Block::Table(table) if table.are_facts => self.at(&table.key).put_row(table, 0),
                 Block::Table(table) => self.put_table(table),
                 Block::Section(section) => self.at(&section.key).put_all(&section.blocks),
-                Block::Chart(_) | Block::Map(_) => {}
+                Block::Chart(_) | Block::Map(_) | Block::Field(_) => {}
             }
         }
     }
@@ -80,7 +86,10 @@ impl<'a> Tree<'a> {
 
     fn put_row(&mut self, table: &'a ResultTable, row: usize) {
         for column in &table.columns {
-            self.put(&column.key, Value::Cell(column, row));
+            self.put(&column.key, Value::Cell(&column.cells, row));
+            if let Some((key, all)) = &column.standard {
+                self.put(key, Value::Number(all.get(row).copied()));
+            }
         }
     }
 
@@ -124,9 +133,13 @@ impl Serialize for Tree<'_> {
                     object
                 }))
             }
-            Some(Value::Cell(column, row)) => column.cells.serialize_cell(*row, to),
+            Some(Value::Cell(cells, row)) => cells.serialize_cell(*row, to),
+            Some(Value::Number(x)) => x.filter(|x| x.is_finite()).serialize(to),
             Some(Value::Texts(texts)) => texts.serialize(to),
             Some(Value::Path(path)) => to.collect_str(&path.display()),
+            Some(Value::Figures(folder, names)) => {
+                to.collect_seq(names.iter().map(|name| folder.join(name).display().to_string()))
+            }
             Some(Value::Findings(findings)) => findings.serialize(to),
             None if !self.items.is_empty() => self.items.serialize(to),
             None => {

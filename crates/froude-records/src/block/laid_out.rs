@@ -1,8 +1,8 @@
 //! Tables as rows of written cells, for the page and the terminal.
 
-use super::{ResultColumn, ResultTable};
+use super::{Block, ResultColumn, ResultTable, Section};
 use crate::number::MISSING;
-use crate::page::TextTable;
+use crate::page::{DocumentSection, TextTable};
 
 /// A table as people read it; `None` where programs alone read it.
 #[must_use]
@@ -32,4 +32,22 @@ pub fn laid_out(table: &ResultTable) -> Option<TextTable> {
         None => (0..table.n_rows).map(row).collect(),
     };
     Some(TextTable { caption: table.caption.clone(), head: shown.iter().map(head).collect(), rows })
+}
+
+/// Blocks as sections of a page that has others too: what stands in none is the first, under this title.
+#[must_use]
+pub fn sections(title: &str, blocks: &[Block]) -> Vec<DocumentSection> {
+    let mut first = DocumentSection { title: title.to_owned(), ..DocumentSection::default() };
+    let mut others = Vec::new();
+    for block in blocks {
+        match block {
+            Block::Text { texts, .. } => first.paragraphs.extend(texts.iter().cloned()),
+            Block::Table(table) => first.tables.extend(laid_out(table)),
+            Block::Chart(chart) => first.charts.push(chart.clone()),
+            Block::Section(Section { title, blocks, .. }) => others.extend(sections(title, blocks)),
+            Block::Map(_) | Block::Field(_) => {}
+        }
+    }
+    let is_empty = first.paragraphs.is_empty() && first.tables.is_empty() && first.charts.is_empty();
+    (!is_empty).then_some(first).into_iter().chain(others).collect()
 }

@@ -5,9 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use froude::cfd::plan::plan;
-use froude::cfd::run::{Engine, Job as Run, Running, run};
-use froude::cfd::status::status;
+use froude::cfd::verb::{Engine, Job as Run, Running, plan, run, status};
 use froude::identify::law::ForceLaw;
 use froude::pipeline::{Job, Outcome, identify};
 use froude::records::comparison::Validation;
@@ -370,7 +368,7 @@ fn once(example: &str) -> String {
 fn robot(claims: &mut Claims, root: &Path, pages: Option<&Path>) -> Result<(), Failed> {
     let path = campaign(root, "reduced", &example(root)?)?;
     finish(&path)?;
-    let done = status(&path, None)?.as_json();
+    let done = serde_json::to_value(status(&path, None)?.json())?;
     let counts = &done["counts"];
     let count = |word: &str| counts[word].as_u64().unwrap_or(0);
     let (usable, all) = (count("converged") + count("oscillating"), done["cases"].as_array().map_or(0, Vec::len));
@@ -490,7 +488,7 @@ fn paper_matrix(example: &str, configurations: &str) -> String {
 fn price(claims: &mut Claims, root: &Path, done: &Value) -> Result<(), Failed> {
     let nine: Vec<String> = (1..=9).map(|k| format!("\"H{k}LT\"")).collect();
     let path = campaign(root, "paper", &paper_matrix(&example(root)?, &format!("[{}]", nine.join(", "))))?;
-    let planned = plan(&path, None, &AtomicBool::new(false), &|_| {})?.as_json();
+    let planned = serde_json::to_value(plan(&path, None, 2, &AtomicBool::new(false), &|_| {})?.json())?;
     let of = |key: &str| {
         planned["configurations"].as_array().map_or(0.0, |all| all.iter().filter_map(|c| c[key].as_f64()).sum())
     };

@@ -112,7 +112,9 @@ pub struct Summary {
     pub section: DocumentSection,
 }
 
-pub(crate) fn default_out(input: &Path, what: &str) -> PathBuf {
+/// The folder of results beside an input, where none is named: `tow-results` of `tow.csv`.
+#[must_use]
+pub fn default_out(input: &Path, what: &str) -> PathBuf {
     let stem = input.file_stem().map_or_else(|| "froude".to_owned(), |s| s.to_string_lossy().into_owned());
     input.with_file_name(format!("{stem}-{what}"))
 }

@@ -1,39 +1,93 @@
 //! `froude cfd`: a campaign of flow computations, planned, run on a laptop or a cluster, and collected into a table that `froude identify` reads.
 
 mod bodies;
-pub mod collect;
+mod collect;
 mod computed;
 mod findings;
 mod meshes;
 mod numerical;
-pub mod plan;
-pub mod report;
-pub mod run;
-pub mod status;
-pub mod suggest;
-pub mod swing;
+mod plan;
+mod report;
+mod run;
+mod status;
+mod suggest;
+mod swing;
 
 use std::path::{Path, PathBuf};
 
+use froude_added_mass::AddedMassError;
 use froude_added_mass::load::is_body_file;
-use froude_cfd::case::Water;
-use froude_cfd::store::{Store, check_links};
+use froude_identify::method::MethodError;
+use froude_records::RecordError;
+use froude_records::block::{Block, TableBuilder};
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
 use froude_records::cfd::CfdSpec;
 use froude_records::hash::{sha256_of_bytes, sha256_of_file};
+use froude_records::outcome::Outcome;
 use froude_records::output::inside;
 
-pub(crate) use self::computed::Computed;
-use crate::Error;
+use crate::case::Water;
+use crate::openfoam::OpenFoamError;
+use crate::store::{Store, check_links};
+use crate::store_error::StoreError;
 
-/// A file of a CFD campaign that cannot be used.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}: {problem}", .path.display())]
-pub struct CfdInput {
-    /// The file.
-    pub path: PathBuf,
-    /// What is wrong, and what to do.
-    pub problem: String,
+pub use self::collect::collect;
+pub use self::computed::Computed;
+pub use self::plan::plan;
+pub use self::report::report;
+pub use self::run::{Engine, Job, Running, SlurmOptions, run, run_case};
+pub use self::status::status;
+pub use self::suggest::suggest;
+pub use self::swing::{Planned, SwungRun, swing};
+
+/// Why a campaign of flow computations does not go on.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum VerbError {
+    /// A file could not be read or written, or says something impossible.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// A file of the campaign that cannot be used.
+    #[error("{}: {problem}", .path.display())]
+    Input {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// The folder of the cases cannot be worked with.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// OpenFOAM cannot be run.
+    #[error(transparent)]
+    OpenFoam(#[from] OpenFoamError),
+    /// A surface cannot be read.
+    #[error(transparent)]
+    Surface(#[from] AddedMassError),
+    /// A source does not declare what its runs need.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    /// Stopped as asked.
+    #[error("stopped as asked, nothing is lost: the same command resumes")]
+    Stopped,
+}
+
+impl VerbError {
+    /// True where the input is at fault, false where the machine is.
+    #[must_use]
+    pub fn is_bad_input(&self) -> bool {
+        !matches!(self, Self::OpenFoam(_) | Self::Stopped)
+    }
+
+    /// True where it was asked to stop, and the same command resumes.
+    #[must_use]
+    pub fn was_stopped(&self) -> bool {
+        matches!(self, Self::Stopped | Self::OpenFoam(OpenFoamError::Cancelled { .. }))
+    }
+
+    fn input(path: &Path, problem: impl Into<String>) -> Self {
+        Self::Input { path: path.to_owned(), problem: problem.into() }
+    }
 }
 
 /// Folder of the meshes in that of a campaign's cases.
@@ -57,9 +111,9 @@ struct Asked {
 
 impl Asked {
     /// Of a campaign's only source that plans `cases`, or the one of a name; others may read the same cases.
-    fn read(path: &Path, name: Option<&str>) -> Result<Self, Error> {
+    fn read(path: &Path, name: Option<&str>) -> Result<Self, VerbError> {
         let campaign = read_campaign(path)?;
-        let refused = |problem: String| CfdInput { path: path.to_owned(), problem };
+        let refused = |problem: String| VerbError::input(path, problem);
         let has_cases = |source: &&Source| matches!(source.input, Input::Cases(_));
         let mut computed: Vec<&Source> = campaign.sources.iter().filter(has_cases).collect();
         if name.is_none() && computed.iter().any(|source| !source.plan.is_empty()) {
@@ -70,12 +124,12 @@ impl Asked {
             (_, []) => {
                 let problem =
                     "has no source with cases: write kind = \"cfd\" and cases = \"cases\", the folder for them";
-                return Err(refused(problem.to_owned()).into());
+                return Err(refused(problem.to_owned()));
             }
             (None, [only]) => *only,
             (None, _) => {
                 let problem = format!("has the sources {} with cases; say which with --source", names());
-                return Err(refused(problem).into());
+                return Err(refused(problem));
             }
             (Some(name), _) => *computed
                 .iter()
@@ -87,7 +141,7 @@ impl Asked {
                 "source {:?} plans nothing: add a [[source.plan]] with configurations, speed and angle",
                 source.name
             );
-            return Err(refused(problem).into());
+            return Err(refused(problem));
         }
         inside(path, source.input.path(), &source.place, "cases", "froude cfd")?;
         check_links(source.input.path())?;
@@ -95,8 +149,8 @@ impl Asked {
     }
 
     /// Of a source, whose cases are in a folder.
-    fn of(campaign: &Campaign, source: &Source, folder: PathBuf) -> Result<Self, Error> {
-        let refused = |problem: String| CfdInput { path: campaign.path.clone(), problem };
+    fn of(campaign: &Campaign, source: &Source, folder: PathBuf) -> Result<Self, VerbError> {
+        let refused = |problem: String| VerbError::input(&campaign.path, problem);
         let need = |what: &str, example: &str| {
             refused(format!("[fluid] states no {what}, which a flow depends on; write {example}"))
         };
@@ -112,12 +166,10 @@ impl Asked {
                 }
             }
             (None, _, None) => {
-                return Err(need("density", "density = \"1025 kg/m^3\", or temperature = \"20 degC\"").into());
+                return Err(need("density", "density = \"1025 kg/m^3\", or temperature = \"20 degC\""));
             }
             (_, None, None) => {
-                return Err(
-                    need("viscosity", "kinematic_viscosity = \"1.19e-6 m^2/s\", or temperature = \"20 degC\"").into()
-                );
+                return Err(need("viscosity", "kinematic_viscosity = \"1.19e-6 m^2/s\", or temperature = \"20 degC\""));
             }
         };
         let spec = source.cfd.clone().unwrap_or_default();
@@ -126,11 +178,11 @@ impl Asked {
         })?;
         if spec.is_half && source.plan.iter().any(|block| block.pitch_rad.iter().any(|p| *p != 0.0)) {
             let problem = "plans angles out of the plane of symmetry, and half a domain has none: write domain = \"full\" in [source.cfd]";
-            return Err(refused(problem.to_owned()).into());
+            return Err(refused(problem.to_owned()));
         }
         if spec.tank.is_some() && source.plan.iter().any(|block| block.pitch_rad.iter().any(|p| *p != 0.0)) {
             let problem = "plans angles out of the horizontal plane in a tank, whose walls lie along the velocity: leave pitch out, or tank";
-            return Err(refused(problem.to_owned()).into());
+            return Err(refused(problem.to_owned()));
         }
         let stated = campaign.body.as_ref();
         let reference = [stated.and_then(|b| b.reference_length_m), stated.and_then(|b| b.reference_area_m2)];
@@ -155,12 +207,16 @@ impl Asked {
 /// Warning if the inputs have changed since the cases were planned.
 const OUTDATED: &str = "the campaign, its body file or Froude has changed since the cases were planned, and these results belong to the previous plan; froude cfd plan or run updates it";
 
-/// Puts cases that failed or diverged back among those to compute, all of them or by name; the names.
+/// Puts cases that failed or diverged back among those to compute, all of them or by name.
 ///
 /// # Errors
 ///
 /// As the campaign is read; a case that it does not have, or whose result counts; another process runs it.
-pub fn retry(campaign: &Path, source: Option<&str>, named: &[String]) -> Result<Vec<String>, Error> {
+pub fn retry(campaign: &Path, source: Option<&str>, named: &[String]) -> Result<Outcome, VerbError> {
     let asked = Asked::read(campaign, source)?;
-    Ok(froude_cfd::retry::retry(&Store::open(&asked.folder)?, named)?)
+    let again = crate::retry::retry(&Store::open(&asked.folder)?, named)?;
+    let next = format!("{} to be computed again: froude cfd run {}", again.len(), campaign.display());
+    let t = TableBuilder::new("cases", "", &again);
+    let table = t.build(vec![t.text("case", "case", |id: &String| id.clone())]);
+    Ok(Outcome { blocks: vec![table.into(), Block::text("", vec![next])], ..Outcome::default() })
 }

@@ -1,10 +1,10 @@
 //! The bodies that a campaign computes: a body file's, or a closed surface mesh as `froude added-mass` reads it.
 
+use crate::body::{Shaped, shaped};
+use crate::surface::asymmetry;
 use froude_added_mass::frame::Axes;
 use froude_added_mass::load::{is_body_file, read_mesh};
 use froude_added_mass::options::{Asked as Lies, unit_of};
-use froude_cfd::body::{Shaped, shaped};
-use froude_cfd::surface::asymmetry;
 use froude_mesh::check::{Trouble, check};
 use froude_mesh::crossing::crossings;
 use froude_mesh::files::MeshFile;
@@ -15,8 +15,7 @@ use froude_mesh::vector::dot;
 use froude_records::body::read_body;
 use froude_records::table::links_of_configuration;
 
-use super::{Asked, CfdInput};
-use crate::Error;
+use super::{Asked, VerbError};
 
 /// Most links of a body: as many modules as a robot file has.
 const MOST_LINKS: u32 = 1_000;
@@ -27,15 +26,15 @@ const MOST_TOLD: usize = 6;
 pub(super) fn each<'a>(
     asked: &Asked,
     named: impl IntoIterator<Item = &'a String>,
-    take: &mut dyn FnMut(Shaped) -> Result<(), Error>,
-) -> Result<(), Error> {
+    take: &mut dyn FnMut(Shaped) -> Result<(), VerbError>,
+) -> Result<(), VerbError> {
     let mut names: Vec<&String> = Vec::new();
     for name in named {
         if !names.contains(&name) {
             names.push(name);
         }
     }
-    let refused = |problem: String| CfdInput { path: asked.body.clone(), problem };
+    let refused = |problem: String| VerbError::input(&asked.body, problem);
     let checked = |body: Shaped| match asymmetry(&body.surface).filter(|_| asked.spec.is_half) {
         Some(asymmetry) => Err(refused(format!("{asymmetry}; write domain = \"full\" in [source.cfd]"))),
         None => Ok(body),
@@ -44,12 +43,12 @@ pub(super) fn each<'a>(
         let [name] = names[..] else {
             let problem =
                 "is a mesh, which is one body, and the plan names several configurations; write a source for each";
-            return Err(refused(problem.to_owned()).into());
+            return Err(refused(problem.to_owned()));
         };
         return take(checked(surface(asked, name)?)?);
     }
     if let Some(given) = asked.spec.lies.first() {
-        return Err(refused(format!("is a body file, which has its units and axes; take {given} out")).into());
+        return Err(refused(format!("is a body file, which has its units and axes; take {given} out")));
     }
     let file = read_body(&asked.body)?;
     let body = |name: &&String| match links_of_configuration(name) {
@@ -62,8 +61,8 @@ pub(super) fn each<'a>(
 }
 
 /// A closed surface, turned into x forward, y to starboard, z down.
-fn surface(asked: &Asked, name: &str) -> Result<Shaped, Error> {
-    let refused = |problem: String| CfdInput { path: asked.body.clone(), problem };
+fn surface(asked: &Asked, name: &str) -> Result<Shaped, VerbError> {
+    let refused = |problem: String| VerbError::input(&asked.body, problem);
     let lies = Lies::read(&asked.body, &asked.spec.lies)?;
     let MeshFile { mesh, notes, .. } = read_mesh(&asked.body, lies.unit_m)?;
     let troubles = troubles(&mesh);
@@ -74,14 +73,14 @@ fn surface(asked: &Asked, name: &str) -> Result<Shaped, Error> {
             asked.body.display()
         );
         let problem = format!("encloses no body that water flows around:\n{}\n  {repair}", troubles.join("\n"));
-        return Err(refused(problem).into());
+        return Err(refused(problem));
     }
     if let Some(doubt) = too_large(&mesh).filter(|_| lies.unit_m.is_none()) {
         let problem = format!(
             "is {:.4} m long, which is doubtful above {LARGEST_M} m; write unit = \"mm\" in [source.cfd], or \"m\" if it is that large",
             doubt.extent_m
         );
-        return Err(refused(problem).into());
+        return Err(refused(problem));
     }
     let axes = Axes::Ned.vectors(lies.orientation.unwrap_or_default());
     let mut body = Shaped::of_surface(name, mesh.mapped(|v| axes.map(|axis| dot(axis, v))));

@@ -2,15 +2,15 @@
 //!
 //! Views are those of an eye: from port the nose is left, from starboard and from below it is right.
 
-use froude_cfd::case::Case;
-use froude_cfd::flow_field::FlowField;
-use froude_cfd::midplane::{CutCell, Midplane};
-use froude_cfd::surface_pressure::{Facet, facets, pressure_force_n};
+use froude_records::block::{ResultColumn, TableBuilder};
 use froude_records::number::{degrees, fixed, plain};
-use froude_report::field::{Field, Polygon, View};
-use serde_json::{Value, json};
+use froude_records::page::{Field, Polygon, View};
 
-use super::Solved;
+use super::{Shown, Solved};
+use crate::case::Case;
+use crate::flow_field::FlowField;
+use crate::midplane::{CutCell, Midplane};
+use crate::surface_pressure::{Facet, facets, pressure_force_n};
 
 /// Half the width and the height of the slice that is shown, in lengths of the body.
 const WINDOW: [f64; 2] = [1.25, 0.75];
@@ -60,24 +60,22 @@ impl Pictures {
         [self.surface.clone(), self.wake.clone()]
     }
 
-    pub fn pressure_words(&self) -> String {
-        let [low, high] = self.pressure_coefficient;
-        format!("{} to {}", fixed(low, 2), fixed(high, 2))
-    }
-
-    pub fn speed_words(&self) -> String {
-        fixed(self.largest_speed_ratio, 2)
-    }
-
-    pub fn as_json(&self) -> Value {
-        json!({
-            "iteration": self.time,
-            "pressure_coefficient": self.pressure_coefficient,
-            "pressure_force_n": self.pressure_force_n,
-            "largest_speed_ratio": self.largest_speed_ratio,
-            "surface": format!("figures/{}.svg", self.surface.name),
-            "wake": format!("figures/{}.svg", self.wake.name),
-        })
+    /// What they say of cases.
+    pub fn columns(t: &TableBuilder<'_, Shown>) -> Vec<ResultColumn> {
+        fn of(shown: &Shown) -> Option<&Pictures> {
+            shown.pictures.as_ref()?.as_ref().ok()
+        }
+        let file = |field: &Field| format!("figures/{}.svg", field.name);
+        vec![
+            t.number("pictures/iteration", "", |s| of(s).map(|p| p.time)),
+            t.interval("pictures/pressure_coefficient", "C_p", |s| of(s).map(|p| p.pressure_coefficient)),
+            t.numbers("pictures/pressure_force_n", "", |s| of(s).map(|p| p.pressure_force_n.to_vec())),
+            t.number("pictures/largest_speed_ratio", "largest |U|/U", |s| of(s).map(|p| p.largest_speed_ratio))
+                .places(2),
+            t.text("pictures/surface", "", |s| of(s).map(|p| file(&p.surface))),
+            t.text("pictures/wake", "", |s| of(s).map(|p| file(&p.wake))),
+            t.text("pictures/problem", "", |s| s.pictures.as_ref()?.as_ref().err().cloned()),
+        ]
     }
 }
 

@@ -1,20 +1,20 @@
 //! Forces of a campaign against angle and speed, body by body.
 
-use froude_cfd::case::Model;
-use froude_cfd::outcome::Status;
+use froude_records::block::{Block, ResultTable, TableBuilder};
 use froude_records::number::plain;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series};
+use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 use froude_records::text::counted;
-use serde_json::{Value, json};
 
 use super::Solved;
-use crate::cfd::collect::LOADS;
+use crate::case::Model;
+use crate::outcome::Status;
+use crate::verb::collect::LOADS;
 
 /// Loads that are drawn against the angle, with their labels.
 const DRAWN: [(usize, &str); 3] = [(0, "f_x [N]"), (1, "f_y [N]"), (5, "m_z [N m]")];
 
-/// The section.
-pub(super) fn section(solved: &[Solved]) -> DocumentSection {
+/// Body by body.
+pub(super) fn blocks(solved: &[Solved]) -> Vec<Block> {
     // A repeat lies on what it repeats, and another plane has no abscissa here.
     let level: Vec<&Solved> = solved.iter().filter(|s| !s.is_repeat() && s.case.flow.pitch_rad == 0.0).collect();
     let mut names: Vec<&str> = Vec::new();
@@ -37,7 +37,8 @@ pub(super) fn section(solved: &[Solved]) -> DocumentSection {
             counted(outside, "case", "cases")
         ));
     }
-    DocumentSection { title: "Forces".to_owned(), paragraphs, tables: Vec::new(), charts }
+    let charts = charts.into_iter().map(Block::Chart);
+    [table(solved).into(), Block::text("", paragraphs)].into_iter().chain(charts).collect()
 }
 
 /// Name of a series: its speed, and the model where it is laminar.
@@ -131,24 +132,19 @@ fn against_speed(configuration: &str, own: &[&Solved]) -> Option<Chart> {
 }
 
 /// All loads, for a program.
-pub(super) fn as_json(solved: &[Solved]) -> Value {
-    let row = |s: &Solved| {
-        let loads: serde_json::Map<String, Value> = LOADS
-            .iter()
-            .enumerate()
-            .map(|(k, name)| ((*name).to_owned(), json!(s.outcome.loads.map(|loads| loads[k]))))
-            .collect();
-        json!({
-            "case": s.case.id,
-            "configuration": s.case.configuration,
-            "speed_m_s": s.case.flow.speed_m_s,
-            "angle_rad": s.case.flow.angle_rad,
-            "pitch_rad": s.case.flow.pitch_rad,
-            "is_laminar": s.case.model == Model::Laminar,
-            "is": s.outcome.status.word(),
-            "loads": loads,
-            "y_plus": s.outcome.y_plus,
-        })
-    };
-    solved.iter().map(row).collect()
+fn table(solved: &[Solved]) -> ResultTable {
+    let t = TableBuilder::new("forces", "", solved);
+    let mut columns = vec![
+        t.text("case", "", |s| s.case.id.clone()),
+        t.text("configuration", "", |s| s.case.configuration.clone()),
+        t.number("speed_m_s", "", |s| s.case.flow.speed_m_s),
+        t.number("angle_rad", "", |s| s.case.flow.angle_rad),
+        t.number("pitch_rad", "", |s| s.case.flow.pitch_rad),
+        t.flag("is_laminar", "", |s| s.case.model == Model::Laminar),
+        t.text("is", "", |s| s.outcome.status.word().to_owned()),
+        t.numbers("y_plus", "", |s| s.outcome.y_plus.map(|y| y.to_vec())),
+    ];
+    let load = |(k, name): (usize, &&str)| t.number(&format!("loads/{name}"), "", |s| load(s, k));
+    columns.extend(LOADS.iter().enumerate().map(load));
+    t.build(columns)
 }

@@ -3,24 +3,23 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use froude_cfd::again::Again;
-use froude_cfd::body::Shaped;
-use froude_cfd::lock::Lock;
-use froude_cfd::matrix::{Meshed, computed_again};
-use froude_cfd::mesh_error::MeshError;
-use froude_cfd::o_grid::OGrid;
-use froude_cfd::openfoam::OpenFoam;
-use froude_cfd::poly_mesh::PolyMesh;
-use froude_cfd::quality::Quality;
-use froude_cfd::snappy::Made;
-use froude_cfd::surface::{bounds_m, shadow_m2};
-use froude_cfd::wall::{MIN_COVERAGE, MeshQuality, WallLayers};
+use crate::again::Again;
+use crate::body::Shaped;
+use crate::lock::Lock;
+use crate::matrix::{Meshed, computed_again};
+use crate::mesh_error::MeshError;
+use crate::o_grid::OGrid;
+use crate::openfoam::OpenFoam;
+use crate::poly_mesh::PolyMesh;
+use crate::quality::Quality;
+use crate::snappy::Made;
+use crate::surface::{bounds_m, shadow_m2};
+use crate::wall::{MIN_COVERAGE, MeshQuality, WallLayers};
 use froude_hydro::similarity::blockage;
 use froude_mesh::sections::SectionBody;
 use froude_records::cfd::Mesher;
 
-use super::{Asked, CfdInput, MESHES};
-use crate::Error;
+use super::{Asked, MESHES, VerbError};
 
 /// Angles this close are one, as in the run matrix.
 const SAME_RAD: f64 = 1e-9;
@@ -67,7 +66,7 @@ pub(super) fn of_body(
     body: &Shaped,
     cancel: &AtomicBool,
     tell: &dyn Fn(&str),
-) -> Result<Vec<Group>, Error> {
+) -> Result<Vec<Group>, VerbError> {
     let name = if body.configuration.is_empty() { "the body" } else { &body.configuration };
     if asked.spec.tank.is_none() {
         tell(&format!("mesh of {name}"));
@@ -85,12 +84,12 @@ pub(super) fn of_body(
     Ok(out)
 }
 
-fn of_angle(asked: &Asked, body: &Shaped, angle_rad: Option<f64>, cancel: &AtomicBool) -> Result<Group, Error> {
-    let refused = |e: MeshError| -> Error {
+fn of_angle(asked: &Asked, body: &Shaped, angle_rad: Option<f64>, cancel: &AtomicBool) -> Result<Group, VerbError> {
+    let refused = |e: MeshError| -> VerbError {
         let name = if body.configuration.is_empty() { "the body" } else { &body.configuration };
         match e {
             MeshError::OpenFoam(error) => error.into(),
-            e => CfdInput { path: asked.body.clone(), problem: format!("no mesh of {name}: {e}") }.into(),
+            e => VerbError::input(&asked.body, format!("no mesh of {name}: {e}")),
         }
     };
     // The surface itself is not kept: a plan may have hundreds of bodies.
@@ -118,7 +117,7 @@ fn of_angle(asked: &Asked, body: &Shaped, angle_rad: Option<f64>, cancel: &Atomi
     match (asked.spec.mesher, sections) {
         (Mesher::OGrid, None) => {
             let problem = "is a surface that no O-grid follows; write mesh = \"coarse\", or { surface_cell, first_layer }, which snappyHexMesh cuts cubes for";
-            return Err(CfdInput { path: asked.body.clone(), problem: problem.to_owned() }.into());
+            return Err(VerbError::input(&asked.body, problem));
         }
         (Mesher::OGrid | Mesher::ByBody, Some(sections)) => match body.grid(&asked.spec).mesh(sections) {
             Ok(own) => {
@@ -137,15 +136,14 @@ fn of_angle(asked: &Asked, body: &Shaped, angle_rad: Option<f64>, cancel: &Atomi
     }
     if !again.is_empty() {
         let problem = "is meshed by cubes, and no two such meshes are similar: take fine and [[source.cfd.study]] out of [source.cfd]";
-        return Err(CfdInput { path: asked.body.clone(), problem: problem.to_owned() }.into());
+        return Err(VerbError::input(&asked.body, problem));
     }
     let cubes = body.cubes(&asked.spec, angle_rad.unwrap_or(0.0));
     let made = match cubes.known(&body.surface, &meshes) {
         Some(made) => made,
         None => {
             let openfoam = OpenFoam::find()?;
-            std::fs::create_dir_all(&asked.folder)
-                .map_err(|e| CfdInput { path: asked.folder.clone(), problem: e.to_string() })?;
+            std::fs::create_dir_all(&asked.folder).map_err(|e| VerbError::input(&asked.folder, e.to_string()))?;
             let _lock = Lock::take(&asked.folder)?;
             cubes.mesh(&body.surface, &meshes, &openfoam, cancel).map_err(refused)?
         }

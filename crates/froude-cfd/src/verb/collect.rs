@@ -3,29 +3,28 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use froude_cfd::again::Again;
-use froude_cfd::case::Model;
-use froude_cfd::collect::{Collected as Row, collect as results};
-use froude_cfd::mirror::{OneSided, is_symmetric, take_means};
-use froude_cfd::numerical::Numerical;
-use froude_cfd::outcome::Status;
-use froude_cfd::store::Store;
-use froude_cfd::wall::{MeshQuality, std_of_wall};
 use froude_records::RecordError;
+use froude_records::block::{Block, ResultColumn, ResultTable, Section, TableBuilder, facts};
 use froude_records::cfd::CfdSpec;
 use froude_records::csv_table::csv_bytes;
 use froude_records::manifest::take_own_place;
 use froude_records::number::significant;
-use froude_records::page::{DocumentSection, TextTable};
+use froude_records::outcome::Outcome;
 use froude_records::read;
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration};
 use froude_records::text::counted;
 use froude_records::units::{Dimension, Unit, parse_unit};
 use froude_records::write::Prepared;
-use serde_json::{Value, json};
 
-use super::{Asked, numerical};
-use crate::Error;
+use super::{Asked, VerbError, findings, numerical};
+use crate::again::Again;
+use crate::case::Model;
+use crate::collect::{Collected as Row, collect as results};
+use crate::mirror::{OneSided, is_symmetric, take_means};
+use crate::numerical::Numerical;
+use crate::outcome::Status;
+use crate::store::Store;
+use crate::wall::{MeshQuality, std_of_wall};
 
 /// Loads in the order of [`Loads`].
 pub(super) const LOADS: [&str; 6] = ["f_x", "f_y", "f_z", "m_x", "m_y", "m_z"];
@@ -40,7 +39,7 @@ const SEEN: f64 = 0.01;
 
 /// What was collected.
 #[derive(Debug)]
-pub struct Collected {
+pub(super) struct Collected {
     /// The table's file.
     pub path: PathBuf,
     /// Whether the campaign or its body was changed after the cases were planned.
@@ -71,7 +70,13 @@ struct Pair {
 /// # Errors
 ///
 /// As the campaign is read; no case has a result that counts; the table cannot be written.
-pub fn collect(campaign: &Path, source: Option<&str>) -> Result<Collected, Error> {
+pub fn collect(campaign: &Path, source: Option<&str>) -> Result<Outcome, VerbError> {
+    let found = collected(campaign, source)?;
+    Ok(Outcome { blocks: found.blocks(), findings: Some(findings::of_collected(&found)), ..Outcome::default() })
+}
+
+/// The same, not yet said.
+pub(super) fn collected(campaign: &Path, source: Option<&str>) -> Result<Collected, VerbError> {
     let asked = Asked::read(campaign, source)?;
     of_folder(&asked.folder, &asked.spec, Some(&asked.inputs_sha256()), || Ok(()))
 }
@@ -82,7 +87,7 @@ pub(super) fn of_folder(
     spec: &CfdSpec,
     inputs_sha256: Option<&str>,
     may_write: impl FnOnce() -> Result<(), RecordError>,
-) -> Result<Collected, Error> {
+) -> Result<Collected, VerbError> {
     let store = Store::open(folder)?;
     let is_outdated = inputs_sha256.is_some_and(|inputs_sha256| !store.was_planned_from(inputs_sha256));
     let found = results(&store);
@@ -91,7 +96,7 @@ pub(super) fn of_folder(
     if rows.is_empty() {
         let why = found.without.first().map_or_else(String::new, |(id, why)| format!(" ({id}: {why})"));
         let problem = format!("no case has a result that counts{why}; froude cfd run computes what has none");
-        return Err(super::CfdInput { path: folder.to_owned(), problem }.into());
+        return Err(VerbError::input(folder, problem));
     }
     for row in &mut rows {
         let correction = numerical.correction(&row.case);
@@ -259,60 +264,78 @@ impl Collected {
         (!own.is_empty()).then(|| ([of(0), of(1)], own.len()))
     }
 
-    /// What a person reads: the table, then each setting that was computed again, then the correction.
-    #[must_use]
-    pub fn sections(&self) -> Vec<DocumentSection> {
-        std::iter::once(self.section()).chain(numerical::sections(&self.numerical, &self.rows)).collect()
-    }
-
-    fn section(&self) -> DocumentSection {
-        let is = |status: Status| self.rows.iter().filter(|r| r.outcome.status == status).count();
-        let mut paragraphs: Vec<String> = Vec::new();
+    /// What a page of several sources shows: the table, then each setting that was computed again, then the correction.
+    pub(super) fn blocks(&self) -> Vec<Block> {
+        let mut said = Vec::new();
         if !self.without.is_empty() {
             let cases = counted(self.without.len(), "case has", "cases have");
-            paragraphs.push(format!("{cases} no result that counts; froude cfd status says why"));
+            said.push(format!("{cases} no result that counts; froude cfd status says why"));
         }
-        paragraphs.extend(super::findings::of_collected(self).into_iter().map(|finding| finding.message));
-        let range = |k: usize| {
-            let of = |f: fn(f64, f64) -> f64, from: f64| self.rows.iter().map(|r| r.loads[k]).fold(from, f);
-            [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]
+        let numerical = Section {
+            key: "numerical".to_owned(),
+            blocks: numerical::blocks(&self.numerical, &self.rows),
+            ..Section::default()
         };
-        let row = |k: usize| {
-            let [low, high] = range(k);
-            vec![LOADS[k].to_owned(), significant(low, 4), significant(high, 4), unit(k).to_owned()]
-        };
-        let is_half = self.rows.iter().all(|r| r.case.is_half);
-        DocumentSection {
-            title: "Collected".to_owned(),
-            paragraphs,
-            tables: vec![TextTable {
-                caption: format!(
-                    "{} ({} converged, {} oscillating) in {}",
-                    counted(self.rows.len(), "observation", "observations"),
-                    is(Status::Converged),
-                    is(Status::Oscillating),
-                    self.path.display()
-                ),
-                head: ["load", "least", "largest", "unit"].map(str::to_owned).to_vec(),
-                rows: loads_of(is_half).into_iter().map(row).collect(),
-            }],
-            charts: Vec::new(),
-        }
+        vec![
+            self.about().into(),
+            self.loads().into(),
+            self.without_result().into(),
+            self.one_sided_loads().into(),
+            Block::text("", said),
+            numerical.into(),
+        ]
     }
 
-    /// The same for a program.
-    #[must_use]
-    pub fn as_json(&self) -> Value {
-        let apart = |what: &str| self.apart(what).map(|([x, y], n)| json!({"cases": n, "f_x": x, "f_y": y}));
-        json!({
-            "table": self.path,
-            "is_outdated": self.is_outdated,
-            "observations": self.rows.len(),
-            "without": self.without.iter().map(|(id, why)| json!({"case": id, "reason": why})).collect::<Vec<_>>(),
-            "repeated_from_the_inflow": apart("from the inflow"),
-            "laminar_beside_turbulent": apart("laminar"),
-            "one_sided": self.one_sided.iter().map(|o| json!({"case": o.case, "load": LOADS[o.load], "value": o.value})).collect::<Vec<_>>(),
-            "numerical": numerical::as_json(&self.numerical),
-        })
+    fn about(&self) -> ResultTable {
+        let f = facts("", "", self);
+        let mut columns: Vec<ResultColumn> = vec![
+            f.text("table", "", |c| c.path.display().to_string()),
+            f.flag("is_outdated", "", |c| c.is_outdated),
+            f.count("observations", "", |c| c.rows.len()),
+        ];
+        for (key, what) in [("repeated_from_the_inflow", "from the inflow"), ("laminar_beside_turbulent", "laminar")] {
+            let apart = self.apart(what);
+            columns.extend([
+                f.count(&format!("{key}/cases"), "", |_| apart.map(|(_, n)| n)),
+                f.number(&format!("{key}/f_x"), "", |_| apart.map(|([x, _], _)| x)),
+                f.number(&format!("{key}/f_y"), "", |_| apart.map(|([_, y], _)| y)),
+            ]);
+        }
+        f.build(columns)
+    }
+
+    fn loads(&self) -> ResultTable {
+        let is = |status: Status| self.rows.iter().filter(|r| r.outcome.status == status).count();
+        let caption = format!(
+            "{} ({} converged, {} oscillating) in {}",
+            counted(self.rows.len(), "observation", "observations"),
+            is(Status::Converged),
+            is(Status::Oscillating),
+            self.path.display()
+        );
+        let loads = loads_of(self.rows.iter().all(|r| r.case.is_half));
+        let end = |k: usize, of: fn(f64, f64) -> f64, from: f64| self.rows.iter().map(|r| r.loads[k]).fold(from, of);
+        let t = TableBuilder::new("loads", caption, &loads);
+        t.build(vec![
+            t.text("load", "load", |k| LOADS[*k].to_owned()),
+            t.number("least", "least", |k| end(*k, f64::min, f64::INFINITY)),
+            t.number("largest", "largest", |k| end(*k, f64::max, f64::NEG_INFINITY)),
+            t.text("unit", "unit", |k| unit(*k).to_owned()),
+        ])
+    }
+
+    fn without_result(&self) -> ResultTable {
+        let t = TableBuilder::new("without", "", &self.without);
+        t.build(vec![t.text("case", "", |(id, _)| id.clone()), t.text("reason", "", |(_, why)| why.clone())])
+    }
+
+    fn one_sided_loads(&self) -> ResultTable {
+        let t = TableBuilder::new("one_sided", "", &self.one_sided);
+        t.build(vec![
+            t.text("case", "", |o| o.case.clone()),
+            t.text("load", "", |o| LOADS[o.load].to_owned()),
+            t.number("value", "", |o| o.value),
+            t.text("unit", "", |o| unit(o.load).to_owned()),
+        ])
     }
 }

@@ -2,45 +2,43 @@
 
 use std::path::Path;
 
-use froude_cfd::store::Store;
-use froude_cfd::suggest::{Miss, misses, suggested};
-use froude_records::number::{percent, significant};
-use froude_records::page::{DocumentSection, TextTable};
-use serde_json::{Value, json};
+use froude_records::block::{Block, TableBuilder, facts};
+use froude_records::outcome::Outcome;
 
-use super::Asked;
-use super::collect::{LOADS, collect};
-use crate::Error;
+use super::collect::{LOADS, collected};
+use super::{Asked, VerbError};
+use crate::store::Store;
+use crate::suggest::{Miss, misses, suggested};
 
 /// Rows of the table for a person.
 const SHOWN: usize = 8;
 
 /// What a campaign should compute next.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Suggested {
+struct Suggested {
     /// Settings that others foretell, the worst first.
-    pub misses: Vec<Miss>,
+    misses: Vec<Miss>,
     /// New settings: configuration, speed, m/s, and angle, rad.
-    pub next: Vec<(String, [f64; 2])>,
+    next: Vec<(String, [f64; 2])>,
 }
 
 /// Of the cases that have a result, at most `most` settings beside those that the others foretell worst.
 ///
 /// # Errors
 ///
-/// As [`collect`].
-pub fn suggest(campaign: &Path, source: Option<&str>, most: usize) -> Result<Suggested, Error> {
-    let found = collect(campaign, source)?;
+/// As [`super::collect`].
+pub fn suggest(campaign: &Path, source: Option<&str>, most: usize) -> Result<Outcome, VerbError> {
+    let found = collected(campaign, source)?;
     let store = Store::open(&Asked::read(campaign, source)?.folder)?;
     let flow = |id: &str| store.case(id).ok().map(|case| (case.configuration, case.flow));
     let misses = misses(&found.rows, &store.ids().filter_map(flow).collect::<Vec<_>>());
-    Ok(Suggested { next: suggested(&misses, most), misses })
+    let blocks = Suggested { next: suggested(&misses, most), misses }.blocks();
+    Ok(Outcome { blocks, ..Outcome::default() })
 }
 
 impl Suggested {
     /// Blocks to put into the campaign: one for each configuration and speed.
-    #[must_use]
-    pub fn plan(&self) -> String {
+    fn plan(&self) -> String {
         let mut blocks: Vec<(&str, f64, Vec<f64>)> = Vec::new();
         for (name, [speed_m_s, angle_rad]) in &self.next {
             match blocks.iter_mut().find(|(other, speed, _)| other == name && speed == speed_m_s) {
@@ -59,19 +57,7 @@ impl Suggested {
         blocks.iter().map(block).collect()
     }
 
-    /// What a person reads.
-    #[must_use]
-    pub fn section(&self) -> DocumentSection {
-        let row = |miss: &Miss| {
-            vec![
-                miss.configuration.clone(),
-                significant(miss.speed_m_s, 3),
-                significant(miss.angle_rad.to_degrees(), 3),
-                LOADS[miss.load].to_owned(),
-                percent(miss.missed_part),
-                percent(miss.std),
-            ]
-        };
+    fn blocks(&self) -> Vec<Block> {
         let said = match (self.misses.is_empty(), self.next.is_empty()) {
             (true, _) => "no setting lies between others at its speed: plan five angles or five speeds at least",
             (_, true) => {
@@ -79,38 +65,28 @@ impl Suggested {
             }
             _ => "put these blocks under those of the source, and run it again; cases that are there are kept",
         };
-        let head = ["body", "speed, m/s", "angle, deg", "load", "missed by", "uncertainty"];
-        DocumentSection {
-            title: "To compute next".to_owned(),
-            paragraphs: vec![said.to_owned()],
-            tables: vec![TextTable {
-                caption: "settings that a cubic through two others on each side foretells worst, over the largest of that load and body".to_owned(),
-                head: head.map(str::to_owned).to_vec(),
-                rows: self.misses.iter().take(SHOWN).map(row).collect(),
-            }],
-            charts: Vec::new(),
-        }
-    }
-
-    /// The same for a program.
-    #[must_use]
-    pub fn as_json(&self) -> Value {
-        let miss = |m: &Miss| {
-            json!({
-                "configuration": m.configuration,
-                "speed_m_s": m.speed_m_s,
-                "angle_rad": m.angle_rad,
-                "load": LOADS[m.load],
-                "missed_by": m.missed_part,
-                "uncertainty": m.std,
-            })
-        };
-        let next = |(name, [speed, angle]): &(String, [f64; 2])| json!({"configuration": name, "speed_m_s": speed, "angle_rad": angle});
-        json!({
-            "misses": self.misses.iter().map(miss).collect::<Vec<_>>(),
-            "next": self.next.iter().map(next).collect::<Vec<_>>(),
-            "plan": self.plan(),
-        })
+        let caption = "settings that a cubic through two others on each side foretells worst, over the largest of that load and body";
+        let t = TableBuilder::new("misses", caption, &self.misses);
+        let mut misses = t.build(vec![
+            t.text("configuration", "body", |miss| miss.configuration.clone()),
+            t.number("speed_m_s", "speed [m/s]", |miss| miss.speed_m_s).significant(3),
+            t.number("angle_rad", "angle [deg]", |miss| miss.angle_rad).significant(3),
+            t.text("load", "load", |miss| LOADS[miss.load].to_owned()),
+            t.number("missed_by", "missed by", |miss| miss.missed_part).percent(),
+            t.number("uncertainty", "uncertainty", |miss| miss.std).percent(),
+        ]);
+        misses.shown_rows = Some((0..self.misses.len().min(SHOWN)).collect());
+        let t = TableBuilder::new("next", "", &self.next);
+        let next = t.build(vec![
+            t.text("configuration", "", |(name, _)| name.clone()),
+            t.number("speed_m_s", "", |(_, [speed, _])| *speed),
+            t.number("angle_rad", "", |(_, [_, angle])| *angle),
+        ]);
+        let plan = self.plan();
+        let f = facts("", "", &plan);
+        let file = f.build(vec![f.text("plan", "", Clone::clone)]);
+        let lines = plan.lines().map(str::to_owned).collect();
+        vec![misses.into(), next.into(), file.into(), Block::text("", vec![said.to_owned()]), Block::text("", lines)]
     }
 }
 

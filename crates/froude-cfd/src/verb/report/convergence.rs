@@ -1,12 +1,12 @@
 //! Forces over the iterations of a case, and the window that it was judged over.
 
-use froude_cfd::history;
-use froude_cfd::judge::judged_window;
-use froude_cfd::window::Window;
+use froude_records::block::{ResultColumn, TableBuilder};
 use froude_records::page::{Chart, ChartPanel, Mark, Series};
-use serde_json::{Value, json};
 
-use super::Solved;
+use super::{Shown, Solved};
+use crate::history;
+use crate::judge::judged_window;
+use crate::window::Window;
 
 /// Part of the iterations that is not drawn: forces begin wild, and hide what they settle to.
 const BEGINNING: f64 = 0.1;
@@ -67,24 +67,25 @@ impl Convergence {
         Ok(Self { chart, window, last })
     }
 
-    pub fn window_words(&self) -> String {
-        self.window.as_ref().map_or_else(String::new, |w| format!("{} to {}", self.first(w), self.last))
-    }
-
     fn first(&self, window: &Window) -> f64 {
         self.last - window.length as f64 + 1.0
     }
 
-    pub fn as_json(&self) -> Value {
-        json!({
-            "last": self.last,
-            "window": self.window.as_ref().map(|w| json!({
-                "first": self.first(w),
-                "iterations": w.length,
-                "mean": w.mean,
-                "drift": w.drift,
-                "spread": w.spread,
-            })),
-        })
+    /// What it says of cases.
+    pub fn columns(t: &TableBuilder<'_, Shown>) -> Vec<ResultColumn> {
+        let window = |s: &Shown| s.convergence.as_ref().ok()?.window;
+        let first = |s: &Shown| {
+            let found = s.convergence.as_ref().ok()?;
+            Some(found.first(found.window.as_ref()?))
+        };
+        vec![
+            t.number("convergence/window/first", "judged from", first).plain(9),
+            t.number("convergence/last", "to", |s| s.convergence.as_ref().ok().map(|c| c.last)).plain(9),
+            t.count("convergence/window/iterations", "", |s| window(s).map(|w| w.length)),
+            t.numbers("convergence/window/mean", "", |s| window(s).map(|w| w.mean.to_vec())),
+            t.numbers("convergence/window/drift", "", |s| window(s).map(|w| w.drift.to_vec())),
+            t.numbers("convergence/window/spread", "", |s| window(s).map(|w| w.spread.to_vec())),
+            t.text("convergence/problem", "", |s| s.convergence.as_ref().err().cloned()),
+        ]
     }
 }

@@ -2,16 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use froude_cfd::case::Case;
-use froude_cfd::collect::Collected as Row;
-use froude_cfd::outcome::Loads;
-use froude_cfd::wall::std_of_wall;
+use crate::case::Case;
+use crate::collect::Collected as Row;
+use crate::outcome::Loads;
+use crate::wall::std_of_wall;
 use froude_fit::budget::Kind;
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::reduce::{Observations, reduce_table};
 use froude_identify::source::{ReadFile, identify_observations};
 use froude_identify::uncertainty::SharedError;
 use froude_identify::validation::{STD_ITERATIVE, STD_NUMERICAL};
+use froude_records::block::sections;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::output::inside;
@@ -21,7 +22,7 @@ use super::collect::{Collected, LOADS, of_folder};
 use super::{Asked, findings};
 
 /// The cases of a CFD campaign.
-pub(crate) struct Computed;
+pub struct Computed;
 
 impl Method for Computed {
     fn names(&self) -> &'static [&'static str] {
@@ -53,7 +54,7 @@ impl Method for Computed {
         let spec =
             source.cfd.clone().or_else(|| campaign.sources.iter().find(of_cases)?.cfd.clone()).unwrap_or_default();
         let may_write = || inside(&campaign.path, source.input.path(), &source.place, "cases", "froude identify");
-        let input = |e: crate::Error| MethodError::input(source.input.path(), e.to_string());
+        let input = |e: super::VerbError| MethodError::input(source.input.path(), e.to_string());
         let mut planning = std::iter::once(source).chain(&campaign.sources);
         let planned = planning.find(|other| of_cases(other) && !other.plan.is_empty());
         // A campaign that can no longer be planned is not the one that was planned.
@@ -79,7 +80,7 @@ impl Method for Computed {
             progress(&format!("fitting {model}"));
         })?;
         let findings = std::mem::take(&mut result.findings).into_iter().filter(|f| !is_of_a_rig(f)).collect();
-        let blocks = collected.sections();
+        let blocks = sections("Collected", &collected.blocks());
         Ok(Found { results: vec![result.into()], findings, blocks, ..Found::default() })
     }
 }

@@ -4,23 +4,21 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use froude_cfd::again::Again;
-use froude_cfd::case::{Case, LAMINAR_REYNOLDS, Reference, Water};
-use froude_cfd::change::{Change, plan as plan_cases};
-use froude_cfd::cost::Cost;
-use froude_cfd::matrix::{Meshed, cases, computed_again};
-use froude_cfd::snappy::Made;
-use froude_cfd::store::{State, Store};
 use froude_hydro::similarity::{friction_ittc57, friction_laminar};
-use froude_panel::refine::duration;
-use froude_records::number::{count, percent, significant};
-use froude_records::page::{DocumentSection, TextTable};
+use froude_records::block::{Block, TableBuilder, facts};
+use froude_records::number::{bytes, count, duration, percent, significant};
+use froude_records::outcome::Outcome;
 use froude_records::text::counted;
-use serde_json::{Value, json};
 
 use super::meshes::{Group, of_body};
-use super::{Asked, CfdInput, bodies};
-use crate::Error;
+use super::{Asked, VerbError, bodies};
+use crate::again::Again;
+use crate::case::{Case, LAMINAR_REYNOLDS, Reference, Water};
+use crate::change::{Change, plan as plan_cases};
+use crate::cost::Cost;
+use crate::matrix::{Meshed, cases, computed_again};
+use crate::snappy::Made;
+use crate::store::{State, Store};
 
 /// Disk that a cell takes with one set of fields and a history of forces, bytes.
 const BYTES_PER_CELL: f64 = 110.0;
@@ -29,69 +27,78 @@ const BYTES_PER_CELL: f64 = 110.0;
 const MOST_MESHES: usize = 10_000;
 
 /// A campaign that is planned.
-#[derive(Debug, Clone)]
-pub struct Planned {
+pub(super) struct Planned {
     /// The campaign's folder.
     pub store: Store,
-    /// What became of cases that were there.
-    pub change: Change,
     /// A row per configuration and mesh.
-    pub configurations: Vec<PlannedConfiguration>,
+    configurations: Vec<PlannedConfiguration>,
     /// Whether the cost is measured on this machine.
-    pub is_measured: bool,
+    is_measured: bool,
     /// Time of a processor for one cell and iteration, s.
-    pub s_per_cell_iteration: f64,
+    s_per_cell_iteration: f64,
     /// What is worth saying.
     pub said: Vec<String>,
 }
 
 /// What is planned of a configuration.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlannedConfiguration {
-    /// Its name.
-    pub configuration: String,
+struct PlannedConfiguration {
+    configuration: String,
     /// Empty for the campaign's own mesh; of others as their cases end: `fine`, `coarser`, `finer2`, `r6`.
-    pub mesh: String,
+    mesh: String,
     /// The angle that its mesh is for; `None`: all.
-    pub angle_rad: Option<f64>,
+    angle_rad: Option<f64>,
     /// Lengths and the point that its loads refer to.
-    pub reference: Reference,
-    /// Cells of its mesh.
-    pub cells: usize,
-    /// Largest non-orthogonality of the mesh, rad.
-    pub non_orthogonality_rad: f64,
-    /// Largest skewness of the mesh \[-\].
-    pub skewness: f64,
+    reference: Reference,
+    cells: usize,
+    /// Largest of the mesh.
+    non_orthogonality_rad: f64,
+    skewness: f64,
     /// What snappyHexMesh made; `None`: it is an O-grid.
-    pub cubes: Option<Made>,
+    cubes: Option<Made>,
     /// y+ to expect of the mean over the body at the highest speed, from the friction of a plate of its length \[-\].
-    pub y_plus: f64,
+    y_plus: f64,
     /// Part of a tank's section that the body blocks \[-\].
-    pub blockage: Option<f64>,
-    /// Its cases.
-    pub cases: usize,
+    blockage: Option<f64>,
+    cases: usize,
     /// Those without a result.
-    pub open: usize,
+    open: usize,
     /// Time of a processor that these are expected to take, s.
-    pub cpu_s: f64,
-    /// Disk that all of them take, bytes.
-    pub bytes: f64,
+    cpu_s: f64,
+    /// Disk that all of them take.
+    bytes: f64,
     /// Smallest and largest Reynolds number of the width.
-    pub reynolds: [f64; 2],
+    reynolds: [f64; 2],
 }
 
-/// Plans a campaign: its only source with cases, or the one of a name. `tell` hears what is done.
+/// Plans a campaign: its only source with cases, or the one of a name, of which `processors` will work side by side. `tell` hears what is done.
 ///
 /// Meshes are made here, also those by snappyHexMesh, which take a second to a minute: without them nobody knows how many cells there are, and so no price. Each is made once.
 ///
 /// # Errors
 ///
 /// A campaign, a body file or a surface that cannot be used; a body that no mesh fits; OpenFOAM is not there and a mesh needs it; a folder that cannot be written, or that another process runs.
-pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &dyn Fn(&str)) -> Result<Planned, Error> {
+pub fn plan(
+    campaign: &Path,
+    source: Option<&str>,
+    processors: usize,
+    cancel: &AtomicBool,
+    tell: &dyn Fn(&str),
+) -> Result<Outcome, VerbError> {
+    let blocks = planned(campaign, source, cancel, tell)?.blocks(processors);
+    Ok(Outcome { blocks, ..Outcome::default() })
+}
+
+/// The same, not yet said.
+pub(super) fn planned(
+    campaign: &Path,
+    source: Option<&str>,
+    cancel: &AtomicBool,
+    tell: &dyn Fn(&str),
+) -> Result<Planned, VerbError> {
     let asked = Asked::read(campaign, source)?;
     // A body that is edited while meshes are made is not what was planned.
     let inputs_sha256 = asked.inputs_sha256();
-    let refused = |problem| CfdInput { path: campaign.to_owned(), problem };
+    let refused = |problem: String| VerbError::input(campaign, problem);
     let mut meshed: Vec<Group> = Vec::new();
     let named = asked.source.plan.iter().flat_map(|block| &block.configurations);
     let names: BTreeSet<&String> = named.clone().collect();
@@ -101,11 +108,11 @@ pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &d
             "source {:?} asks for {meshes} meshes, of its configurations and of studies and fine with them; at most {MOST_MESHES} are made: split the campaign",
             asked.source.name
         );
-        return Err(refused(problem).into());
+        return Err(refused(problem));
     }
     bodies::each(&asked, named, &mut |body| {
         if cancel.load(Ordering::SeqCst) {
-            return Err(Error::Stopped);
+            return Err(VerbError::Stopped);
         }
         meshed.extend(of_body(&asked, &body, cancel, tell)?);
         Ok(())
@@ -161,7 +168,6 @@ pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &d
         s_per_cell_iteration: cost.s_per_cell_iteration(),
         said: said(&asked, &meshed, &cases, &change),
         store,
-        change,
     })
 }
 
@@ -226,106 +232,75 @@ fn said(asked: &Asked, meshed: &[Group], cases: &[Case], change: &Change) -> Vec
     out
 }
 
+impl PlannedConfiguration {
+    fn name(&self) -> String {
+        match self.angle_rad {
+            Some(angle) => format!("{} at {:.1}°", self.configuration, angle.to_degrees()).trim_start().to_owned(),
+            None => format!("{} {}", self.configuration, self.mesh).trim().to_owned(),
+        }
+    }
+}
+
 impl Planned {
-    /// What a person reads; `processors` work side by side.
-    #[must_use]
-    pub fn section(&self, processors: usize) -> DocumentSection {
-        let name = |c: &PlannedConfiguration| match c.angle_rad {
-            Some(angle) => format!("{} at {:.1}°", c.configuration, angle.to_degrees()).trim_start().to_owned(),
-            None => format!("{} {}", c.configuration, c.mesh).trim().to_owned(),
-        };
-        let row = |c: &PlannedConfiguration| {
-            vec![
-                name(c),
-                count(c.cells),
-                format!("{} to {}", significant(c.reynolds[0], 2), significant(c.reynolds[1], 2)),
-                c.cases.to_string(),
-                c.open.to_string(),
-                duration(c.cpu_s),
-                significant(c.bytes / 1e6, 2),
-            ]
-        };
-        let mesh = |c: &PlannedConfiguration| {
-            let layers = |made: &Made| format!("{} of {}", significant(made.layers, 3), made.layers_asked);
-            vec![
-                name(c),
-                if c.cubes.is_some() { "snappyHexMesh" } else { "O-grid" }.to_owned(),
-                format!("{:.0}", c.non_orthogonality_rad.to_degrees()),
-                significant(c.skewness, 2),
-                c.cubes.as_ref().map_or_else(|| "all".to_owned(), layers),
-                percent(c.cubes.as_ref().map_or(1.0, |made| made.area_coverage)),
-                significant(c.y_plus, 2),
-                c.blockage.map_or_else(String::new, percent),
-            ]
-        };
-        let lengths = |c: &PlannedConfiguration| {
-            let Reference { length_m, width_m, area_m2, point_m } = c.reference;
-            let point = point_m.map(|x| significant(x, 3)).join(", ");
-            vec![name(c), significant(length_m, 4), significant(width_m, 4), significant(area_m2, 4), point]
-        };
-        let sum = |of: fn(&PlannedConfiguration) -> f64| self.configurations.iter().map(of).sum::<f64>();
+    fn blocks(&self, processors: usize) -> Vec<Block> {
+        let f = facts("", "", self);
+        let about = f.build(vec![
+            f.text("folder", "", |p| p.store.root().display().to_string()),
+            f.number("s_per_cell_iteration", "", |p| p.s_per_cell_iteration),
+            f.flag("is_measured", "", |p| p.is_measured),
+        ]);
+        let all = &self.configurations;
+        let t = TableBuilder::new("configurations", format!("cases in {}", self.store.root().display()), all);
+        let cases = t.build(vec![
+            t.text("", "body", PlannedConfiguration::name),
+            t.text("configuration", "", |c| c.configuration.clone()),
+            t.text("mesh", "", |c| c.mesh.clone()),
+            t.number("angle_rad", "", |c| c.angle_rad),
+            t.count("cells", "cells", |c| c.cells),
+            t.interval("reynolds", "Re of the width", |c| c.reynolds),
+            t.count("cases", "cases", |c| c.cases),
+            t.count("open", "to compute", |c| c.open),
+            t.number("cpu_s", "time", |c| c.cpu_s).duration(),
+            t.number("bytes", "disk", |c| c.bytes).bytes(),
+        ]);
+        let caption = "meshes; y+ is what the friction of a plate lets expect at the highest speed";
+        let t = TableBuilder::new("configurations", caption, all);
+        let of = |c: &PlannedConfiguration, of: fn(&Made) -> f64| c.cubes.as_ref().map(of);
+        let meshes = t.build(vec![
+            t.text("", "body", PlannedConfiguration::name),
+            t.text("mesher", "mesh", |c| if c.cubes.is_some() { "snappyHexMesh" } else { "O-grid" }.to_owned()),
+            t.number("max_non_orthogonality_rad", "non-orthogonality [deg]", |c| c.non_orthogonality_rad).places(0),
+            t.number("max_skewness", "skewness", |c| c.skewness).significant(2),
+            t.number("layers/mean", "layers", |c| of(c, |made| made.layers)).significant(3),
+            t.count("layers/asked", "asked for", |c| c.cubes.as_ref().map(|made| made.layers_asked)),
+            t.number("layers/coverage", "", |c| of(c, |made| made.coverage)),
+            t.number("layers/area_coverage", "of the area", |c| of(c, |made| made.area_coverage)).percent(),
+            t.number("layers/thickness_m", "", |c| of(c, |made| made.layers_m)),
+            t.number("y_plus_expected", "y+", |c| c.y_plus).significant(2),
+            t.number("blockage", "blocks", |c| c.blockage).percent(),
+        ]);
+        let caption = "lengths that numbers refer to, the area of the side, and the point of the moments, x forward, y to starboard, z down";
+        let t = TableBuilder::new("configurations", caption, all);
+        let lengths = t.build(vec![
+            t.text("", "body", PlannedConfiguration::name),
+            t.number("length_m", "length [m]", |c| c.reference.length_m),
+            t.number("width_m", "width [m]", |c| c.reference.width_m),
+            t.number("area_m2", "area [m²]", |c| c.reference.area_m2),
+            t.numbers("point_m", "point [m]", |c| c.reference.point_m.to_vec()).significant(3),
+        ]);
+        let sum = |of: fn(&PlannedConfiguration) -> f64| all.iter().map(of).sum::<f64>();
         let cpu_s = sum(|c| c.cpu_s);
         let how = if self.is_measured { "measured here" } else { "assumed until a case has run here" };
-        let mut paragraphs = vec![format!(
-            "{} to compute: {} of a processor, {} on {}, {} GB of disk; {} µs a cell and iteration, {how}",
+        let price = format!(
+            "{} to compute: {} of a processor, {} on {}, {} of disk; {} µs a cell and iteration, {how}",
             counted(sum(|c| c.open as f64) as usize, "case", "cases"),
             duration(cpu_s),
             duration(cpu_s / processors as f64),
             counted(processors, "processor", "processors"),
-            significant(sum(|c| c.bytes) / 1e9, 2),
+            bytes(sum(|c| c.bytes)),
             significant(1e6 * self.s_per_cell_iteration, 2),
-        )];
-        paragraphs.extend(self.said.iter().cloned());
-        let table = |caption: String, head: &[&str], row: &dyn Fn(&PlannedConfiguration) -> Vec<String>| TextTable {
-            caption,
-            head: head.iter().map(|word| (*word).to_owned()).collect(),
-            rows: self.configurations.iter().map(row).collect(),
-        };
-        let head = ["body", "cells", "Re of the width", "cases", "to compute", "time", "disk, MB"];
-        let mesh_head = ["body", "mesh", "non-orthogonality, deg", "skewness", "layers", "of the area", "y+", "blocks"];
-        let of_mesh = "meshes; y+ is what the friction of a plate lets expect at the highest speed";
-        let of_lengths = "lengths that numbers refer to, the area of the side, and the point of the moments, x forward, y to starboard, z down";
-        DocumentSection {
-            title: "Planned".to_owned(),
-            paragraphs,
-            tables: vec![
-                table(format!("cases in {}", self.store.root().display()), &head, &row),
-                table(of_mesh.to_owned(), &mesh_head, &mesh),
-                table(of_lengths.to_owned(), &["body", "length, m", "width, m", "area, m²", "point, m"], &lengths),
-            ],
-            charts: Vec::new(),
-        }
-    }
-
-    /// The same for a program, in SI.
-    #[must_use]
-    pub fn as_json(&self) -> Value {
-        json!({
-            "folder": self.store.root(),
-            "configurations": self.configurations.iter().map(|c| json!({
-                "configuration": c.configuration,
-                "mesh": c.mesh,
-                "angle_rad": c.angle_rad,
-                "length_m": c.reference.length_m,
-                "width_m": c.reference.width_m,
-                "area_m2": c.reference.area_m2,
-                "point_m": c.reference.point_m,
-                "mesher": if c.cubes.is_some() { "snappyHexMesh" } else { "O-grid" },
-                "cells": c.cells,
-                "max_non_orthogonality_rad": c.non_orthogonality_rad,
-                "max_skewness": c.skewness,
-                "layers": c.cubes.as_ref().map(|m| json!({"asked": m.layers_asked, "mean": m.layers, "coverage": m.coverage, "area_coverage": m.area_coverage, "thickness_m": m.layers_m})),
-                "y_plus_expected": c.y_plus,
-                "blockage": c.blockage,
-                "cases": c.cases,
-                "open": c.open,
-                "cpu_s": c.cpu_s,
-                "bytes": c.bytes,
-                "reynolds": c.reynolds,
-            })).collect::<Vec<_>>(),
-            "s_per_cell_iteration": self.s_per_cell_iteration,
-            "is_measured": self.is_measured,
-            "said": self.said,
-        })
+        );
+        let said = Block::text("said", self.said.clone());
+        vec![about.into(), cases.into(), meshes.into(), lengths.into(), Block::text("", vec![price]), said]
     }
 }

@@ -6,20 +6,20 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use froude_cfd::engine::slurm;
-pub use froude_cfd::engine::slurm::SlurmOptions;
-use froude_cfd::engine::{Event, Progress, Ran, local};
-use froude_cfd::foam_solver::FoamSolver;
-use froude_cfd::openfoam::OpenFoam;
-use froude_cfd::store::Store;
-use froude_cfd::work::{Worked, work};
-use froude_panel::refine::duration;
-use froude_records::page::{DocumentSection, TextTable};
+use froude_records::block::{Block, TableBuilder, facts};
+use froude_records::number::duration;
+use froude_records::outcome::{Exit, Outcome};
 use froude_records::text::counted;
-use serde_json::{Value, json};
 
-use super::plan::plan;
-use crate::Error;
+use super::VerbError;
+use super::plan::planned;
+use crate::engine::slurm;
+pub use crate::engine::slurm::SlurmOptions;
+use crate::engine::{Event, Progress, Ran, local};
+use crate::foam_solver::FoamSolver;
+use crate::openfoam::OpenFoam;
+use crate::store::Store;
+use crate::work::{Worked, work};
 
 /// How long a job of a queue waits for another that has its case.
 const PATIENCE: Duration = Duration::from_mins(4);
@@ -55,10 +55,10 @@ pub struct Job {
 ///
 /// # Errors
 ///
-/// As [`plan`]; OpenFOAM is not there; another process runs the campaign.
-pub fn run(job: &Job, cancel: &AtomicBool, running: &Running<'_>) -> Result<Done, Error> {
+/// As [`super::plan`]; OpenFOAM is not there; another process runs the campaign.
+pub fn run(job: &Job, cancel: &AtomicBool, running: &Running<'_>) -> Result<Outcome, VerbError> {
     let programs = OpenFoam::find()?;
-    let planned = plan(&job.campaign, job.source.as_deref(), cancel, running.now)?;
+    let planned = planned(&job.campaign, job.source.as_deref(), cancel, running.now)?;
     for line in planned.said.iter().cloned().chain(programs.advice()) {
         (running.line)(&line);
     }
@@ -70,7 +70,7 @@ pub fn run(job: &Job, cancel: &AtomicBool, running: &Running<'_>) -> Result<Done
         }
         Engine::Slurm(options) => slurm::run(&planned.store, options, cancel, &hears)?,
     };
-    Ok(Done { was_cancelled: ran.was_cancelled, ran, folder: planned.store.root().to_owned() })
+    Ok(outcome(&ran, job, planned.store.root()))
 }
 
 /// Computes one case, by its folder; what it came to, in words.
@@ -78,13 +78,13 @@ pub fn run(job: &Job, cancel: &AtomicBool, running: &Running<'_>) -> Result<Done
 /// # Errors
 ///
 /// A folder that is no case of a campaign; OpenFOAM is not there; the case is another's, or was edited.
-pub fn run_case(folder: &Path, ranks: usize, cancel: &AtomicBool) -> Result<String, Error> {
+pub fn run_case(folder: &Path, ranks: usize, cancel: &AtomicBool) -> Result<String, VerbError> {
     let programs = OpenFoam::find()?;
     let (store, id) = Store::of_case(folder)?;
     Ok(match work(&store, &id, &FoamSolver { openfoam: programs, ranks }, PATIENCE, cancel, &|_, _| (), &|_| ())? {
         Worked::Accepted(done) => format!("{}: {}", done.outcome.status.word(), done.outcome.reason),
         Worked::Already(done) => format!("has a result already ({})", done.outcome.status.word()),
-        Worked::Cancelled => return Err(Error::Stopped),
+        Worked::Cancelled => return Err(VerbError::Stopped),
     })
 }
 
@@ -157,51 +157,34 @@ impl State {
 }
 
 /// How a run ended.
-#[derive(Debug, Clone)]
-pub struct Done {
-    ran: Ran,
-    folder: PathBuf,
-    /// Whether it was stopped.
-    pub was_cancelled: bool,
+fn outcome(ran: &Ran, job: &Job, folder: &Path) -> Outcome {
+    let p = &ran.progress;
+    let open = p.running + p.waiting + p.left;
+    let mut said = Vec::new();
+    if open > 0 {
+        said.push(format!("{} no result yet", counted(open, "case has", "cases have")));
+    }
+    if p.done.iter().any(|(status, n)| !status.is_usable() && *n > 0) {
+        said.push("what diverged or failed reaches no fit; froude cfd status says why of each, froude cfd retry lets the next run compute them again".to_owned());
+    }
+    let f = facts("", "", ran);
+    let about = f.build(vec![
+        f.text("folder", "", |_| folder.display().to_string()),
+        f.count("open", "", |_| open),
+        f.flag("was_cancelled", "", |ran| ran.was_cancelled),
+    ]);
+    let done = facts("done", format!("cases in {}, by how they ended", folder.display()), ran);
+    let done = done.build(p.done.iter().map(|(status, n)| done.count(status.word(), status.word(), |_| *n)).collect());
+    let t = TableBuilder::new("left", "", &ran.left);
+    let left = t.build(vec![t.text("case", "", |(id, _)| id.clone()), t.text("reason", "", |(_, why)| why.clone())]);
+    let exit = if ran.was_cancelled { stopped("run", &job.campaign) } else { Exit::Done };
+    Outcome { blocks: vec![about.into(), done.into(), left.into(), Block::text("", said)], exit, ..Outcome::default() }
 }
 
-impl Done {
-    /// What a person reads.
-    #[must_use]
-    pub fn section(&self) -> DocumentSection {
-        let p = &self.ran.progress;
-        let open = p.running + p.waiting + p.left;
-        let mut paragraphs = Vec::new();
-        if open > 0 {
-            paragraphs.push(format!("{} no result yet", counted(open, "case has", "cases have")));
-        }
-        if p.done.iter().any(|(status, n)| !status.is_usable() && *n > 0) {
-            paragraphs.push("what diverged or failed reaches no fit; froude cfd status says why of each, froude cfd retry lets the next run compute them again".to_owned());
-        }
-        DocumentSection {
-            title: "Computed".to_owned(),
-            paragraphs,
-            tables: vec![TextTable {
-                caption: format!("cases in {}", self.folder.display()),
-                head: ["ended", "cases"].map(str::to_owned).to_vec(),
-                rows: p.done.iter().map(|(status, n)| vec![status.word().to_owned(), n.to_string()]).collect(),
-            }],
-            charts: Vec::new(),
-        }
-    }
-
-    /// The same for a program.
-    #[must_use]
-    pub fn as_json(&self) -> Value {
-        let p = &self.ran.progress;
-        let done: serde_json::Map<String, Value> =
-            p.done.iter().map(|(status, n)| (status.word().to_owned(), json!(n))).collect();
-        json!({
-            "folder": self.folder,
-            "done": done,
-            "open": p.running + p.waiting + p.left,
-            "left": self.ran.left.iter().map(|(id, why)| json!({"case": id, "reason": why})).collect::<Vec<_>>(),
-            "was_cancelled": self.was_cancelled,
-        })
-    }
+/// Of what goes on by the same command.
+pub(super) fn stopped(verb: &str, campaign: &Path) -> Exit {
+    Exit::Stopped(format!(
+        "stopped as asked, nothing is lost: froude cfd {verb} {} goes on where it was",
+        campaign.display()
+    ))
 }

@@ -1,8 +1,8 @@
 //! What is said of the results of a CFD campaign: by `froude cfd collect` to a person, and by `froude identify` in the record.
 
-use froude_cfd::collect::Collected as Row;
-use froude_cfd::outcome::{Outcome, Status};
-use froude_cfd::wall::{MeshQuality, SUBLAYER, std_of_wall};
+use crate::collect::Collected as Row;
+use crate::outcome::{Outcome, Status};
+use crate::wall::{MeshQuality, SUBLAYER, std_of_wall};
 use froude_records::campaign::Source;
 use froude_records::cfd::CfdSpec;
 use froude_records::estimate::ErrorKind;
@@ -78,7 +78,7 @@ pub(super) fn of_flows(collected: &Collected, spec: &CfdSpec, source: &Source) -
         let text = format!(
             "{} with a turbulence model at a Reynolds number (based on width) below {}, where the boundary layer is laminar; use laminar_below or both_below in [source.cfd] to compute without the model",
             counted(early, "case is computed", "cases are computed"),
-            count(froude_cfd::case::LAMINAR_REYNOLDS as usize)
+            count(crate::case::LAMINAR_REYNOLDS as usize)
         );
         out.push(Finding::new(Severity::Warning, "cfd-laminar-layer", text));
     }
