@@ -109,12 +109,9 @@ pub enum Failure {
     #[error("the runs do not state which rig they come from")]
     NoRig,
 
-    /// The pre-flight found objections.
-    #[error("the pre-flight refuses this campaign; nothing was moved:\n{}", .objections.join("\n"))]
-    Refused {
-        /// A line each.
-        objections: Vec<String>,
-    },
+    /// What was asked is not done.
+    #[error("{0}")]
+    Refused(String),
 
     /// `--yes` at a real rig.
     #[error("--yes is for the twin: at a real rig a person must be present and confirm each step")]

@@ -25,10 +25,11 @@ use std::process::ExitCode;
 use args::{Cli, RobotJob, Verb};
 use clap::Parser;
 use failure::Failure;
+use froude::identify::prediction;
 use froude::pipeline::{self, Input, Job};
-use froude::records::text::counted;
+use froude::report::write::write_files;
 use froude::swim::verb::look;
-use froude::{demo, inspect, plan, predict, twin};
+use froude::{demo, inspect, plan, twin};
 
 fn main() -> ExitCode {
     // Where signals cannot be watched they end the program as they always do.
@@ -72,19 +73,12 @@ fn run(cli: Cli) -> Result<(), Failure> {
             identify(job, cli.json, all).map_err(|error| mistaken::COMPARE.explain(error, &estimates))?;
         }
         Verb::Predict { record, table, sidecar, laws, out } => {
-            let job = predict::Job { record: record.clone(), table: table.clone(), sidecar, laws, out };
+            let job = prediction::Job { record: record.clone(), table: table.clone(), sidecar, laws, out };
             // Which of the two is no such file says the reader; that they were taken for each other is said here.
-            let found = predict::predict(&job).map_err(|error| mistaken::PREDICT.explain(error, &[record, table]))?;
-            if cli.json {
-                return print::json(&found.as_json());
-            }
-            print::findings(&found.findings);
-            for predicted in &found.estimates {
-                print::summary(&found.section(predicted));
-            }
-            for path in &found.written {
-                out::say!("\nrows       {}", path.display());
-            }
+            let found =
+                prediction::predict(&job).map_err(|error| mistaken::PREDICT.explain(error, &[record, table]))?;
+            write_files(&found)?;
+            print::answer(&found, cli.json)?;
         }
         Verb::Inspect { file, sidecar } => {
             let inspection = inspect::inspect(&file, sidecar.as_deref())
@@ -95,28 +89,13 @@ fn run(cli: Cli) -> Result<(), Failure> {
             print::inspection(&inspection);
         }
         Verb::Plan { campaign } => {
-            let prospects = plan::plan(&campaign).map_err(|error| mistaken::PLAN.explain(error, &[campaign]))?;
-            if cli.json {
-                return print::json(&prospects.iter().map(print::prospect_as_json).collect::<Vec<_>>());
-            }
-            for prospect in &prospects {
-                print::summary(&prospect.section);
-            }
+            let found = plan::plan(&campaign).map_err(|error| mistaken::PLAN.explain(error, &[campaign]))?;
+            print::answer(&found, cli.json)?;
         }
         Verb::Simulate { campaign, replace } => {
-            let written =
+            let found =
                 twin::simulate(&campaign, replace).map_err(|error| mistaken::SIMULATE.explain(error, &[campaign]))?;
-            if cli.json {
-                let one = |w: &twin::Written| {
-                    let count = if w.are_runs { "runs" } else { "rows" };
-                    serde_json::json!({"source": w.source, "path": w.path, count: w.count})
-                };
-                return print::json(&written.iter().map(one).collect::<Vec<_>>());
-            }
-            for w in written {
-                let words = if w.are_runs { ("run", "runs") } else { ("observation", "observations") };
-                out::say!("{}: {} in {}", w.source, counted(w.count, words.0, words.1), w.path.display());
-            }
+            print::answer(&found, cli.json)?;
         }
         Verb::Run { campaign, out, check, yes } => carriage::run(campaign, out, check, yes, cli.json)?,
         Verb::Cfd { job } => cfd::job(job, cli.json)?,

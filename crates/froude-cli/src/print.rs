@@ -2,7 +2,6 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table};
 use froude::identify::answer::Answer;
-use froude::identify::method::{ExpectedCoefficient, Prospect};
 use froude::identify::source::SourceResult;
 use froude::inspect::{ChannelFacts, ColumnFacts, Inspection, SourceFacts};
 use froude::pipeline::{Outcome, Summary};
@@ -67,17 +66,19 @@ pub fn answer(answer: &Answered, is_json: bool) -> Result<(), Failure> {
             say!("");
         }
         for file in &answer.files {
-            say!("{:<10} {}", file.key, file.path.display());
+            say!("{:<10} {}", file.key.trim_end_matches("[]"), file.path.display());
         }
     }
     match &answer.exit {
         Exit::Done => Ok(()),
         Exit::Failed(why) => Err(Failure::Part(why.clone())),
+        Exit::Refused(why) => Err(Failure::Refused(why.clone())),
         Exit::Stopped(why) => Err(Failure::Stopped(why.clone())),
     }
 }
 
-fn blocks(all: &[Block]) {
+/// The blocks of an answer.
+pub fn blocks(all: &[Block]) {
     for block in all {
         match block {
             Block::Text { texts, .. } if texts.is_empty() => {}
@@ -107,20 +108,6 @@ pub fn written(Written { estimate, report, exports, .. }: &Written) {
     for export in exports {
         say!("export    {}", export.display());
     }
-}
-
-/// The forecast of a plan, for another program.
-pub fn prospect_as_json(prospect: &Prospect) -> serde_json::Value {
-    let one = |e: &ExpectedCoefficient| {
-        serde_json::json!({
-            "model": e.model, "coefficient": e.name, "unit": e.unit, "value": e.value,
-            "standard_uncertainty": e.standard_uncertainty, "half_width_95": e.half_width_95,
-        })
-    };
-    let expected: Vec<_> = prospect.expected.iter().map(one).collect();
-    serde_json::json!({
-        "source": prospect.source, "runs": prospect.runs, "duration": {"value": prospect.duration_s, "unit": "s"}, "expected": expected,
-    })
 }
 
 /// What a method states about all its results: its tables, then its sentences.

@@ -11,7 +11,7 @@ const IDENTIFY: &[&str] = &["identify", "campaign.toml"];
 
 /// Truth within half again of the interval, and the interval as wide as planned within `band`.
 fn is_as_planned(plan: &serde_json::Value, estimate: &serde_json::Value, band: std::ops::Range<f64>) {
-    for expected in plan[0]["expected"].as_array().unwrap() {
+    for expected in plan["sources"][0]["expected"].as_array().unwrap() {
         let name = expected["coefficient"].as_str().unwrap();
         let interval = &estimate["coefficients"][name]["interval_95"];
         let (low, high) = (interval[0].as_f64().unwrap(), interval[1].as_f64().unwrap());
@@ -27,7 +27,7 @@ fn is_as_planned(plan: &serde_json::Value, estimate: &serde_json::Value, band: s
 fn nine_runs_are_planned_simulated_and_identified() {
     let folder = example(EXAMPLE, &[]);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
-    assert_eq!(plan[0]["runs"].as_u64(), Some(9));
+    assert_eq!(plan["sources"][0]["runs"].as_u64(), Some(9));
     let output = froude(folder.path(), &["simulate", "campaign.toml"]);
     assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "accelerated: 9 runs in runs");
     let record = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));

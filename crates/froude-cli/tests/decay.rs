@@ -235,7 +235,10 @@ fn a_campaign_of_releases_is_planned_simulated_and_identified() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = mamba(folder.path(), &[]);
     let plan = json(&["plan", text(&campaign), "--json"]);
-    assert_eq!((plan[0]["runs"].as_u64(), plan[0]["duration"]["value"].as_f64()), (Some(5), Some(105.0)));
+    assert_eq!(
+        (plan["sources"][0]["runs"].as_u64(), plan["sources"][0]["duration_s"].as_f64()),
+        (Some(5), Some(105.0))
+    );
     let output = bench::froude(&["plan", text(&campaign)]);
     let shown = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(shown.contains("5 releases have fewer peaks than the 5 that decay_envelope needs"), "{shown}");
@@ -243,7 +246,7 @@ fn a_campaign_of_releases_is_planned_simulated_and_identified() {
     assert!(String::from_utf8_lossy(&output.stdout).starts_with("free decay: 5 runs in "), "{output:?}");
     let record = json(&["identify", text(&campaign), "--json"]);
     let estimate = &record["estimates"][0];
-    for expected in plan[0]["expected"].as_array().unwrap() {
+    for expected in plan["sources"][0]["expected"].as_array().unwrap() {
         let name = expected["coefficient"].as_str().unwrap();
         let [low, high] = [0, 1].map(|k| number(&estimate["coefficients"][name]["interval_95"][k]));
         let (truth, half) = (number(&expected["value"]), 0.5 * (high - low));

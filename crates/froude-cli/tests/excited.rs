@@ -193,13 +193,13 @@ fn wavemakers_that_differ_are_refused() {
 fn a_campaign_is_planned_simulated_and_identified() {
     let folder = written(tempfile::tempdir().unwrap(), "twin.toml", &[]);
     let plan = json(&froude(folder.path(), &["plan", "twin.toml", "--json"]));
-    assert_eq!(plan[0]["runs"].as_u64(), Some(6));
+    assert_eq!(plan["sources"][0]["runs"].as_u64(), Some(6));
     // Six runs of 2 s of rest and 28 s of waves.
-    assert!((plan[0]["duration"]["value"].as_f64().unwrap() - 180.0).abs() < 1e-9, "{plan}");
+    assert!((plan["sources"][0]["duration_s"].as_f64().unwrap() - 180.0).abs() < 1e-9, "{plan}");
     let output = froude(folder.path(), &["simulate", "twin.toml"]);
     assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "wave flume: 6 runs in twin-runs");
     let record = json(&froude(folder.path(), &["identify", "twin.toml", "--json"]));
-    for expected in plan[0]["expected"].as_array().unwrap() {
+    for expected in plan["sources"][0]["expected"].as_array().unwrap() {
         let (model, name) = (expected["model"].as_str().unwrap(), expected["coefficient"].as_str().unwrap());
         let interval = &coefficient(&record, model, name)["interval_95"];
         let (low, high) = (interval[0].as_f64().unwrap(), interval[1].as_f64().unwrap());

@@ -18,11 +18,14 @@ const SMALL: [(&str, &str); 2] = [
 fn a_campaign_is_planned_simulated_and_identified() {
     let folder = example(EXAMPLE, &SMALL);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
-    assert_eq!((plan[0]["runs"].as_u64(), plan[0]["source"].as_str()), (Some(8), Some("circulation tank")));
+    assert_eq!(
+        (plan["sources"][0]["runs"].as_u64(), plan["sources"][0]["source"].as_str()),
+        (Some(8), Some("circulation tank"))
+    );
     // Seven periods of 6 s and of 4.5 s, and a second before each: 4·(43 + 32.5) s.
-    assert!((plan[0]["duration"]["value"].as_f64().unwrap() - 302.0).abs() < 0.5, "{plan}");
+    assert!((plan["sources"][0]["duration_s"].as_f64().unwrap() - 302.0).abs() < 0.5, "{plan}");
     let of = |model: &str, name: &str| {
-        let all = plan[0]["expected"].as_array().unwrap();
+        let all = plan["sources"][0]["expected"].as_array().unwrap();
         all.iter().find(|e| e["model"] == model && e["coefficient"] == name).unwrap()["half_width_95"].as_f64().unwrap()
     };
     let output = froude(folder.path(), &["simulate", "campaign.toml"]);
@@ -207,6 +210,6 @@ fn one_frequency_does_not_tell_added_mass_from_buoyancy() {
     ];
     let folder = example(EXAMPLE, &replaced);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
-    let c_a = plan[0]["expected"].as_array().unwrap().iter().find(|e| e["coefficient"] == "C_A").unwrap();
+    let c_a = plan["sources"][0]["expected"].as_array().unwrap().iter().find(|e| e["coefficient"] == "C_A").unwrap();
     assert!(c_a["half_width_95"].as_f64().unwrap() > 0.25 * 1.277, "{c_a}");
 }

@@ -12,11 +12,14 @@ const EXAMPLE: &str = "mamba-rotation";
 fn a_campaign_is_planned_simulated_and_identified() {
     let folder = example(EXAMPLE, &[]);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
-    assert_eq!((plan[0]["runs"].as_u64(), plan[0]["source"].as_str()), (Some(9), Some("turning rig")));
+    assert_eq!(
+        (plan["sources"][0]["runs"].as_u64(), plan["sources"][0]["source"].as_str()),
+        (Some(9), Some("turning rig"))
+    );
     // Seven periods of 6 s, of 36/7 s and of 4.5 s, and two seconds before each, three times.
-    assert!((plan[0]["duration"]["value"].as_f64().unwrap() - 346.5).abs() < 0.5, "{plan}");
+    assert!((plan["sources"][0]["duration_s"].as_f64().unwrap() - 346.5).abs() < 0.5, "{plan}");
     let of = |name: &str, key: &str| {
-        let all = plan[0]["expected"].as_array().unwrap();
+        let all = plan["sources"][0]["expected"].as_array().unwrap();
         all.iter().find(|e| e["coefficient"] == name).unwrap()[key].as_f64().unwrap()
     };
     let words = String::from_utf8_lossy(&froude(folder.path(), &["plan", "campaign.toml"]).stdout).into_owned();

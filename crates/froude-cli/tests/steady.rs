@@ -23,8 +23,8 @@ fn a_campaign_is_planned_simulated_and_identified() {
     let folder = example();
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
     // 2 configurations, 4 speeds, 7 angles; 22 s each and two ramps of U/0.3 s.
-    assert_eq!(plan[0]["runs"].as_u64(), Some(56));
-    let duration = plan[0]["duration"]["value"].as_f64().unwrap();
+    assert_eq!(plan["sources"][0]["runs"].as_u64(), Some(56));
+    let duration = plan["sources"][0]["duration_s"].as_f64().unwrap();
     assert!((duration - 56.0 * (22.0 + 2.0 * 0.25 / 0.3)).abs() < 1e-6, "{duration}");
     let output = froude(folder.path(), &["simulate", "campaign.toml"]);
     assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "towing tank: 56 runs in runs");
@@ -32,7 +32,7 @@ fn a_campaign_is_planned_simulated_and_identified() {
     let estimates = record["estimates"].as_array().unwrap();
     let f4 = estimates.iter().find(|e| e["law"]["name"] == "f4").unwrap();
     assert_eq!((f4["method"]["name"].as_str(), f4["recommended"].as_bool()), (Some("steady"), Some(true)));
-    for expected in plan[0]["expected"].as_array().unwrap() {
+    for expected in plan["sources"][0]["expected"].as_array().unwrap() {
         let name = expected["coefficient"].as_str().unwrap();
         let interval = &f4["coefficients"][name]["interval_95"];
         let (low, high) = (interval[0].as_f64().unwrap(), interval[1].as_f64().unwrap());

@@ -16,13 +16,13 @@ const HEAVY: (&str, &str) = ("moving_mass = { value", "# moving_mass = { value")
 fn a_campaign_is_planned_simulated_and_identified() {
     let folder = example(EXAMPLE, &[]);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
-    assert_eq!(plan[0]["runs"].as_u64(), Some(78));
+    assert_eq!(plan["sources"][0]["runs"].as_u64(), Some(78));
     let output = froude(folder.path(), &["simulate", "campaign.toml"]);
     assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "towing rig: 78 runs in runs");
     let record = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
     let f4 = &record["estimates"][0];
     assert_eq!(f4["method"]["name"].as_str(), Some("weight_tow"));
-    for expected in plan[0]["expected"].as_array().unwrap() {
+    for expected in plan["sources"][0]["expected"].as_array().unwrap() {
         let name = expected["coefficient"].as_str().unwrap();
         let interval = &f4["coefficients"][name]["interval_95"];
         let (low, high) = (interval[0].as_f64().unwrap(), interval[1].as_f64().unwrap());

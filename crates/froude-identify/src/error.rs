@@ -16,6 +16,24 @@ pub enum IdentifyError {
     #[error(transparent)]
     Record(#[from] RecordError),
 
+    /// Data behind a record are fitted too.
+    #[error(
+        "{}: {key}: {} was itself fitted to {file}, which this job fits again: the same data would count twice, and the interval would be too \
+         narrow. Take the {key} from a record of other data, or leave it out",
+        .campaign.display(),
+        .record.display()
+    )]
+    CountedTwice {
+        /// The campaign.
+        campaign: PathBuf,
+        /// `prior`, `known` or `tare`.
+        key: &'static str,
+        /// The record.
+        record: PathBuf,
+        /// The file in common, as this job names it.
+        file: String,
+    },
+
     /// The fit refused.
     #[error("source {source_name:?}, model {model}: {source}")]
     Fit {

@@ -12,7 +12,9 @@
 //!
 //! Not here: how a page looks (`froude-report`).
 
+pub mod against;
 mod budget;
+pub mod campaign;
 mod curves;
 mod error_models;
 mod facts;
@@ -20,6 +22,7 @@ pub mod method;
 mod points;
 mod selection;
 mod settings;
+mod steps;
 #[cfg(test)]
 mod tests;
 pub mod validation;

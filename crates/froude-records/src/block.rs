@@ -16,7 +16,7 @@ mod tests;
 pub use builder::{TableBuilder, facts};
 pub use json::Tree;
 pub(crate) use json::tree;
-pub use laid_out::{laid_out, sections};
+pub use laid_out::{laid_out, sections, written};
 
 use crate::page::{Chart, Field, Map};
 use crate::units::Unit;

@@ -32,6 +32,8 @@ pub enum Exit {
     Done,
     /// With a part of its work undone, and why.
     Failed(String),
+    /// It does not do what was asked, and why.
+    Refused(String),
     /// It was stopped, and how it goes on.
     Stopped(String),
 }

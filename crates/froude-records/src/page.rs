@@ -3,9 +3,11 @@
 //! Whoever has a result says every word and every number of it here; a page or a terminal shows them. Nothing is computed or drawn.
 
 mod observation;
+mod report;
 mod source;
 
 pub use observation::{Abscissa, Against, Curve, Point};
+pub use report::{InputFile, Report};
 pub use source::{BudgetRow, SelectionRow, SourceSection};
 
 /// A section.

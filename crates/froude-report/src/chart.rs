@@ -5,7 +5,7 @@
 use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 
 use crate::canvas::{Align, Canvas, text_width};
-use crate::input::ReportError;
+use crate::error::ReportError;
 use crate::plot::{
     Entry, LABEL_SIZE, MUTED, Panel, Span, Swatch, TEXT, TICK_SIZE, Ticks, WIDTH, category, draw_legend, drawable,
     legend_height,

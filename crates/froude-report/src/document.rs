@@ -9,8 +9,8 @@ use froude_records::text::visible;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::chart;
+use crate::error::ReportError;
 use crate::findings::findings_by_severity;
-use crate::input::ReportError;
 use crate::style::{POLICY, STYLE};
 use crate::tables::Tables;
 

@@ -7,8 +7,8 @@ use froude_records::number::count;
 use froude_records::page::{Field, Polygon, Scale, View};
 
 use crate::canvas::{Align, Canvas, Ink, WHITE, Xy};
+use crate::error::ReportError;
 use crate::filled::{BAR, GAP, RIGHT, SHADES, axes, bar, shade};
-use crate::input::ReportError;
 use crate::plot::{AXIS, LABEL_SIZE, Panel, Span, TEXT, WIDTH};
 use crate::symbol::Rich;
 

@@ -16,8 +16,9 @@ use froude_records::page::Chart;
 use loads::load_drawings;
 use residuals::residual_drawings;
 
+use crate::error::ReportError;
 use crate::figures::drawing::{Drawing, slug};
-use crate::input::{Report, ReportError};
+use froude_records::page::Report;
 
 pub(crate) use budget::{budget_rows, ranked_inputs, share};
 

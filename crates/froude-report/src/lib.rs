@@ -29,11 +29,11 @@
 mod canvas;
 pub mod chart;
 pub mod document;
+mod error;
 pub mod field;
 mod figures;
 mod filled;
 mod findings;
-mod input;
 pub mod map;
 pub mod outcome;
 mod page;
@@ -45,7 +45,9 @@ mod tables;
 pub mod verdict;
 pub mod write;
 
+pub use error::ReportError;
 pub use figures::{Figure, figures};
-pub use froude_records::page::{Abscissa, Against, BudgetRow, Curve, Point, SelectionRow, SourceSection};
-pub use input::{InputFile, Report, ReportError};
+pub use froude_records::page::{
+    Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection,
+};
 pub use page::{file_stem, html};

@@ -6,8 +6,8 @@ use froude_records::page::Map;
 
 use crate::canvas::{Align, Canvas, Ink, WHITE};
 use crate::chart::on;
+use crate::error::ReportError;
 use crate::filled::{BAR, GAP, OVER, RIGHT, axes, bar};
-use crate::input::ReportError;
 use crate::plot::{Panel, RULE, Span, TEXT, TICK_SIZE, WIDTH, ramp};
 use crate::symbol::Rich;
 

@@ -5,8 +5,8 @@ use froude_records::outcome::{Head, Outcome};
 use maud::{Markup, PreEscaped, html};
 
 use crate::document::{count, sheet, table_markup};
+use crate::error::ReportError;
 use crate::findings::findings_by_severity;
-use crate::input::ReportError;
 use crate::tables::Tables;
 use crate::{chart, field, map};
 

@@ -12,13 +12,14 @@ use froude_records::page::SourceSection;
 use maud::{Markup, PreEscaped, html};
 
 use crate::document::{section_text, sheet};
+use crate::error::ReportError;
 use crate::figures::drawing::{recommended, slug};
 use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs};
 use crate::findings::findings_by_severity;
-use crate::input::{InputFile, Report, ReportError};
 use crate::symbol::unit_text;
 use crate::tables::{self, Tables, counted, html_symbol};
 use crate::verdict::verdict_words;
+use froude_records::page::{InputFile, Report};
 
 /// What a reader of two sources needs to know first.
 const SIDE_BY_SIDE: &str = "Coefficients of the same model are set side by side; their normalised difference Eₙ is stated only where both sides state an \

@@ -11,7 +11,7 @@ use froude_records::results::replace;
 use froude_records::table::prepare_table;
 use froude_records::write::{Prepared, write_atomically};
 
-use crate::input::ReportError;
+use crate::error::ReportError;
 use crate::outcome::page;
 use crate::{chart, field, map};
 
@@ -52,6 +52,9 @@ pub fn write_folder(outcome: &Outcome, out: &Path) -> Result<(), WriteError> {
 ///
 /// As [`write_folder`]; a file in the place of another that Froude did not write.
 pub fn write_files(outcome: &Outcome) -> Result<(), WriteError> {
+    for folder in outcome.files.iter().filter_map(|file| file.path.parent()) {
+        std::fs::create_dir_all(folder).map_err(|e| RecordError::output(folder, &e))?;
+    }
     let all = outcome.files.iter().map(|file| prepared(outcome, file, &file.path)).collect::<Result<Vec<_>, _>>()?;
     all.into_iter().try_for_each(take_own_place)?;
     if let Some(scratch) = &outcome.scratch {

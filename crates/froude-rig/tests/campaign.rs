@@ -11,7 +11,7 @@ use froude_records::campaign::BodyAxis;
 use froude_records::carriage::plan::{PlannedRun, Step, plan};
 use froude_records::carriage::{Calibration, CarriagePlan, Directions, Order, PulseTrain};
 use froude_records::run::{Axis, Role, RunStatus, read_run};
-use froude_rig::campaign::runner::{Operator, Outcome, Progress, RunnerError, Setting, drive};
+use froude_rig::campaign::runner::{Driven, Operator, Progress, RunnerError, Setting, drive};
 use froude_rig::campaign::stop::StopSwitch;
 use froude_rig::defaults::control_config;
 use froude_rig::drive::twin::TwinRig;
@@ -115,7 +115,7 @@ fn rig() -> TwinRig {
     TwinRig::new(&config, control_config(&[load, load]), 7).unwrap()
 }
 
-fn run(folder: &Path, hand: &mut Hand, rig: &mut TwinRig) -> Result<Outcome, RunnerError> {
+fn run(folder: &Path, hand: &mut Hand, rig: &mut TwinRig) -> Result<Driven, RunnerError> {
     let steps = plan(&asked(), 1.5, 1);
     let mut begun = Vec::new();
     let switch = hand.switch.clone();

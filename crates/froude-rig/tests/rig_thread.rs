@@ -13,7 +13,7 @@ use froude_records::Place;
 use froude_records::carriage::plan::{Drive, OperatorStep, PlannedRun, Step};
 use froude_records::carriage::{CarriagePlan, Directions, Order};
 use froude_records::run::{Axis, BodyState, Role, RunStatus, read_run};
-use froude_rig::campaign::runner::{Operator, Outcome, Progress, RunnerError, Setting, drive};
+use froude_rig::campaign::runner::{Driven, Operator, Progress, RunnerError, Setting, drive};
 use froude_rig::campaign::stop::StopSwitch;
 use froude_rig::defaults::control_config;
 use froude_rig::drive::twin::TwinRig;
@@ -196,7 +196,7 @@ fn run(
     switch: &StopSwitch,
     asked: Hold<'_>,
     watch: &mut dyn FnMut(&Sample, f64),
-) -> Result<Outcome, RunnerError> {
+) -> Result<Driven, RunnerError> {
     drive(&steps(), &setting(folder), rig, switch, &mut Person(asked), &mut Watch(watch), &mut |_, _| None)
 }
 

@@ -119,24 +119,6 @@ pub enum Error {
         estimates: usize,
     },
 
-    /// Data behind a record are fitted too.
-    #[error(
-        "{}: {key}: {} was itself fitted to {file}, which this job fits again: the same data would count twice, and the interval would be too \
-         narrow. Take the {key} from a record of other data, or leave it out",
-        .campaign.display(),
-        .record.display()
-    )]
-    CountedTwice {
-        /// The campaign.
-        campaign: PathBuf,
-        /// `prior`, `known` or `tare`.
-        key: &'static str,
-        /// The record.
-        record: PathBuf,
-        /// The file in common, as this job names it.
-        file: String,
-    },
-
     /// The result of a part would replace that of more runs, or of others.
     #[error(
         "{} holds the result of {}, of which {} not named now (the first is {first}); it is not replaced by that of {}. Name another folder \
@@ -227,7 +209,6 @@ impl Error {
             | Self::NotEmpty { .. }
             | Self::NoSource { .. }
             | Self::TooMany { .. }
-            | Self::CountedTwice { .. }
             | Self::ReplacesMore { .. }
             | Self::OfAnotherMethod { .. }
             | Self::Drag(_)

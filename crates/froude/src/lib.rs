@@ -31,7 +31,6 @@ pub mod methods {
     pub use froude_tank as tank;
 }
 
-mod campaign_page;
 pub mod carriage;
 pub mod demo;
 mod error;
@@ -39,10 +38,8 @@ pub mod inspect;
 mod method;
 pub mod pipeline;
 pub mod plan;
-pub mod predict;
 mod registry;
 pub mod results;
-mod steps_page;
 pub mod swing;
 pub mod twin;
 

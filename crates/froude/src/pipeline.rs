@@ -1,8 +1,6 @@
 //! From a campaign, a bare table, runs or records to estimates side by side and a report.
 
 mod job;
-mod origins;
-mod validation;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -13,9 +11,13 @@ use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_
 use froude_identify::data_files::DataFiles;
 use froude_identify::dataset::Dataset;
 use froude_identify::method::{Export, Found, Method, observes};
+use froude_identify::page::against::against;
+use froude_identify::page::campaign::report;
+use froude_identify::prediction::{of_rows, same_rows};
 use froude_identify::reduce::reduce;
 use froude_identify::unexplained::unexplained;
-use froude_identify::{IdentifyError, asked, observations};
+use froude_identify::{IdentifyError, asked, observations, origins};
+use froude_records::block::sections;
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
@@ -26,8 +28,7 @@ use froude_records::page::DocumentSection;
 use froude_records::text::in_a_file_name;
 use indexmap::IndexMap;
 
-use crate::predict::{of_rows, same_rows};
-use crate::{Error, campaign_page, method, results};
+use crate::{Error, method, results};
 
 pub use crate::pipeline::job::default_out;
 pub use crate::pipeline::job::{Input, Job, Outcome, Purpose, Summary};
@@ -105,7 +106,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let comparison = if is_one { None } else { side_by_side(&all, &job.input)? };
     let mut comparison = comparison;
     if let Some(comparison) = &mut comparison {
-        let validated = validation::against(&campaign, &sources, &all)?;
+        let validated = against(&campaign, &sources, &all)?;
         comparison.validation = validated.numbers;
         // It is of no source alone.
         summaries.extend(validated.first.map(|section| Summary { sources: 0..0, section }));
@@ -126,7 +127,8 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         campaign.name = outcome.file.estimates.first().map_or_else(String::new, |e| e.source.clone());
     }
     let records: Vec<Estimate> = all.iter().flat_map(|(_, record)| record.estimates.iter().cloned()).collect();
-    let report = campaign_page::report(&campaign, &outcome, records, blocks, job.date.clone())?;
+    let blocks = outcome.summaries.iter().map(|summary| summary.section.clone()).chain(blocks).collect();
+    let report = report(&campaign, &outcome.file, &outcome.sources, records, blocks, job.date.clone())?;
     let html = froude_report::html(&report)?;
     let figures = froude_report::figures(&report)?;
     let tables = observations::tables(&outcome.sources, &campaign)?;
@@ -269,7 +271,7 @@ impl Gathered {
         for predicted in &found.estimates {
             self.findings.push(found.finding(predicted).of_source(&source.name));
             let section = found.section(predicted);
-            self.blocks.push(DocumentSection { title: format!("{}: {}", source.name, section.title), ..section });
+            self.blocks.extend(sections(&format!("{}: {}", source.name, section.title), &section.blocks));
         }
         Ok(())
     }

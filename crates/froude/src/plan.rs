@@ -4,7 +4,9 @@ use std::path::Path;
 
 use froude_identify::method::Prospect;
 use froude_identify::simulate::tables::SimulateError;
+use froude_records::block::{Section, TableBuilder, facts, written};
 use froude_records::campaign::read_campaign;
+use froude_records::outcome::Outcome;
 
 use crate::{Error, method};
 
@@ -13,7 +15,7 @@ use crate::{Error, method};
 /// # Errors
 ///
 /// See [`Error`]: a campaign that plans no runs, or does not declare what they need.
-pub fn plan(path: &Path) -> Result<Vec<Prospect>, Error> {
+pub fn plan(path: &Path) -> Result<Outcome, Error> {
     let campaign = read_campaign(path)?;
     let mut out = Vec::new();
     for source in campaign.sources.iter().filter(|source| source.plans_runs()) {
@@ -24,5 +26,26 @@ pub fn plan(path: &Path) -> Result<Vec<Prospect>, Error> {
     if out.is_empty() {
         return Err(SimulateError::NoPlan { path: campaign.path }.into());
     }
-    Ok(out)
+    Ok(Outcome { blocks: out.into_iter().map(|prospect| section(prospect).into()).collect(), ..Outcome::default() })
+}
+
+fn section(prospect: Prospect) -> Section {
+    let f = facts("", "", &prospect);
+    let about = f.build(vec![
+        f.text("source", "", |p| p.source.clone()),
+        f.count("runs", "", |p| p.runs),
+        f.number("duration_s", "", |p| p.duration_s),
+    ]);
+    let t = TableBuilder::new("expected", "", &prospect.expected);
+    let expected = t.build(vec![
+        t.text("model", "", |e| e.model.clone()),
+        t.text("coefficient", "", |e| e.name.clone()),
+        t.text("unit", "", |e| e.unit.clone()),
+        t.number("value", "", |e| e.value),
+        t.number("standard_uncertainty", "", |e| e.standard_uncertainty),
+        t.number("half_width_95", "", |e| e.half_width_95),
+    ]);
+    let title = prospect.section.title.clone();
+    let blocks = [vec![about.into(), expected.into()], written(prospect.section)].concat();
+    Section { key: "sources[]".to_owned(), title, blocks, ..Section::default() }
 }

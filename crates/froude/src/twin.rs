@@ -8,23 +8,22 @@ use std::path::{Path, PathBuf};
 use froude_identify::method::MethodError;
 use froude_identify::simulate::tables::{self, SimulateError};
 use froude_records::RecordError;
+use froude_records::block::TableBuilder;
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
 use froude_records::folder::UnfinishedFolder;
+use froude_records::outcome::Outcome;
 use froude_records::output;
 
 use crate::{Error, method};
 
 /// What was written for one source.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Written {
-    /// Name of the source.
-    pub source: String,
+struct Written {
+    source: String,
     /// The table, or the folder of the runs.
-    pub path: PathBuf,
-    /// Observations of the table, or runs.
-    pub count: usize,
-    /// Whether they are runs.
-    pub are_runs: bool,
+    path: PathBuf,
+    /// Observations of the table.
+    rows: Option<usize>,
+    runs: Option<usize>,
 }
 
 /// Writes the tables and the logs of every source that plans some.
@@ -34,7 +33,7 @@ pub struct Written {
 /// # Errors
 ///
 /// See [`Error`]: a campaign without plan or without `[simulate]`; places outside of the campaign's folder; a folder with other files in it.
-pub fn simulate(path: &Path, replace: bool) -> Result<Vec<Written>, Error> {
+pub fn simulate(path: &Path, replace: bool) -> Result<Outcome, Error> {
     let campaign = read_campaign(path)?;
     let mut folders = Vec::new();
     for source in campaign.sources.iter().filter(|source| source.plans_runs()) {
@@ -57,7 +56,7 @@ pub fn simulate(path: &Path, replace: bool) -> Result<Vec<Written>, Error> {
             std::fs::write(&place, &file.content).map_err(|source| RecordError::output(&place, &source))?;
         }
         let runs = all.iter().filter(|file| Path::new(&file.name).extension().is_some_and(|e| e == "csv")).count();
-        let written = Written { source: source.name.clone(), path: target.to_owned(), count: runs, are_runs: true };
+        let written = Written { source: source.name.clone(), path: target.to_owned(), rows: None, runs: Some(runs) };
         folders.push((folder, written));
     }
     let has_tables = campaign.sources.iter().any(|source| !source.plan.is_empty() && !source.plans_runs());
@@ -67,15 +66,22 @@ pub fn simulate(path: &Path, replace: bool) -> Result<Vec<Written>, Error> {
         out.extend(tables.into_iter().map(|t| Written {
             source: t.source,
             path: t.path,
-            count: t.rows,
-            are_runs: false,
+            rows: Some(t.rows),
+            runs: None,
         }));
     }
     for (folder, written) in folders {
         folder.take_place()?;
         out.push(written);
     }
-    Ok(out)
+    let t = TableBuilder::new("written", "", &out);
+    let table = t.build(vec![
+        t.text("source", "source", |w| w.source.clone()),
+        t.count("rows", "observations", |w| w.rows),
+        t.count("runs", "runs", |w| w.runs),
+        t.text("path", "written to", |w| w.path.display().to_string()),
+    ]);
+    Ok(Outcome { blocks: vec![table.into()], ..Outcome::default() })
 }
 
 /// The folder of a source's runs, where it lies below that of the campaign.

@@ -1,6 +1,6 @@
 //! Tables as rows of written cells, for the page and the terminal.
 
-use super::{Block, ResultColumn, ResultTable, Section};
+use super::{Block, ResultColumn, ResultTable, Section, TableBuilder};
 use crate::number::MISSING;
 use crate::page::{DocumentSection, TextTable};
 
@@ -50,4 +50,20 @@ pub fn sections(title: &str, blocks: &[Block]) -> Vec<DocumentSection> {
     }
     let is_empty = first.paragraphs.is_empty() && first.tables.is_empty() && first.charts.is_empty();
     (!is_empty).then_some(first).into_iter().chain(others).collect()
+}
+
+/// A table whose cells are written already, for people alone.
+impl From<TextTable> for ResultTable {
+    fn from(TextTable { caption, head, rows }: TextTable) -> Self {
+        let t = TableBuilder::new("", caption, &rows);
+        let column = |(i, head): (usize, &String)| t.text("", head, move |row: &Vec<String>| row.get(i).cloned());
+        t.build(head.iter().enumerate().map(column).collect())
+    }
+}
+
+/// A section that is written already, for people alone: its tables before its sentences.
+#[must_use]
+pub fn written(section: DocumentSection) -> Vec<Block> {
+    let tables = section.tables.into_iter().map(|table| ResultTable::from(table).into());
+    tables.chain([Block::text("", section.paragraphs)]).chain(section.charts.into_iter().map(Block::Chart)).collect()
 }

@@ -13,7 +13,7 @@ use indexmap::IndexMap;
 use super::error::CampaignError;
 use super::lock::FolderLock;
 use super::prepare::{Prepared, return_speed_m_s};
-use super::runner::{self, Enough, Operator, Outcome, Progress, RunnerError};
+use super::runner::{self, Driven, Enough, Operator, Progress, RunnerError};
 use super::setup;
 use super::stop::StopSwitch;
 use crate::campaign::runner::Setting;
@@ -38,7 +38,7 @@ pub fn drive(
     operator: &mut dyn Operator,
     progress: &mut dyn Progress,
     enough: &mut Enough<'_>,
-) -> Result<Outcome, CampaignError> {
+) -> Result<Driven, CampaignError> {
     if let Some(first) = prepared.objections.first() {
         let more = prepared.objections.len() - 1;
         return Err(CampaignError::Refused { first: first.clone(), more });
@@ -76,9 +76,9 @@ pub fn drive(
     Ok(runner::drive(&prepared.steps, &setting, rig.as_mut(), switch, operator, progress, enough)?)
 }
 
-type Driven = (Box<dyn Rig + Send>, Load, Option<u64>);
+type Readied = (Box<dyn Rig + Send>, Load, Option<u64>);
 
-fn rig_of(prepared: &Prepared) -> Result<Driven, CampaignError> {
+fn rig_of(prepared: &Prepared) -> Result<Readied, CampaignError> {
     match &prepared.carriage.rig.kind {
         RigKind::Twin { seed, .. } => {
             let (twin, load) = setup::twin(&prepared.carriage, prepared.load)?;

@@ -10,6 +10,7 @@ mod fall;
 mod forecast;
 #[cfg(test)]
 mod tests;
+mod told;
 mod tow;
 
 use excitation::excitation;

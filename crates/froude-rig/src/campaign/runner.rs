@@ -15,8 +15,11 @@ pub(crate) mod setting;
 
 use std::path::{Path, PathBuf};
 
+use froude_records::block::{Block, facts};
 use froude_records::carriage::plan::{OperatorStep, PlannedRun, Step};
+use froude_records::outcome::{Exit, Outcome};
 use froude_records::run::{EventKind, RunStatus};
+use froude_records::text::counted;
 
 use super::hand_over::{Helm, hand_over};
 use super::recording::{Recording, RigFacts};
@@ -60,7 +63,7 @@ pub type Enough<'a> = dyn FnMut(&Path, &PlannedRun) -> Option<String> + 'a;
 
 /// How a campaign ended.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
+pub struct Driven {
     /// Runs driven now.
     pub driven: usize,
     /// Runs that were there already.
@@ -73,7 +76,7 @@ pub struct Outcome {
     pub cut: Vec<String>,
 }
 
-impl Outcome {
+impl Driven {
     /// An error where a run's planned motion was not done.
     ///
     /// # Errors
@@ -81,6 +84,32 @@ impl Outcome {
     /// [`RunnerError::Cut`].
     pub fn whole(&self) -> Result<(), RunnerError> {
         if self.cut.is_empty() { Ok(()) } else { Err(RunnerError::Cut { runs: self.cut.clone() }) }
+    }
+
+    /// What is said of it; the runs lie in `folder`.
+    #[must_use]
+    pub fn outcome(&self, folder: &Path) -> Outcome {
+        let f = facts("", "", self);
+        let about = f.build(vec![
+            f.text("folder", "", |_| folder.display().to_string()),
+            f.count("driven", "", |d| d.driven),
+            f.count("resumed", "", |d| d.resumed),
+            f.count("spared", "", |d| d.spared),
+            f.text("enough", "", |d| d.enough.clone()),
+            f.texts("cut", "", |d| d.cut.clone()),
+        ]);
+        let mut said = vec![format!(
+            "{} driven, {} already there, {} left out. Runs in {}",
+            counted(self.driven, "run", "runs"),
+            counted(self.resumed, "was", "were"),
+            self.spared,
+            folder.display()
+        )];
+        said.extend(self.enough.clone());
+        let next = ["drag", "identify"].map(|verb| format!("Next: froude carriage {verb} {}", folder.display()));
+        let exit = self.whole().map_or_else(|why| Exit::Failed(why.to_string()), |()| Exit::Done);
+        let blocks = vec![about.into(), Block::text("", said), Block::text("", next.to_vec())];
+        Outcome { blocks, exit, ..Outcome::default() }
     }
 }
 
@@ -98,7 +127,7 @@ pub fn drive(
     operator: &mut dyn Operator,
     progress: &mut dyn Progress,
     enough: &mut Enough<'_>,
-) -> Result<Outcome, RunnerError> {
+) -> Result<Driven, RunnerError> {
     let facts = RigFacts::of(rig);
     let (pace, capacity) = rig_thread::pace(rig);
     let (helm, engine) = hand_over(pace, capacity);
@@ -125,10 +154,10 @@ struct Campaign<'a, 'b> {
 }
 
 impl<'a> Campaign<'a, '_> {
-    fn drive(mut self, enough: &mut Enough<'_>) -> Result<Outcome, RunnerError> {
+    fn drive(mut self, enough: &mut Enough<'_>) -> Result<Driven, RunnerError> {
         let folder = &self.setting.folder;
         let total = self.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
-        let mut outcome = Outcome { driven: 0, resumed: 0, spared: 0, enough: None, cut: Vec::new() };
+        let mut outcome = Driven { driven: 0, resumed: 0, spared: 0, enough: None, cut: Vec::new() };
         let mut mounted: Option<OperatorStep> = None;
         let mut is_prepared = false;
         let mut is_said = false;

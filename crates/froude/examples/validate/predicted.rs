@@ -3,8 +3,8 @@
 use std::error::Error;
 use std::path::Path;
 
+use froude::identify::prediction::{Job as Predict, predicted as predict};
 use froude::pipeline::{Job, identify};
-use froude::predict::{Job as Predict, predict};
 
 use crate::claims::{Claims, Verdict};
 

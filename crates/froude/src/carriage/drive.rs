@@ -6,7 +6,7 @@ use froude_carriage::live::Live;
 use froude_records::carriage::plan::PlannedRun;
 use froude_rig::campaign::drive::drive as drive_until;
 pub use froude_rig::campaign::prepare::{DriveJob, Prepared, prepare, prepare_with};
-use froude_rig::campaign::runner::{Operator, Outcome, Progress};
+use froude_rig::campaign::runner::{Driven, Operator, Progress};
 use froude_rig::campaign::stop::StopSwitch;
 
 use crate::Error;
@@ -21,7 +21,7 @@ pub fn drive(
     switch: &StopSwitch,
     operator: &mut dyn Operator,
     progress: &mut dyn Progress,
-) -> Result<Outcome, Error> {
+) -> Result<Driven, Error> {
     let mut live = Live::new(prepared.campaign(), prepared.carriage(), prepared.asked(), &prepared.folder);
     let mut enough = |path: &Path, run: &PlannedRun| live.after(path, run);
     Ok(drive_until(prepared, switch, operator, progress, &mut enough)?)

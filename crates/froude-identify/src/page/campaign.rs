@@ -3,27 +3,29 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use froude_identify::IdentifyError;
-use froude_identify::answer::Answer;
-use froude_identify::page::{method, section};
 use froude_records::campaign::Campaign;
 use froude_records::estimate::Estimate;
-use froude_records::page::DocumentSection;
+use froude_records::estimate::EstimateFile;
+use froude_records::page::{DocumentSection, InputFile, Report};
 use froude_records::text::counted;
-use froude_report::{InputFile, Report};
 
-use crate::pipeline::Outcome;
-use crate::steps_page;
+use super::{method, section, steps};
+use crate::IdentifyError;
+use crate::answer::Answer;
 
-/// The whole report of a campaign.
+/// The whole report of a campaign; `blocks` are what methods state of their runs together.
+///
+/// # Errors
+///
+/// As [`section`].
 pub fn report(
     campaign: &Campaign,
-    outcome: &Outcome,
+    file: &EstimateFile,
+    sources: &[Answer],
     published: Vec<Estimate>,
     blocks: Vec<DocumentSection>,
     date: Option<String>,
 ) -> Result<Report, IdentifyError> {
-    let Outcome { file, sources, summaries, .. } = outcome;
     // A line per file and source that reads it; a file that several name is one file.
     let mut data: Vec<InputFile> = Vec::new();
     for d in file.data.values() {
@@ -50,10 +52,7 @@ pub fn report(
     Ok(Report {
         title: campaign.name.clone(),
         subtitle: subtitle(sources, &published),
-        blocks: (summaries.iter().map(|summary| summary.section.clone()))
-            .chain(blocks)
-            .chain(steps_page::section(file.data.values()))
-            .collect(),
+        blocks: blocks.into_iter().chain(steps::section(file.data.values())).collect(),
         date,
         method: method::sentences(campaign, sources, &published),
         sources: sources.iter().map(section).collect::<Result<_, _>>()?,

@@ -2,13 +2,6 @@
 
 use std::path::PathBuf;
 
-use froude_identify::IdentifyError;
-use froude_identify::answer::Answer;
-use froude_identify::compare::Named;
-use froude_identify::method::Export;
-use froude_identify::page::validation::{is_measured, sections};
-use froude_identify::source::SourceResult;
-use froude_identify::validation::{ComparedFlow, Simulation, validate};
 use froude_records::campaign::{Campaign, Input, Source, SourceKind};
 use froude_records::comparison::Validation;
 use froude_records::csv_table::csv_bytes;
@@ -18,19 +11,33 @@ use froude_records::table::{Column, ColumnData, Table};
 use froude_records::text::in_a_file_name;
 use froude_records::units::{Dimension, Unit};
 
+use super::validation::{is_measured, sections};
+use crate::IdentifyError;
+use crate::answer::Answer;
+use crate::compare::Named;
+use crate::method::Export;
+use crate::source::SourceResult;
+use crate::validation::{ComparedFlow, Simulation, validate};
+
 /// What the comparison came to, of all computed sources.
 #[derive(Default)]
-pub(super) struct Validated {
+pub struct Validated {
+    /// For the record.
     pub numbers: Vec<Validation>,
     /// What a person reads first.
     pub first: Option<DocumentSection>,
+    /// The others.
     pub others: Vec<DocumentSection>,
     /// A table of the flows of each computed source.
     pub exports: Vec<Export>,
 }
 
 /// Holds every computed source that was fitted here against everything that is measured; `all` are the campaign's own estimates and then the records of its sources, in turn.
-pub(super) fn against(
+///
+/// # Errors
+///
+/// A law that its own data do not fit.
+pub fn against(
     campaign: &Campaign,
     answers: &[Answer],
     all: &[(String, EstimateFile)],

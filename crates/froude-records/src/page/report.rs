@@ -9,11 +9,12 @@
 //! **Missing numbers.** `None` is printed as "—". A NaN or an infinity is
 //! treated like `None`; it is never printed as a number.
 
-use froude_records::comparison::Comparison;
-use froude_records::estimate::{DataFile, Estimate};
-use froude_records::finding::Finding;
-use froude_records::page::{DocumentSection, SourceSection};
 use indexmap::IndexMap;
+
+use super::{DocumentSection, SourceSection};
+use crate::comparison::Comparison;
+use crate::estimate::{DataFile, Estimate};
+use crate::finding::Finding;
 
 /// A whole report, from the title to the hashes.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -63,18 +64,4 @@ impl From<DataFile> for InputFile {
     fn from(file: DataFile) -> Self {
         Self { path: file.path, sha256: file.sha256, ..Self::default() }
     }
-}
-
-/// Why a report could not be written.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReportError {
-    /// The drawing library refused a figure.
-    #[error("figure {figure:?} could not be drawn: {reason}")]
-    Figure {
-        /// Title of the figure.
-        figure: String,
-        /// What the drawing library said.
-        reason: String,
-    },
 }

@@ -6,14 +6,14 @@
 
 use std::path::Path;
 
-use froude_identify::answer::Answer;
-use froude_identify::compare::observations;
-use froude_identify::data_files::{DataFiles, INHERITED};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{DataFile, Estimate, EstimateFile};
 use froude_records::json::read_estimates;
 
-use crate::Error;
+use crate::IdentifyError;
+use crate::answer::Answer;
+use crate::compare::observations;
+use crate::data_files::{DataFiles, INHERITED};
 
 /// A record that numbers are taken from.
 struct Taken<'a> {
@@ -62,7 +62,7 @@ fn taken<'a>(campaign: &'a Campaign, sources: &[&'a Source]) -> Vec<Taken<'a>> {
 }
 
 /// The records that a campaign reads.
-pub(super) fn records(campaign: &Campaign) -> impl Iterator<Item = &Path> {
+pub fn records(campaign: &Campaign) -> impl Iterator<Item = &Path> {
     let sources: Vec<&Source> = campaign.sources.iter().collect();
     taken(campaign, &sources).into_iter().map(|taken| taken.path)
 }
@@ -71,8 +71,8 @@ pub(super) fn records(campaign: &Campaign) -> impl Iterator<Item = &Path> {
 ///
 /// # Errors
 ///
-/// [`Error::CountedTwice`] where a file that is fitted is among the data of a record; a record that cannot be read.
-pub(super) fn inherit(campaign: &Campaign, fitted: &[Answer], files: &mut DataFiles<'_>) -> Result<(), Error> {
+/// [`IdentifyError::CountedTwice`] where a file that is fitted is among the data of a record; a record that cannot be read.
+pub fn inherit(campaign: &Campaign, fitted: &[Answer], files: &mut DataFiles<'_>) -> Result<(), IdentifyError> {
     let sources: Vec<&Source> = campaign.sources.iter().filter(|source| !source.is_validation).collect();
     for taken in taken(campaign, &sources) {
         let record = read_estimates(taken.path)?;
@@ -81,7 +81,7 @@ pub(super) fn inherit(campaign: &Campaign, fitted: &[Answer], files: &mut DataFi
         let keys = fitted.iter().flat_map(Answer::estimates).filter(of_source).flat_map(|e| &e.data);
         let observed = keys.filter_map(|key| files.get(key));
         if let Some(twice) = observed.into_iter().find(|file| data.iter().any(|data| data.sha256 == file.sha256)) {
-            return Err(Error::CountedTwice {
+            return Err(IdentifyError::CountedTwice {
                 campaign: campaign.path.clone(),
                 key: taken.key,
                 record: taken.path.to_owned(),

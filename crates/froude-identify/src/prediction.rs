@@ -1,32 +1,27 @@
 //! `froude predict`: a record's forces on the rows of any table, with bands, errors and one number over all rows.
 
 use std::collections::BTreeSet;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use froude_identify::compare::observations;
-use froude_identify::dataset::{Dataset, LOADS};
-use froude_identify::lint::repeats::identical_copies;
-use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate};
-use froude_identify::reduce::rows_of;
-use froude_records::RecordError;
-use froude_records::csv_table::csv_bytes;
+use froude_records::block::{Block, ResultTable, Section, TableBuilder, facts};
 use froude_records::estimate::{Estimate, EstimateFile, beside};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
 use froude_records::json::read_estimates;
-use froude_records::manifest::take_own_place;
 use froude_records::number::{dof, p_equation, percent, significant};
-use froude_records::page::{DocumentSection, TextTable};
+use froude_records::outcome::{Content, Outcome, OutputFile};
+use froude_records::results::spares;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::text::{counted, in_a_file_name};
 use froude_records::units::{Dimension, Unit, parse_unit};
-use froude_records::write::Prepared;
 use indexmap::IndexMap;
-use serde_json::{Value, json};
 
-use crate::Error;
-use crate::results::spares;
+use crate::IdentifyError;
+use crate::compare::observations;
+use crate::dataset::{Dataset, LOADS};
+use crate::lint::repeats::identical_copies;
+use crate::predict::{Joint, Predicted, Row, predict as of_estimate};
+use crate::reduce::rows_of;
 
 /// Chance below which a record does not hold.
 const CONTRADICTED: f64 = 0.01;
@@ -55,10 +50,8 @@ pub struct Job {
 pub struct Prediction {
     /// One for each estimate.
     pub estimates: Vec<Predicted>,
-    /// What the reader of the table found.
+    /// What the laws and the table are not fit for.
     pub findings: Vec<Finding>,
-    /// Tables that were written.
-    pub written: Vec<PathBuf>,
     /// Why these rows are rows that an estimate was fitted to, by its id.
     seen: IndexMap<String, String>,
     data: Dataset,
@@ -68,8 +61,26 @@ pub struct Prediction {
 ///
 /// # Errors
 ///
-/// A record or a table that cannot be read; a law that the record does not have, that is none of forces, or that reads what the table lacks; a folder that cannot be written.
-pub fn predict(job: &Job) -> Result<Prediction, Error> {
+/// A record or a table that cannot be read; a law that the record does not have, that is none of forces, or that reads what the table lacks; results in the place of what is read.
+pub fn predict(job: &Job) -> Result<Outcome, IdentifyError> {
+    let found = predicted(job)?;
+    let mut files = Vec::new();
+    for (folder, predicted) in job.out.iter().flat_map(|out| found.estimates.iter().map(move |one| (out, one))) {
+        let path = folder.join(format!("predicted-{}.csv", in_a_file_name(&predicted.id)));
+        spares(&path, [job.record.as_path(), job.table.as_path()].into_iter().chain(job.sidecar.as_deref()))?;
+        let content = Content::Table(found.table(predicted, &path));
+        files.push(OutputFile { key: "written[]", path, content });
+    }
+    let blocks = found.estimates.iter().map(|predicted| found.section(predicted).into()).collect();
+    Ok(Outcome { blocks, findings: Some(found.findings), files, ..Outcome::default() })
+}
+
+/// The same, not yet said.
+///
+/// # Errors
+///
+/// As [`predict`].
+pub fn predicted(job: &Job) -> Result<Prediction, IdentifyError> {
     let record = read_estimates(&job.record)?;
     let (mut data, mut findings) = rows_of(&job.table, job.sidecar.as_deref())?;
     // Settings without a load are no observations: they may repeat.
@@ -85,19 +96,9 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
             seen.insert(estimate.id.clone(), why);
         }
     }
-    let mut out = of_rows(&record.estimates.iter().collect::<Vec<_>>(), &chosen, data)?.seen(seen);
-    out.findings = [findings, out.findings].concat();
-    if let Some(folder) = &job.out {
-        std::fs::create_dir_all(folder).map_err(|source| RecordError::output(folder, &source))?;
-        for predicted in &out.estimates {
-            let path = folder.join(format!("predicted-{}.csv", in_a_file_name(&predicted.id)));
-            spares(&path, [job.record.as_path(), job.table.as_path()].into_iter().chain(job.sidecar.as_deref()))?;
-            let bytes = csv_bytes(&out.table(predicted, &path))?;
-            take_own_place(Prepared::new(&path, |file| file.write_all(&bytes))?)?;
-            out.written.push(path);
-        }
-    }
-    Ok(out)
+    let mut found = of_rows(&record.estimates.iter().collect::<Vec<_>>(), &chosen, data)?.seen(seen);
+    found.findings.splice(0..0, findings);
+    Ok(found)
 }
 
 /// The same of rows that are reduced already; `all` are the estimates that those may have laws beside them in.
@@ -105,18 +106,23 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
 /// # Errors
 ///
 /// A law that reads what the rows lack.
-pub fn of_rows(all: &[&Estimate], estimates: &[&Estimate], data: Dataset) -> Result<Prediction, Error> {
+pub fn of_rows(all: &[&Estimate], estimates: &[&Estimate], data: Dataset) -> Result<Prediction, IdentifyError> {
     let of = |estimate: &&Estimate| {
         of_estimate(estimate, &beside(all.iter().copied(), estimate), &with_density(&data, estimate))
     };
     let mut findings: Vec<Finding> = estimates.iter().filter_map(|estimate| without_bands(estimate)).collect();
     findings.extend(estimates.iter().filter_map(|estimate| load_at_rest(estimate, &data)));
     let estimates = estimates.iter().map(of).collect::<Result<_, _>>()?;
-    Ok(Prediction { estimates, findings, written: Vec::new(), seen: IndexMap::new(), data })
+    Ok(Prediction { estimates, findings, seen: IndexMap::new(), data })
 }
 
 /// Why the rows of a table are rows that an estimate was fitted to: its file by the fingerprint, or its rows where that file is still beside the record.
-fn fitted_to(job: &Job, record: &EstimateFile, estimate: &Estimate, data: &Dataset) -> Result<Option<String>, Error> {
+fn fitted_to(
+    job: &Job,
+    record: &EstimateFile,
+    estimate: &Estimate,
+    data: &Dataset,
+) -> Result<Option<String>, IdentifyError> {
     let own = sha256_of_file(&job.table)?;
     let fitted = observations(record, estimate).into_iter();
     for file in fitted.filter(|file| file.role.as_deref().is_none_or(|role| role == "table")) {
@@ -140,7 +146,8 @@ fn fitted_to(job: &Job, record: &EstimateFile, estimate: &Estimate, data: &Datas
 }
 
 /// That more than half of the rows of a data set are rows of another one, in every number that both tables have, a load among them: readings of coarse steps coincide in fewer.
-pub(crate) fn same_rows(data: &Dataset, fitted: &Dataset) -> Option<String> {
+#[must_use]
+pub fn same_rows(data: &Dataset, fitted: &Dataset) -> Option<String> {
     const DIGITS: usize = 9;
     let names: Vec<&String> = data.channels.keys().filter(|name| fitted.channels.contains_key(*name)).collect();
     let has_load = names.iter().any(|name| LOADS.contains(&name.as_str()));
@@ -194,8 +201,8 @@ fn load_at_rest(estimate: &Estimate, data: &Dataset) -> Option<Finding> {
     })
 }
 
-fn refused(record: &Path, what: String) -> Error {
-    froude_identify::IdentifyError::Campaign { place: record.display().to_string(), what }.into()
+fn refused(record: &Path, what: String) -> IdentifyError {
+    IdentifyError::Campaign { place: record.display().to_string(), what }
 }
 
 fn chosen<'a>(all: &'a [Estimate], laws: &[String]) -> Result<Vec<&'a Estimate>, String> {
@@ -272,7 +279,8 @@ fn by_load(predicted: &Predicted) -> Vec<OfLoad> {
 
 impl Prediction {
     /// With what says that rows are no others than those of a fit, by the ids of estimates.
-    pub(crate) fn seen(self, seen: IndexMap<String, String>) -> Self {
+    #[must_use]
+    pub fn seen(self, seen: IndexMap<String, String>) -> Self {
         Self { seen, ..self }
     }
 
@@ -306,110 +314,109 @@ impl Prediction {
         Finding::new(severity, code, format!("{} on {on}: {loads}; {number}", predicted.id))
     }
 
-    /// What a person reads of an estimate.
+    /// What an estimate gives on these rows.
     #[must_use]
-    pub fn section(&self, predicted: &Predicted) -> DocumentSection {
-        let dash = || "–".to_owned();
-        let number = |x: Option<f64>| x.map_or_else(dash, |x| significant(x, 3));
-        let row = |of: &OfLoad| {
-            vec![
-                format!("{}, {}", of.load, of.unit),
-                of.rows.to_string(),
-                of.outside.to_string(),
-                number(of.u_law),
-                number(of.errors.map(|[mean, _]| mean)),
-                number(of.errors.map(|[_, root]| root)),
-                of.errors.map_or_else(dash, |[_, root]| percent(root / of.size)),
-                if of.measured > 0 { format!("{} of {}", of.beyond, of.measured) } else { dash() },
-            ]
-        };
-        let loads = by_load(predicted);
-        let head =
-            ["load", "rows", "outside", "u of the law", "mean error", "rms error", "of the rms load", "|E_n| > 1"];
-        let mut tables = Vec::new();
-        if predicted.rows.iter().any(|row| row.measured.is_some()) {
-            tables.push(TextTable {
-                caption: format!("{} on {}", predicted.id, counted(self.data.rows, "row", "rows")),
-                head: head.map(str::to_owned).to_vec(),
-                rows: loads.iter().map(row).collect(),
-            });
+    pub fn section(&self, predicted: &Predicted) -> Section {
+        let has_measured = predicted.rows.iter().any(|row| row.measured.is_some());
+        let caption = format!("{} on {}", predicted.id, counted(self.data.rows, "row", "rows"));
+        let mut blocks: Vec<Block> = vec![self.about(predicted).into()];
+        if has_measured {
+            blocks.push(of_loads(&by_load(predicted), &caption).into());
         }
-        let mut worst: Vec<&Row> = predicted.rows.iter().filter(|row| row.e_n.is_some()).collect();
-        worst.sort_by(|a, b| b.e_n.unwrap_or_default().abs().total_cmp(&a.e_n.unwrap_or_default().abs()));
-        let band = |row: &Row| {
-            row.band_95.map_or_else(dash, |[low, high]| format!("{} to {}", significant(low, 3), significant(high, 3)))
+        let (rows, hidden) = self.rows(predicted, has_measured, caption);
+        blocks.push(rows.into());
+        blocks.push(Block::text("", self.sentences(predicted, hidden)));
+        let title = format!("Predicted by {}", predicted.id);
+        Section { key: "estimates[]".to_owned(), title, blocks, ..Section::default() }
+    }
+
+    fn about(&self, predicted: &Predicted) -> ResultTable {
+        let f = facts("", "", predicted);
+        f.build(vec![
+            f.text("estimate", "", |p| p.id.clone()),
+            f.text("law", "", |p| p.law.clone()),
+            f.texts("laws", "", |p| p.laws.clone()),
+            f.texts("left_out", "", |p| p.left_out.clone()),
+            f.text("fitted_to_these_rows", "", |p| self.seen.get(&p.id).cloned()),
+            f.number("joint/chi_squared", "", |p| p.joint.map(|joint| joint.chi_squared)),
+            f.count("joint/n", "", |p| p.joint.map(|joint| joint.n)),
+            f.number("joint/dof", "", |p| p.joint.map(|joint| joint.dof)),
+            f.number("joint/p", "", |p| p.joint.and_then(|joint| joint.p)),
+        ])
+    }
+
+    /// All rows, of which a person sees those with the largest |E_n|, or the first where nothing was measured; and how many loads that leaves out.
+    fn rows(&self, predicted: &Predicted, has_measured: bool, caption: String) -> (ResultTable, usize) {
+        let all = &predicted.rows;
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        let e_n = |i: usize| all[i].e_n.unwrap_or_default().abs();
+        let (caption, most) = if has_measured {
+            order.retain(|i| all[*i].e_n.is_some());
+            order.sort_by(|a, b| e_n(*b).total_cmp(&e_n(*a)));
+            ("rows with the largest |E_n|".to_owned(), SHOWN)
+        } else {
+            order.sort_by_key(|i| all[*i].row);
+            (caption, MOST_SHOWN)
         };
-        let line = |row: &&Row| {
-            vec![
-                self.data.row_name(row.row),
-                format!("{}, {}", row.load, row.unit),
-                number(row.measured),
-                number(Some(row.predicted)),
-                band(row),
-                number(row.error()),
-                number(row.e_n),
-                if row.outside.is_empty() { String::new() } else { row.outside.join(", ") },
-            ]
-        };
-        if !worst.is_empty() {
-            let head = ["row", "load", "measured", "predicted", "95 % band", "error", "E_n", "outside its range of"];
-            tables.push(TextTable {
-                caption: "rows with the largest |E_n|".to_owned(),
-                head: head.map(str::to_owned).to_vec(),
-                rows: worst.iter().take(SHOWN).map(line).collect(),
-            });
-        }
-        let mut paragraphs: Vec<String> = predicted.joint.iter().map(joint).collect();
-        if tables.is_empty() {
-            let mut all: Vec<&Row> = predicted.rows.iter().collect();
-            all.sort_by_key(|row| row.row);
-            let line = |row: &&Row| {
-                let load = format!("{}, {}", row.load, row.unit);
-                let predicted = significant(row.predicted, 4);
-                vec![self.data.row_name(row.row), load, predicted, band(row), row.outside.join(", ")]
-            };
-            tables.push(TextTable {
-                caption: format!("{} on {}", predicted.id, counted(self.data.rows, "row", "rows")),
-                head: ["row", "load", "predicted", "95 % band", "outside its range of"].map(str::to_owned).to_vec(),
-                rows: all.iter().take(MOST_SHOWN).map(line).collect(),
-            });
-            if all.len() > MOST_SHOWN {
-                let all = counted(all.len(), "load", "loads");
-                paragraphs.push(format!("{MOST_SHOWN} of {all} are shown; `--out FOLDER` writes them all"));
-            }
+        let hidden = if has_measured { 0 } else { order.len().saturating_sub(most) };
+        order.truncate(most);
+        let shown = |head: &'static str| if has_measured { head } else { "" };
+        let t = TableBuilder::new("rows", caption, all);
+        let mut table = t.build(vec![
+            t.text("", "row", |row| self.data.row_name(row.row)),
+            t.count("line", "", |row| self.data.line.get(row.row).copied()),
+            t.text("load", "load", |row| row.load.clone()),
+            t.text("unit", "unit", |row| row.unit.clone()),
+            t.number("measured", shown("measured"), |row| row.measured).significant(3),
+            t.number("predicted", "predicted", |row| row.predicted),
+            t.number("u_law", "", |row| row.u_law),
+            t.interval("band_95", "95 % band", |row| row.band_95),
+            t.number("scatter", "", |row| row.scatter),
+            t.number("error", shown("error"), Row::error).significant(3),
+            t.number("e_n", shown("E_n"), |row| row.e_n).significant(3),
+            t.texts("outside", "outside its range of", |row| row.outside.clone()),
+        ]);
+        table.shown_rows = Some(order);
+        (table, hidden)
+    }
+
+    fn sentences(&self, predicted: &Predicted, hidden: usize) -> Vec<String> {
+        let mut out: Vec<String> = predicted.joint.iter().map(joint).collect();
+        if hidden > 0 {
+            let all = counted(predicted.rows.len(), "load", "loads");
+            out.push(format!("{MOST_SHOWN} of {all} are shown; `--out FOLDER` writes them all"));
         }
         if predicted.laws.len() > 1 {
-            paragraphs.push(format!(
+            out.push(format!(
                 "Bands and E_n come from the envelope of this law and all others that the data of the record do not contradict ({}). χ² is that of the law that agrees best.",
                 predicted.laws.join(", ")
             ));
         }
         if !predicted.left_out.is_empty() {
-            paragraphs.push(format!(
+            out.push(format!(
                 "Not in the envelope, as these rows lack what they read: {}; the bands may be too narrow.",
                 predicted.left_out.join(", ")
             ));
         }
         if let Some(why) = self.seen.get(&predicted.id) {
-            paragraphs.push(format!("On {}", no_validation(why)));
+            out.push(format!("On {}", no_validation(why)));
         }
         let outside = predicted.rows.iter().filter(|row| !row.outside.is_empty()).count();
         if outside > 0 {
-            paragraphs.push(format!(
+            out.push(format!(
                 "{} outside of the ranges of the record: extrapolated, and counted in no error and in no χ²",
                 counted(outside, "load lies", "loads lie")
             ));
         }
         if predicted.rows.iter().any(|row| row.u_law.is_none()) {
-            paragraphs.push(
+            out.push(
                 "the record states no covariance, so that there is no band and E_n holds the scatter alone".to_owned(),
             );
         }
         if predicted.rows.iter().any(|row| row.measured.is_some() && row.scatter.is_none()) {
-            paragraphs
-                .push("neither the table (std_f_x) nor the record states a scatter, so that there is no χ²".to_owned());
+            out.push("neither the table (std_f_x) nor the record states a scatter, so that there is no χ²".to_owned());
         }
-        DocumentSection { title: format!("Predicted by {}", predicted.id), paragraphs, tables, charts: Vec::new() }
+        out
     }
 
     /// All rows of an estimate.
@@ -448,45 +455,23 @@ impl Prediction {
         columns.push(Column { name: "outside".to_owned(), data: ColumnData::Text(outside.collect()) });
         Table { n_rows: data.rows, ..Table::of(path.to_owned(), columns, data.line.clone()) }
     }
+}
 
-    /// The same for a program.
-    #[must_use]
-    pub fn as_json(&self) -> Value {
-        let row = |row: &Row| {
-            json!({
-                "line": self.data.line.get(row.row),
-                "load": row.load,
-                "unit": row.unit,
-                "predicted": row.predicted,
-                "u_law": row.u_law,
-                "band_95": row.band_95,
-                "measured": row.measured,
-                "scatter": row.scatter,
-                "error": row.error(),
-                "e_n": row.e_n,
-                "outside": row.outside,
-            })
-        };
-        let of = |predicted: &Predicted| {
-            let joint = predicted.joint.map(|j| {
-                json!({"chi_squared": j.chi_squared, "n": j.n, "dof": froude_records::number::finite(Some(j.dof)), "p": j.p})
-            });
-            json!({
-                "estimate": predicted.id,
-                "law": predicted.law,
-                "laws": predicted.laws,
-                "left_out": predicted.left_out,
-                "fitted_to_these_rows": self.seen.get(&predicted.id),
-                "joint": joint,
-                "rows": predicted.rows.iter().map(row).collect::<Vec<_>>(),
-            })
-        };
-        json!({
-            "estimates": self.estimates.iter().map(of).collect::<Vec<_>>(),
-            "findings": self.findings,
-            "written": self.written,
-        })
-    }
+/// What the rows of each load come to.
+fn of_loads(loads: &[OfLoad], caption: &str) -> ResultTable {
+    let t = TableBuilder::new("loads", caption, loads);
+    t.build(vec![
+        t.text("load", "load", |of| of.load.clone()),
+        t.text("unit", "unit", |of| of.unit.clone()),
+        t.count("rows", "rows", |of| of.rows),
+        t.count("outside", "outside", |of| of.outside),
+        t.number("u_law_rms", "u of the law", |of| of.u_law).significant(3),
+        t.number("mean_error", "mean error", |of| of.errors.map(|[mean, _]| mean)).significant(3),
+        t.number("rms_error", "rms error", |of| of.errors.map(|[_, root]| root)).significant(3),
+        t.number("of_rms_load", "of the rms load", |of| of.errors.map(|[_, root]| root / of.size)).percent(),
+        t.count("beyond", "|E_n| > 1", |of| (of.measured > 0).then_some(of.beyond)),
+        t.count("measured", "of", |of| (of.measured > 0).then_some(of.measured)),
+    ])
 }
 
 fn no_validation(why: &str) -> String {
