@@ -17,7 +17,7 @@ use froude::records::campaign::{Campaign, Identify, SensorSpec, Source, read_cam
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
-use crate::family::{Bar, between_runs, campaigns_of, covers, factors};
+use crate::family::{Bar, answered, between_runs, campaigns_of, covers, factors};
 
 const SECTION: &str = "Forced oscillation: Table 4 by its twin";
 const C_A: f64 = 1.277;
@@ -330,8 +330,10 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
             .collect();
         let plan = expected(case, &case.setup, &sensors, &Identify::default())?;
         let seeds = campaigns_of(factor == 1.0, seeds);
-        let fits: Vec<(OscillationFit, Vec<f64>)> =
-            (0..seeds).into_par_iter().filter_map(|seed| one(case, &case.planned, &sensors, seed as u64)).collect();
+        let fits: Vec<(OscillationFit, Vec<f64>)> = (0..seeds)
+            .into_par_iter()
+            .filter_map(|seed| one(case, &case.planned, &sensors, seed as u64).ok())
+            .collect();
         let is_judged = factor == 1.0;
         let named = covered(&fits);
         covers(
@@ -390,29 +392,31 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
             },
         );
     }
-    let fits: Vec<(OscillationFit, Vec<f64>)> = (0..seeds as u64)
-        .into_par_iter()
-        .filter_map(|seed| {
-            let of_run = factors(case.planned.len(), seed);
-            let planned: Vec<Planned> =
-                case.planned.iter().zip(of_run).map(|(run, of_drag)| Planned { of_drag, ..run.clone() }).collect();
-            one(case, &planned, case.sensors(), seed)
-        })
-        .collect();
-    between_runs(claims, SECTION, &format!("{seeds} campaigns of 18 runs"), &covered(&fits), fits.len() == seeds);
+    let (fits, refused) = answered(seeds, |seed| {
+        let of_run = factors(case.planned.len(), seed);
+        let planned: Vec<Planned> =
+            case.planned.iter().zip(of_run).map(|(run, of_drag)| Planned { of_drag, ..run.clone() }).collect();
+        one(case, &planned, case.sensors(), seed)
+    });
+    between_runs(claims, SECTION, &format!("{seeds} campaigns of 18 runs"), &covered(&fits), &refused);
     Ok(())
 }
 
 /// One campaign of these runs, with the true value of each unknown.
-fn one(case: &Case, planned: &[Planned], sensors: &[SensorSpec], seed: u64) -> Option<(OscillationFit, Vec<f64>)> {
+fn one(
+    case: &Case,
+    planned: &[Planned],
+    sensors: &[SensorSpec],
+    seed: u64,
+) -> Result<(OscillationFit, Vec<f64>), OscillationError> {
     let truth = drawn(case, seed);
     let logged = simulated(planned, &case.setup, &truth, sensors, 1 + seed);
     let runs: Vec<OscillationRun<'_>> =
         logged.iter().map(froude::methods::tank::oscillation::simulate::Simulated::view).collect();
     let found =
-        motions(&runs, &case.setup).and_then(|m| fit(&runs, &m, &case.setup, &case.f4, &Identify::default())).ok()?;
+        motions(&runs, &case.setup).and_then(|m| fit(&runs, &m, &case.setup, &case.f4, &Identify::default()))?;
     let truths = found.unknowns.iter().map(|u| true_value(&truth, &u.name)).collect();
-    Some((found, truths))
+    Ok((found, truths))
 }
 
 /// How often the interval of each unknown holds its truth.
