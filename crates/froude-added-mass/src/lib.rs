@@ -38,6 +38,7 @@ pub mod source;
 pub mod spectral;
 mod surroundings;
 mod uncertain;
+pub mod verb;
 pub mod water;
 
 pub use error::AddedMassError;

@@ -62,16 +62,6 @@ pub enum Failure {
     #[error("--weld is for a repair: add --repair FILE, the mesh to be written (.obj or .stl)")]
     WeldWithoutRepair,
 
-    /// A mesh that a repair could not mend.
-    #[error(
-        "{}: written, but not yet fit for use; unite bodies that cross (a boolean union), and close holes, where the mesh was drawn",
-        .path.display()
-    )]
-    NotYetFit {
-        /// The mesh.
-        path: PathBuf,
-    },
-
     /// An option that is no length.
     #[error("{option} {text:?}: {source}; write a length, \"2.000 m\"")]
     Length {

@@ -77,26 +77,36 @@ pub fn answer(answer: &Answered, is_json: bool) -> Result<(), Failure> {
     }
 }
 
-/// The blocks of an answer.
+/// The blocks of an answer, with an empty line between them.
 pub fn blocks(all: &[Block]) {
+    blocks_after(all, &mut false);
+}
+
+/// `is_begun` says whether something stands above.
+fn blocks_after(all: &[Block], is_begun: &mut bool) {
+    let gap = |is_begun: &mut bool| {
+        if std::mem::replace(is_begun, true) {
+            say!("");
+        }
+    };
     for block in all {
         match block {
-            Block::Text { texts, .. } if texts.is_empty() => {}
-            Block::Text { texts, .. } => {
-                say!("");
+            Block::Text { texts, .. } if !texts.is_empty() => {
+                gap(is_begun);
                 for text in texts {
                     say!("{text}");
                 }
             }
             Block::Table(table) => {
-                let Some(table) = laid_out(table) else { continue };
+                let Some(table) = laid_out(table).filter(|table| !table.rows.is_empty()) else { continue };
+                gap(is_begun);
                 if !table.caption.is_empty() {
-                    say!("\n{}", wrapped(&table.caption));
+                    say!("{}", wrapped(&table.caption));
                 }
                 text_table(&table);
             }
-            Block::Section(section) if !section.is_detail => blocks(&section.blocks),
-            Block::Section(_) | Block::Chart(_) | Block::Map(_) | Block::Field(_) => {}
+            Block::Section(section) if !section.is_detail => blocks_after(&section.blocks, is_begun),
+            Block::Text { .. } | Block::Section(_) | Block::Chart(_) | Block::Map(_) | Block::Field(_) => {}
         }
     }
 }

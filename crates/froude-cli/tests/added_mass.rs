@@ -967,8 +967,8 @@ fn a_check_computes_and_writes_nothing() {
     let text = lines(at, &["body.toml", "--check", "--links", "1..2"]);
     assert!(text.contains("it, H1LT: fit for use") && text.contains("it, H2LT: fit for use"), "{text}");
     let told = record(at, &["body.toml", "--check", "--links", "1..2"]);
-    assert_eq!(told[1]["name"], "it, H2LT");
-    assert!(told[1]["meshes"][0]["panels"].as_u64().unwrap() > 100);
+    assert_eq!(told["bodies"][1]["name"], "it, H2LT");
+    assert!(told["bodies"][1]["meshes"][0]["panels"].as_u64().unwrap() > 100);
     assert_eq!(names(at), ["body.toml", "hull.obj"]);
 }
 

@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use froude_identify::method::MethodError;
 use froude_identify::simulate::tables::{self, SimulateError};
 use froude_records::RecordError;
-use froude_records::block::TableBuilder;
+use froude_records::block::{Block, TableBuilder};
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
 use froude_records::folder::UnfinishedFolder;
 use froude_records::outcome::Outcome;
 use froude_records::output;
+use froude_records::text::counted;
 
 use crate::{Error, method};
 
@@ -76,12 +77,21 @@ pub fn simulate(path: &Path, replace: bool) -> Result<Outcome, Error> {
     }
     let t = TableBuilder::new("written", "", &out);
     let table = t.build(vec![
-        t.text("source", "source", |w| w.source.clone()),
-        t.count("rows", "observations", |w| w.rows),
-        t.count("runs", "runs", |w| w.runs),
-        t.text("path", "written to", |w| w.path.display().to_string()),
+        t.text("source", "", |w| w.source.clone()),
+        t.count("rows", "", |w| w.rows),
+        t.count("runs", "", |w| w.runs),
+        t.text("path", "", |w| w.path.display().to_string()),
     ]);
-    Ok(Outcome { blocks: vec![table.into()], ..Outcome::default() })
+    let said = out.iter().map(Written::words).collect();
+    Ok(Outcome { blocks: vec![table.into(), Block::text("", said)], ..Outcome::default() })
+}
+
+impl Written {
+    fn words(&self) -> String {
+        let rows = self.rows.map(|n| counted(n, "observation", "observations"));
+        let count = rows.or(self.runs.map(|n| counted(n, "run", "runs"))).unwrap_or_default();
+        format!("{}: {count} in {}", self.source, self.path.display())
+    }
 }
 
 /// The folder of a source's runs, where it lies below that of the campaign.
