@@ -11,7 +11,7 @@ use froude::records::finding::{Finding, Severity};
 use froude::records::number;
 use froude::records::outcome::{Exit, Outcome as Answered};
 use froude::records::page::{DocumentSection, TextTable};
-use froude::records::text::{counted, visible_json};
+use froude::records::text::{counted, visible, visible_json};
 use froude::results::Written;
 
 use crate::cells::{WIDEST, cell, right, sentence, table};
@@ -388,7 +388,11 @@ fn diagnostics(d: &Diagnostics) -> Vec<(&'static str, String)> {
 
 /// A table whose cells are written already; numbers to the right. No word is broken: a table of long words is wider than [`WIDEST`].
 pub fn text_table(text: &TextTable) {
-    say!("{}", fitted(text, usize::from(WIDEST)));
+    // What steers a terminal is written out before words are told from spaces, of which a carriage return would be one.
+    let all = |cells: &[String]| cells.iter().map(|cell| visible(cell).into_owned()).collect::<Vec<_>>();
+    let rows = text.rows.iter().map(|row| all(row)).collect();
+    let text = TextTable { caption: String::new(), head: all(&text.head), rows };
+    say!("{}", fitted(&text, usize::from(WIDEST)));
 }
 
 fn fitted(text: &TextTable, widest: usize) -> Table {
