@@ -61,7 +61,7 @@ fn section((loaded, steps): &(Loaded, Vec<(usize, Forecast)>)) -> Section {
 ///
 /// # Errors
 ///
-/// As [`repair`](crate::repair::repair).
+/// As [`repair`].
 pub fn put_right(asked: &Asked, input: &Path, weld_m: Option<f64>, target: &Path) -> Result<Outcome, AddedMassError> {
     let done = repair(input, asked.unit_m, weld_m, target)?;
     let f = facts("", "", &done);

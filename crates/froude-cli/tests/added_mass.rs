@@ -963,7 +963,7 @@ fn a_check_computes_and_writes_nothing() {
     write(at, "hull.obj", &hull());
     std::fs::write(at.join("body.toml"), body_file(ROBOT)).unwrap();
     let text = lines(at, &["hull.obj", "--check"]);
-    assert!(text.starts_with("hull.obj: fit for use\n") && text.contains("16384"), "{text}");
+    assert!(text.starts_with("hull.obj: fit for use\n") && text.contains("16\u{202f}384"), "{text}");
     let text = lines(at, &["body.toml", "--check", "--links", "1..2"]);
     assert!(text.contains("it, H1LT: fit for use") && text.contains("it, H2LT: fit for use"), "{text}");
     let told = record(at, &["body.toml", "--check", "--links", "1..2"]);

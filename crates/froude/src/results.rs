@@ -48,7 +48,7 @@ pub(crate) fn replace(out: &Path, fill: impl FnOnce(&Path) -> Result<(), Error>)
 ///
 /// # Errors
 ///
-/// As [`replace`].
+/// As [`froude_records::results::replace`].
 pub fn write(
     out: &Path,
     file: &EstimateFile,
