@@ -444,10 +444,11 @@ fn widths(text: &TextTable, widest: usize) -> Vec<usize> {
     out
 }
 
-/// Words, of which an interval or a unit in brackets is one.
+/// Words, of which an interval, a unit in brackets or a number with thin spaces is one.
 fn words(text: &str) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
+    let is_break = |c: char| c.is_whitespace() && !matches!(c, '\u{a0}' | '\u{202f}');
+    for word in text.split(is_break).filter(|word| !word.is_empty()) {
         match out.last_mut().filter(|last| last.starts_with('[') && !last.contains(']')) {
             Some(open) => {
                 open.push(' ');
