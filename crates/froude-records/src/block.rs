@@ -125,6 +125,8 @@ pub enum Digits {
     Percent,
     /// A probability.
     PValue,
+    /// The least and the largest, which are no interval of uncertainty.
+    Range,
     /// A time as a person says it.
     Duration,
     /// A size on a disk.

@@ -113,6 +113,12 @@ impl ResultColumn {
         Self { digits: Digits::Percent, ..self }
     }
 
+    /// Its pairs are the least and the largest of something, and not an interval of uncertainty.
+    #[must_use]
+    pub fn range(self) -> Self {
+        Self { digits: Digits::Range, ..self }
+    }
+
     /// Its numbers are times, s.
     #[must_use]
     pub fn duration(self) -> Self {

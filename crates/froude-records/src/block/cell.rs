@@ -11,12 +11,22 @@ impl ResultColumn {
             Cells::Number(all) => {
                 let (si, standard) = (*all.get(row)?, self.standard.as_ref().and_then(|(_, all)| all.get(row)));
                 match standard {
-                    Some(u) if si.is_finite() && *u > 0.0 => Some(short_form(self.shown(si), self.shown(*u))),
+                    Some(u) if si.is_finite() && *u > 0.0 => {
+                        // A difference: the zero of its unit does not enter.
+                        let factor = self.unit.as_ref().map_or(1.0, |unit| unit.factor);
+                        Some(short_form(self.shown(si), u / factor))
+                    }
                     _ => self.number(si),
                 }
             }
             Cells::Count(all) => all.get(row).copied().flatten().map(count),
-            Cells::Interval(all) => all.get(row).copied().flatten().map(|ends| interval(ends.map(|si| self.shown(si)))),
+            Cells::Interval(all) => {
+                let [low, high] = all.get(row).copied().flatten()?.map(|si| self.shown(si));
+                Some(match self.digits {
+                    Digits::Range => format!("{} to {}", significant(low, 3), significant(high, 3)),
+                    _ => interval([low, high]),
+                })
+            }
             Cells::Numbers(all) => {
                 let numbers = all.get(row)?.as_ref()?;
                 let texts: Option<Vec<String>> = numbers.iter().map(|si| self.number(*si)).collect();
@@ -37,6 +47,7 @@ impl ResultColumn {
         let x = self.shown(si);
         x.is_finite().then(|| match self.digits {
             Digits::Significant(n) => significant(x, n.into()),
+            Digits::Range => significant(x, 3),
             Digits::Plain(n) => plain(x, n.into()),
             Digits::Places(n) => fixed(x, n.into()),
             Digits::Percent => percent(x),

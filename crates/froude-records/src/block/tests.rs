@@ -76,6 +76,17 @@ fn tables_and_texts_of_one_key_are_one_list_and_sections_nest() {
     );
 }
 
+/// A range of what was seen is no interval of uncertainty, and reads otherwise; a standard uncertainty has no zero of its unit.
+#[test]
+fn ranges_and_uncertainties_read_as_what_they_are() {
+    let t = TableBuilder::new("", "", &RUNS);
+    let roll = t.interval("roll_rad", "roll [deg]", |_| [-0.05, 0.05]);
+    assert_eq!(roll.clone().text(0).unwrap(), "[−2.9, 2.9]");
+    assert_eq!(roll.range().text(0).unwrap(), "−2.86 to 2.86");
+    let water = t.uncertain(["temperature_k", "standard_k"], "water [degC]", |_| 288.15, |_| 0.2);
+    assert_eq!(water.text(0).unwrap(), "15.00(20)");
+}
+
 /// Brackets that hold no unit belong to the name; the number is shown as it is.
 #[test]
 fn a_head_names_its_unit_in_brackets() {

@@ -162,8 +162,8 @@ impl Figures<'_> {
         let mut out = Vec::new();
         if self.space.is_some() {
             out.extend([
-                f.interval("roll_rad", "roll of the head [deg]", |f| f.space.as_ref().map(|s| s.roll)),
-                f.interval("pitch_rad", "pitch of the head [deg]", |f| f.space.as_ref().map(|s| s.pitch)),
+                f.interval("roll_rad", "roll of the head [deg]", |f| f.space.as_ref().map(|s| s.roll)).range(),
+                f.interval("pitch_rad", "pitch of the head [deg]", |f| f.space.as_ref().map(|s| s.pitch)).range(),
                 turn,
                 f.number("sinking_per_period_m", "sinks per period [mm]", |f| f.space.as_ref().map(|s| s.way_m[2]))
                     .places(2),

@@ -62,7 +62,7 @@ pub(super) fn blocks(solved: &[Solved]) -> Vec<Block> {
         .significant(3),
         t.number("max_skewness", "skewness", |m| of(m, |q| q.max_skewness.value)).significant(3),
         t.number("max_aspect", "aspect ratio", |m| of(m, |q| q.max_aspect.value)).significant(3),
-        t.interval("y_plus_mean", "y+, mean of a case", |m| m.y_plus.map(|y| [y[0], y[1]])),
+        t.interval("y_plus_mean", "y+, mean of a case", |m| m.y_plus.map(|y| [y[0], y[1]])).range(),
         t.number("y_plus_largest", "y+, largest", |m| m.y_plus.map(|y| y[2])).significant(2),
         t.text("problem", "", |m| m.quality.as_ref().err().cloned()),
     ]);

@@ -68,7 +68,7 @@ impl Pictures {
         let file = |field: &Field| format!("figures/{}.svg", field.name);
         vec![
             t.number("pictures/iteration", "", |s| of(s).map(|p| p.time)),
-            t.interval("pictures/pressure_coefficient", "C_p", |s| of(s).map(|p| p.pressure_coefficient)),
+            t.interval("pictures/pressure_coefficient", "C_p", |s| of(s).map(|p| p.pressure_coefficient)).range(),
             t.numbers("pictures/pressure_force_n", "", |s| of(s).map(|p| p.pressure_force_n.to_vec())),
             t.number("pictures/largest_speed_ratio", "largest |U|/U", |s| of(s).map(|p| p.largest_speed_ratio))
                 .places(2),
