@@ -6,6 +6,7 @@ use froude_records::number::duration;
 use froude_records::outcome::{Exit, Outcome};
 use froude_records::run::{Direction, Role};
 use froude_records::text::counted;
+use indexmap::IndexMap;
 
 use super::{Forecast, Objection};
 use crate::campaign::prepare::Prepared;
@@ -85,11 +86,14 @@ impl Prepared {
         let mut rows: Vec<Row<'_>> =
             self.runs().zip(&self.forecasts).map(|(run, forecast)| Row { run, forecast, alike: 0 }).collect();
         let keys: Vec<String> = rows.iter().map(Row::key).collect();
-        let first: Vec<usize> =
-            (0..rows.len()).filter(|i| keys.iter().position(|key| *key == keys[*i]) == Some(*i)).collect();
-        for (row, key) in rows.iter_mut().zip(&keys) {
-            row.alike = keys.iter().filter(|other| *other == key).count();
+        let mut alike: IndexMap<&str, (usize, usize)> = IndexMap::new();
+        for (i, key) in keys.iter().enumerate() {
+            alike.entry(key).or_insert((i, 0)).1 += 1;
         }
+        for (row, key) in rows.iter_mut().zip(&keys) {
+            row.alike = alike.get(key.as_str()).map_or(1, |(_, n)| *n);
+        }
+        let first = alike.values().map(|(i, _)| *i).collect();
         let detectable_n = self.detectable_n();
         let runs = counted(rows.len(), "run", "runs");
         let caption = format!("{}: {runs}, about {} on the rig", self.name(), duration(self.duration_s));
@@ -161,7 +165,7 @@ impl Prepared {
             .map(|(id, text, n)| format!("  {id}{}: {text}", more(*n, "more run", "more runs")))
             .collect();
         if sentences.len() > MOST_SENTENCES {
-            // One cause makes a sentence for every run: the first of each kind tells it.
+            // One cause gives a sentence for each run; the first of each kind is enough.
             let mut kinds: Vec<(&str, &Objection, usize)> = Vec::new();
             for o in &self.objections {
                 match kinds.iter_mut().find(|k| k.0 == o.kind) {
