@@ -13,7 +13,7 @@ use crate::load::Loaded;
 use crate::options::Asked;
 use crate::repair::repair;
 
-/// What each mesh of each number of links would take, or of the one body where there is none.
+/// Forecast of time and memory for every mesh: of each number of links, or of the single body.
 ///
 /// # Errors
 ///

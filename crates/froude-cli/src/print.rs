@@ -388,7 +388,7 @@ fn diagnostics(d: &Diagnostics) -> Vec<(&'static str, String)> {
 
 /// A table whose cells are written already; numbers to the right. No word is broken: a table of long words is wider than [`WIDEST`].
 pub fn text_table(text: &TextTable) {
-    // What steers a terminal is written out before words are told from spaces, of which a carriage return would be one.
+    // Control characters are escaped before the text is wrapped: a carriage return would count as a space.
     let all = |cells: &[String]| cells.iter().map(|cell| visible(cell).into_owned()).collect::<Vec<_>>();
     let rows = text.rows.iter().map(|row| all(row)).collect();
     let text = TextTable { caption: String::new(), head: all(&text.head), rows };

@@ -164,7 +164,7 @@ fn error_table(study: &Study, loads: &[usize]) -> ResultTable {
     ])
 }
 
-/// What is missing is no number.
+/// Observed orders; NaN where none could be found.
 fn orders(found: &GridError) -> Vec<f64> {
     found.orders.iter().map(|order| order.unwrap_or(f64::NAN)).collect()
 }

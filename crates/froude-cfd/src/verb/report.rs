@@ -68,9 +68,9 @@ struct Shown {
     status: &'static str,
     iterations: usize,
     reason: String,
-    /// Or why there is none.
+    /// The history of its forces, or why it cannot be shown.
     convergence: Result<Convergence, String>,
-    /// Or why there are none; `None` where they were not asked for.
+    /// Pictures of its flow, or why they cannot be drawn; `None` if they were not requested.
     pictures: Option<Result<Pictures, String>>,
 }
 

@@ -183,8 +183,5 @@ fn outcome(ran: &Ran, job: &Job, folder: &Path) -> Outcome {
 
 /// Of what goes on by the same command.
 pub(super) fn stopped(verb: &str, campaign: &Path) -> Exit {
-    Exit::Stopped(format!(
-        "stopped as asked, nothing is lost: froude cfd {verb} {} goes on where it was",
-        campaign.display()
-    ))
+    Exit::Stopped(format!("stopped as requested; nothing is lost: froude cfd {verb} {} resumes it", campaign.display()))
 }

@@ -96,7 +96,7 @@ struct Job {
     stamp: String,
 }
 
-/// Computes the runs of a campaign's forced oscillation that have no log yet, `jobs` at a time. `now` hears how far it is; `plan` says what a source plans.
+/// Computes the runs of a campaign's forced oscillation that have no log yet, `jobs` at a time. `now` is told the progress; `plan` returns the runs of a source.
 ///
 /// # Errors
 ///
@@ -187,7 +187,7 @@ fn chosen<'a>(sources: &'a [Source], name: Option<&str>) -> Result<&'a Source, S
     }
 }
 
-/// Makes the meshes, and says what each run takes.
+/// Makes the meshes and prepares the case of each run.
 fn prepared(
     asked: &Asked,
     planned: &Planned,
