@@ -68,7 +68,7 @@ pub use crate::run::doubt::{Doubt, DoubtKind};
 pub use crate::run::pair::{Pair, check_names, check_pair};
 pub use channel::{BOARD, Frame, LOG, Meaning};
 pub use declarations::{Declarations, Stated, Told};
-pub use extremes::{Extremes, Stay};
+pub use extremes::{Extremes, Oscillating, Stay};
 pub use import::{AXIS_NAMES, Averaged, ImportedRun, TimeSteps, import_run, is_servo_log, run_of_means, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use froude_records::run::marks::Mark;
-use froude_records::run::{Extremes, ImportedRun, Stay};
+use froude_records::run::{Extremes, ImportedRun, Oscillating, Stay};
 use froude_records::text::counted;
 use froude_signal::SignalError;
 use froude_signal::harmonic::Harmonics;
@@ -222,10 +222,13 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     let period_s = rough.period_s();
     let marks = run.sampled.marks;
     if run.sampled.is_averaged || marks.iter().all(|mark| mark.why != "clipped") {
-        for (channel, values, unit) in [("angle", run.angle_rad, "rad"), (load, loads, load_unit)] {
+        let angle = ("angle", run.angle_rad, "rad", Oscillating::Motion);
+        for (channel, values, unit, kind) in [angle, (load, loads, load_unit, Oscillating::Load)] {
             let recorded = run.sampled.recorded.and_then(|recorded| recorded.get(channel).cloned());
             let extremes = recorded.unwrap_or_else(|| Extremes::of(run.time_s, values));
-            not_clipped(run.id, channel, unit, &extremes, period_s)?;
+            if let Some(Stay { value, samples, from_s }) = extremes.clipped(period_s, kind) {
+                return Err(MotionError::Clipped { run: run.id.to_owned(), channel, value, unit, samples, from_s });
+            }
         }
     }
     let (first, end) = moving(run, rough.mean, period_s);
@@ -278,20 +281,4 @@ fn moving(run: &Logged<'_>, middle: f64, period_s: f64) -> (usize, usize) {
     // Likewise one that ends in the motion.
     let end = if run.time_s[n - 1] - run.time_s[end - 1] < QUARTER * period_s { n } else { end };
     (begun, end)
-}
-
-/// A channel that stands at its largest or smallest value for longer than a smooth motion with its resolution would.
-fn not_clipped(
-    run: &str,
-    channel: &'static str,
-    unit: &'static str,
-    extremes: &Extremes,
-    period_s: f64,
-) -> Result<(), MotionError> {
-    match extremes.clipped(period_s) {
-        None => Ok(()),
-        Some(Stay { value, samples, from_s }) => {
-            Err(MotionError::Clipped { run: run.to_owned(), channel, value, unit, samples, from_s })
-        }
-    }
 }
