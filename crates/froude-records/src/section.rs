@@ -18,13 +18,16 @@ const LONGEST_TEXT: usize = 10_000;
 
 /// A file's text and path, for lines in messages.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Source<'a> {
+pub struct Source<'a> {
+    /// The file.
     pub path: &'a Path,
+    /// Its text.
     pub text: &'a str,
 }
 
 impl Source<'_> {
     /// The line and column of a byte offset.
+    #[must_use]
     pub fn place(&self, offset: usize) -> Place {
         let before = self.text.get(..offset).unwrap_or(self.text);
         let start = before.rfind('\n').map_or(0, |at| at + 1);
@@ -33,13 +36,18 @@ impl Source<'_> {
     }
 
     /// A path written in the file, seen from the file's folder.
+    #[must_use]
     pub fn relative(&self, written: &str) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(written)
     }
 }
 
 /// Parses the whole document.
-pub(crate) fn parse(source: Source<'_>) -> Result<Spanned<DeTable<'_>>, RecordError> {
+///
+/// # Errors
+///
+/// [`RecordError::Syntax`] with its place.
+pub fn parse(source: Source<'_>) -> Result<Spanned<DeTable<'_>>, RecordError> {
     DeTable::parse(source.text).map_err(|e| RecordError::Syntax {
         place: source.place(e.span().map_or(0, |s| s.start)),
         problem: format!("not TOML: {}", e.message().trim()),
@@ -47,8 +55,10 @@ pub(crate) fn parse(source: Source<'_>) -> Result<Spanned<DeTable<'_>>, RecordEr
 }
 
 /// One table of the document. Keys that are declared ([`Section::only`]) or asked for are known; all others are refused.
-pub(crate) struct Section<'a> {
+pub struct Section<'a> {
+    /// The file that it stands in.
     pub source: Source<'a>,
+    /// As it is written in brackets; empty of the whole file.
     pub name: String,
     is_listed: bool,
     table: &'a DeTable<'a>,
@@ -57,6 +67,8 @@ pub(crate) struct Section<'a> {
 }
 
 impl<'a> Section<'a> {
+    /// Of a table that begins at a byte of the file; `name` as it is written in brackets.
+    #[must_use]
     pub fn new(source: Source<'a>, name: &str, table: &'a DeTable<'a>, start: usize) -> Self {
         Self { source, name: name.to_owned(), is_listed: false, table, start, asked: RefCell::default() }
     }
@@ -70,10 +82,12 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Where it begins.
     pub fn place(&self) -> Place {
         self.source.place(self.start)
     }
 
+    /// The value of a key, which is then known.
     pub fn get(&self, key: &'static str) -> Option<&'a Spanned<DeValue<'a>>> {
         self.asked.borrow_mut().insert(key);
         self.raw(key)
@@ -97,6 +111,7 @@ impl<'a> Section<'a> {
         self.entries().filter(|(k, ..)| !asked.contains(k)).collect()
     }
 
+    /// The message about a value: what was found, and what was expected.
     pub fn wrong(&self, key: &str, value: &Spanned<DeValue<'_>>, problem: impl Into<String>) -> RecordError {
         RecordError::Value {
             place: self.source.place(value.span().start),
@@ -128,15 +143,29 @@ impl<'a> Section<'a> {
 
     /// Declares every key of the section, and refuses others before anything is read: a misspelt key that the section
     /// needs is then reported as misspelt and not as missing.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::UnknownKey`] with the nearest known key.
     pub fn only(&self, known: &[&'static str]) -> Result<(), RecordError> {
         self.asked.borrow_mut().extend(known);
         self.finish()
     }
 
+    /// A text.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn text(&self, key: &'static str) -> Result<Option<&'a str>, RecordError> {
         self.get(key).map(|v| self.as_text(key, v)).transpose()
     }
 
+    /// A value that is a text.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn as_text(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<&'a str, RecordError> {
         match value.get_ref().as_str() {
             Some(text) if text.len() > LONGEST_TEXT => Err(self.wrong(
@@ -149,6 +178,11 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// True or false.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn flag(&self, key: &'static str) -> Result<Option<bool>, RecordError> {
         self.get(key)
             .map(|v| {
@@ -159,10 +193,20 @@ impl<'a> Section<'a> {
             .transpose()
     }
 
+    /// A number without a unit.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn number(&self, key: &'static str) -> Result<Option<f64>, RecordError> {
         self.get(key).map(|v| self.as_number(key, v)).transpose()
     }
 
+    /// A value that is a number without a unit.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn as_number(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Result<f64, RecordError> {
         let text = match value.get_ref() {
             DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
@@ -180,6 +224,11 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// A whole number, zero or larger.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn integer(&self, key: &'static str) -> Result<Option<u64>, RecordError> {
         self.get(key)
             .map(|v| {
@@ -195,6 +244,10 @@ impl<'a> Section<'a> {
     }
 
     /// A quantity of a given dimension, SI.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn quantity(&self, key: &'static str, dimension: Dimension) -> Result<Option<f64>, RecordError> {
         self.get(key).map(|v| self.as_quantity_of(key, v, dimension)).transpose()
     }
@@ -206,6 +259,10 @@ impl<'a> Section<'a> {
     }
 
     /// The same, larger than zero.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn positive(&self, key: &'static str, dimension: Dimension) -> Result<Option<f64>, RecordError> {
         let Some(value) = self.get(key) else { return Ok(None) };
         let si = self.as_quantity_of(key, value, dimension)?;
@@ -216,6 +273,11 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// A value that is a quantity of any kind.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn as_quantity(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<Quantity, RecordError> {
         self.quantity_like(key, value, None)
     }
@@ -223,6 +285,10 @@ impl<'a> Section<'a> {
     /// A quantity of any kind; where one is expected, messages suggest units of that kind.
     ///
     /// `like` is that kind, and the name (of the key or of the column that it belongs to) that its usual unit depends on.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn quantity_like(
         &self,
         key: &str,
@@ -253,6 +319,10 @@ impl<'a> Section<'a> {
     }
 
     /// A quantity of a given dimension as it is written; `name` as in [`Section::quantity_like`].
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn as_written(
         &self,
         key: &str,
@@ -271,6 +341,11 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// A value that is a quantity of a given dimension, SI.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn as_quantity_of(
         &self,
         key: &str,
@@ -281,11 +356,19 @@ impl<'a> Section<'a> {
     }
 
     /// A list of texts; a single text counts as a list of one.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn texts(&self, key: &'static str) -> Result<Vec<String>, RecordError> {
         Ok(self.placed_texts(key)?.into_iter().map(|(text, _)| text).collect())
     }
 
     /// The same, each with its place.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn placed_texts(&self, key: &'static str) -> Result<Vec<(String, Place)>, RecordError> {
         let Some(value) = self.get(key) else { return Ok(Vec::new()) };
         let placed =
@@ -300,10 +383,19 @@ impl<'a> Section<'a> {
     }
 
     /// A table inside this one.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn section(&self, key: &'static str) -> Result<Option<Section<'a>>, RecordError> {
         self.get(key).map(|v| self.as_section(key, v)).transpose()
     }
 
+    /// A value that is a table.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn as_section(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<Section<'a>, RecordError> {
         let Some(table) = value.get_ref().as_table() else {
             return Err(self.wrong(key, value, format!("is {}; expected a table", found(value))));
@@ -313,6 +405,10 @@ impl<'a> Section<'a> {
     }
 
     /// An array of tables (`[[key]]`).
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
     pub fn sections(&self, key: &'static str) -> Result<Vec<Section<'a>>, RecordError> {
         let Some(value) = self.get(key) else { return Ok(Vec::new()) };
         let Some(list) = value.get_ref().as_array() else {
@@ -328,6 +424,10 @@ impl<'a> Section<'a> {
     }
 
     /// Refuses keys that nobody asked for.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::UnknownKey`] with the nearest known key.
     pub fn finish(&self) -> Result<(), RecordError> {
         let Some((key, offset, _)) = self.others().into_iter().next() else { return Ok(()) };
         let asked = self.asked.borrow();
@@ -340,11 +440,19 @@ impl<'a> Section<'a> {
     }
 
     /// Checks `schema = 1`.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Schema`] and [`RecordError::NewerSchema`].
     pub fn schema(&self, what: &str) -> Result<(), RecordError> {
         self.schema_up_to(what, 1).map(|_| ())
     }
 
     /// The schema, from 1 to the newest that is known.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Schema`] and [`RecordError::NewerSchema`].
     pub fn schema_up_to(&self, what: &str, newest: u64) -> Result<u64, RecordError> {
         let place = || self.raw("schema").map_or_else(|| self.place(), |v| self.source.place(v.span().start));
         match self.integer("schema") {
@@ -368,7 +476,8 @@ impl<'a> Section<'a> {
 }
 
 /// A value in a message: texts in quotes, others by their kind.
-pub(crate) fn found(value: &Spanned<DeValue<'_>>) -> String {
+#[must_use]
+pub fn found(value: &Spanned<DeValue<'_>>) -> String {
     match value.get_ref() {
         DeValue::String(s) => format!("{:?}", s.chars().take(80).collect::<String>()),
         DeValue::Integer(i) => i.as_str().to_owned(),

@@ -9,13 +9,17 @@ use crate::section::Section;
 use crate::units::Dimension;
 
 /// Most values of one range of a plan: a million runs is a slip of the step.
-pub(crate) const MOST_STEPS: f64 = 100_000.0;
+pub const MOST_STEPS: f64 = 100_000.0;
 
 /// A stop this part of a step beyond the last one is on it: the rounding of a step with a few digits.
-pub(crate) const ON_A_STEP: f64 = 1e-6;
+pub const ON_A_STEP: f64 = 1e-6;
 
 /// One of a few words, with the nearest known one in the message.
-pub(crate) fn one_of<T: Copy>(
+///
+/// # Errors
+///
+/// [`RecordError::Value`] with its place where it is something else.
+pub fn one_of<T: Copy>(
     s: &Section<'_>,
     key: &'static str,
     names: &[&'static str],
@@ -32,7 +36,11 @@ pub(crate) fn one_of<T: Copy>(
 }
 
 /// A whole number from 1 to `most`.
-pub(crate) fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Option<usize>, RecordError> {
+///
+/// # Errors
+///
+/// [`RecordError::Value`] with its place where it is something else.
+pub fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Option<usize>, RecordError> {
     match (s.integer(key)?, s.get(key)) {
         (Some(n), Some(value)) if n == 0 || n > most => {
             Err(s.wrong(key, value, format!("is {n}; it must lie between 1 and {most}")))
@@ -42,7 +50,11 @@ pub(crate) fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Opt
 }
 
 /// What a section multiplies out to is checked against a limit: each of its numbers may be small, and their product not.
-pub(crate) fn at_most(s: &Section<'_>, numbers: &[(&str, usize)], most: usize) -> Result<(), RecordError> {
+///
+/// # Errors
+///
+/// [`RecordError::Value`] with its place where it is something else.
+pub fn at_most(s: &Section<'_>, numbers: &[(&str, usize)], most: usize) -> Result<(), RecordError> {
     let product = product(numbers);
     if product <= most {
         return Ok(());
@@ -56,13 +68,15 @@ pub(crate) fn at_most(s: &Section<'_>, numbers: &[(&str, usize)], most: usize) -
     })
 }
 
-pub(crate) fn product(numbers: &[(&str, usize)]) -> usize {
+/// Their product; the largest number where it is larger than that.
+#[must_use]
+pub fn product(numbers: &[(&str, usize)]) -> usize {
     numbers.iter().fold(1_usize, |product, (_, n)| product.saturating_mul(*n))
 }
 
 /// What one block of a plan asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Asks {
+pub struct Asks {
     /// Runs, observations or cases.
     pub count: usize,
     /// Samples of all its runs; 0 where none are simulated.
@@ -70,7 +84,11 @@ pub(crate) struct Asks {
 }
 
 /// Reads the blocks of a plan. What they ask for is summed as they are read, so that the first one too many ends it before more is made.
-pub(crate) fn plan_of<T>(
+///
+/// # Errors
+///
+/// [`RecordError::Value`] with its place where it is something else.
+pub fn plan_of<T>(
     sections: &[Section<'_>],
     [what, most_text]: [&str; 2],
     most: usize,
@@ -101,10 +119,14 @@ pub(crate) fn plan_of<T>(
 }
 
 /// Most samples of all runs of a plan: every run is simulated whole to say what to expect, at some 50 bytes a sample (measured: a forced oscillation).
-pub(crate) const MOST_SAMPLES: f64 = 1e7;
+pub const MOST_SAMPLES: f64 = 1e7;
 
 /// One value, a list, or start, stop and step.
-pub(crate) fn series<'a>(
+///
+/// # Errors
+///
+/// [`RecordError::Value`] with its place where it is something else.
+pub fn series<'a>(
     s: &Section<'a>,
     key: &'static str,
     value: &'a Spanned<DeValue<'a>>,
@@ -160,7 +182,7 @@ pub(crate) fn series<'a>(
 }
 
 /// Two steps that divide `way` (of either sign), next to where `count` of them would: short numbers, where there are any.
-pub(crate) fn steps_that_fit(way: f64, count: f64) -> [f64; 2] {
+pub fn steps_that_fit(way: f64, count: f64) -> [f64; 2] {
     let near = |a: &f64, b: &f64| (a - count).abs().total_cmp(&(b - count).abs());
     let is_short = |n: &f64| {
         let step = way / n;
@@ -174,6 +196,7 @@ pub(crate) fn steps_that_fit(way: f64, count: f64) -> [f64; 2] {
 }
 
 /// Ten digits: hides the rounding of a unit's factor.
-pub(crate) fn short(x: f64) -> f64 {
+#[must_use]
+pub fn short(x: f64) -> f64 {
     format!("{x:.9e}").parse().unwrap_or(x)
 }
