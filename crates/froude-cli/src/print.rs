@@ -10,7 +10,7 @@ use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
 use froude::records::number;
 use froude::records::outcome::{Exit, Outcome as Answered};
-use froude::records::page::{DocumentSection, TextTable};
+use froude::records::page::TextTable;
 use froude::records::text::{counted, visible, visible_json};
 use froude::results::Written;
 
@@ -30,11 +30,11 @@ pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Failure> {
 /// The coefficient tables or the summaries, records side by side, the findings, and where the report lies.
 pub fn outcome(outcome: &Outcome, all: bool) {
     for of_none in outcome.summaries.iter().filter(|summary| summary.sources.is_empty()) {
-        summary(&of_none.section);
+        blocks_after(&of_none.section.blocks, &mut true);
     }
     for (i, result) in outcome.sources.iter().enumerate() {
         match outcome.summaries.iter().find(|summary| summary.sources.contains(&i)) {
-            Some(Summary { sources, section }) if sources.start == i => summary(section),
+            Some(Summary { sources, section }) if sources.start == i => blocks_after(&section.blocks, &mut true),
             Some(_) => {}
             None => source(result),
         }
@@ -117,20 +117,6 @@ pub fn written(Written { estimate, report, exports, .. }: &Written) {
     say!("report    {}", report.display());
     for export in exports {
         say!("export    {}", export.display());
-    }
-}
-
-/// What a method states about all its results: its tables, then its sentences.
-pub fn summary(section: &DocumentSection) {
-    for table in &section.tables {
-        if !table.caption.is_empty() {
-            say!("\n{}", wrapped(&table.caption));
-        }
-        text_table(table);
-    }
-    say!("");
-    for sentence in &section.paragraphs {
-        say!("{sentence}");
     }
 }
 

@@ -7,9 +7,9 @@
 use std::path::PathBuf;
 
 use froude_records::RecordError;
+use froude_records::block::Section;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::Finding;
-use froude_records::page::DocumentSection;
 use froude_records::text::counted;
 
 use crate::answer::Answer;
@@ -116,9 +116,9 @@ pub struct Found {
     /// An answer for each name that was asked for.
     pub results: Vec<Answer>,
     /// What it states about all of them together, on the terminal and at the head of the page; the results alone where there is nothing.
-    pub summary: Option<DocumentSection>,
+    pub summary: Option<Section>,
     /// What else belongs on the page.
-    pub blocks: Vec<DocumentSection>,
+    pub blocks: Vec<Section>,
     /// Files for other programs, which lie beside the record.
     pub exports: Vec<Export>,
     /// What is doubtful about the runs, or about the results together.
@@ -141,7 +141,7 @@ pub struct Prospect {
     /// The intervals to expect.
     pub expected: Vec<ExpectedCoefficient>,
     /// All of it for a person: run matrix and intervals.
-    pub section: DocumentSection,
+    pub section: Section,
 }
 
 /// The interval to expect of one coefficient.

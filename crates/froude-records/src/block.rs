@@ -16,7 +16,7 @@ mod tests;
 pub use builder::{TableBuilder, facts};
 pub use json::Tree;
 pub(crate) use json::tree;
-pub use laid_out::{laid_out, sections, written};
+pub use laid_out::{laid_out, summary};
 
 use crate::page::{Chart, Field, Map};
 use crate::units::Unit;
@@ -138,6 +138,24 @@ impl Block {
     #[must_use]
     pub fn text(key: &str, texts: Vec<String>) -> Self {
         Self::Text { key: key.to_owned(), texts }
+    }
+
+    /// Sentences for people alone.
+    pub fn words(texts: impl IntoIterator<Item = String>) -> Self {
+        Self::text("", texts.into_iter().collect())
+    }
+}
+
+impl Section {
+    /// Blocks under a heading, for people; in JSON they belong to what the section lies in.
+    pub fn new(title: impl Into<String>, blocks: impl IntoIterator<Item = Block>) -> Self {
+        Self { title: title.into(), blocks: blocks.into_iter().collect(), ..Self::default() }
+    }
+}
+
+impl From<Chart> for Block {
+    fn from(chart: Chart) -> Self {
+        Self::Chart(chart)
     }
 }
 

@@ -50,6 +50,10 @@ pub fn svg(field: &Field) -> Result<String, ReportError> {
         .map_err(|reason| ReportError::Figure { figure: field.title.clone(), reason })
 }
 
+pub(crate) fn canvas(field: &Field) -> Canvas {
+    drawn(field).0
+}
+
 /// The caption, with how many polygons are not drawn.
 #[must_use]
 pub fn caption(field: &Field) -> String {

@@ -12,7 +12,7 @@ mod residuals;
 
 use budget::budget_drawing;
 use forest::forest_drawings;
-use froude_records::page::Chart;
+use froude_records::block::Block;
 use loads::load_drawings;
 use residuals::residual_drawings;
 
@@ -57,14 +57,8 @@ pub fn figures(report: &Report) -> Result<Vec<Figure>, ReportError> {
 /// All figures with their places, numbered through.
 pub(crate) fn placed_figures(report: &Report) -> Result<Vec<(Place, Figure)>, ReportError> {
     let mut drawings: Vec<(Place, Drawing)> = Vec::new();
-    for (i, block) in report.blocks.iter().enumerate() {
-        let drawing = |chart: &Chart| Drawing {
-            slug: chart.name.clone(),
-            title: chart.title.clone(),
-            caption: chart.caption.clone(),
-            canvas: crate::chart::canvas(chart),
-        };
-        drawings.extend(block.charts.iter().map(|chart| (Place::Block(i), drawing(chart))));
+    for (i, section) in report.blocks.iter().enumerate() {
+        drawings.extend(drawings_of(&section.blocks).into_iter().map(|d| (Place::Block(i), d)));
     }
     for (i, section) in report.sources.iter().enumerate() {
         drawings.extend(load_drawings(section).into_iter().map(|d| (Place::Loads(i), d)));
@@ -85,6 +79,23 @@ pub(crate) fn placed_figures(report: &Report) -> Result<Vec<(Place, Figure)>, Re
             Ok((place, Figure { file_name, title: drawing.title, caption: drawing.caption, svg }))
         })
         .collect()
+}
+
+/// The drawings of blocks, in their order.
+fn drawings_of(blocks: &[Block]) -> Vec<Drawing> {
+    let of = |block: &Block| {
+        let (name, title, caption, canvas) = match block {
+            Block::Chart(chart) => (&chart.name, &chart.title, chart.caption.clone(), crate::chart::canvas(chart)),
+            Block::Map(map) => (&map.name, &map.title, map.caption.clone(), crate::map::canvas(map)),
+            Block::Field(field) => {
+                (&field.name, &field.title, crate::field::caption(field), crate::field::canvas(field))
+            }
+            Block::Section(section) => return drawings_of(&section.blocks),
+            Block::Text { .. } | Block::Table(_) => return Vec::new(),
+        };
+        vec![Drawing { slug: name.clone(), title: title.clone(), caption, canvas }]
+    };
+    blocks.iter().flat_map(of).collect()
 }
 
 #[cfg(test)]

@@ -28,7 +28,6 @@
 
 mod canvas;
 pub mod chart;
-pub mod document;
 mod error;
 pub mod field;
 mod figures;
@@ -38,6 +37,7 @@ pub mod map;
 pub mod outcome;
 mod page;
 mod plot;
+mod sheet;
 mod statistics;
 mod style;
 mod symbol;

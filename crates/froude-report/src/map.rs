@@ -34,7 +34,7 @@ pub fn svg(map: &Map) -> Result<String, ReportError> {
     canvas(map).svg(&crate::figures::drawing::slug(&map.name), &map.title, &map.caption).map_err(refused)
 }
 
-fn canvas(map: &Map) -> Canvas {
+pub(crate) fn canvas(map: &Map) -> Canvas {
     let mut canvas = Canvas::new(WIDTH, TOP + HEIGHT + 52.0);
     let (x, y) = (chosen(map.x.len()), chosen(map.y.len()));
     let edges = |of: &[f64], which: &[usize]| edges(&which.iter().map(|i| of[*i]).collect::<Vec<_>>());

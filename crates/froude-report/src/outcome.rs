@@ -4,9 +4,9 @@ use froude_records::block::{Block, Section, laid_out};
 use froude_records::outcome::{Head, Outcome};
 use maud::{Markup, PreEscaped, html};
 
-use crate::document::{count, sheet, table_markup};
 use crate::error::ReportError;
 use crate::findings::findings_by_severity;
+use crate::sheet::{count, sheet, table_markup};
 use crate::tables::Tables;
 use crate::{chart, field, map};
 

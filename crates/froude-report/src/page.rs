@@ -5,17 +5,18 @@
 
 use std::collections::BTreeSet;
 
+use froude_records::block::{Block, laid_out};
 use froude_records::estimate::{Estimate, Measured};
 use froude_records::finding::Severity;
 use froude_records::number;
 use froude_records::page::SourceSection;
 use maud::{Markup, PreEscaped, html};
 
-use crate::document::{section_text, sheet};
 use crate::error::ReportError;
 use crate::figures::drawing::{recommended, slug};
 use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs};
 use crate::findings::findings_by_severity;
+use crate::sheet::{sheet, table_markup};
 use crate::symbol::unit_text;
 use crate::tables::{self, Tables, counted, html_symbol};
 use crate::verdict::verdict_words;
@@ -38,8 +39,9 @@ pub fn html(report: &Report) -> Result<String, ReportError> {
     let mut body = Vec::new();
     for (i, block) in report.blocks.iter().enumerate() {
         let heading = page.open(&format!("block-{}", i + 1), &block.title, "");
-        let text = section_text(block, &mut page.tables);
-        body.push(html! { section { (heading) (text) (page.figures_at(Place::Block(i))) } });
+        let mut pictures = page.pictures(Place::Block(i)).into_iter();
+        let text = blocks(&block.blocks, &mut page.tables, &mut pictures);
+        body.push(html! { section { (heading) (text) } });
     }
     body.push(page.method());
     body.push(page.data());
@@ -131,16 +133,23 @@ impl Page<'_> {
         }
     }
 
-    /// All figures of one place, each with its number and caption.
-    fn figures_at(&self, place: Place) -> Markup {
-        html! {
-            @for (i, (_, figure)) in self.figures.iter().enumerate().filter(|(_, (p, _))| *p == place) {
+    /// The figures of one place, each with its number and caption.
+    fn pictures(&self, place: Place) -> Vec<Markup> {
+        let own = self.figures.iter().enumerate().filter(|(_, (p, _))| *p == place);
+        let each = own.map(|(i, (_, figure))| {
+            html! {
                 figure id={ "fig-" (i + 1) } {
                     (PreEscaped(&figure.svg))
                     figcaption { b { "Figure " (i + 1) ". " } (figure.caption) }
                 }
             }
-        }
+        });
+        each.collect()
+    }
+
+    /// All of them.
+    fn figures_at(&self, place: Place) -> Markup {
+        html! { @for picture in self.pictures(place) { (picture) } }
     }
 
     fn has_figures_at(&self, place: Place) -> bool {
@@ -413,6 +422,21 @@ impl Page<'_> {
             }
         }
     }
+}
+
+/// Blocks in their order; `pictures` are those of their figures.
+fn blocks(blocks: &[Block], tables: &mut Tables, pictures: &mut dyn Iterator<Item = Markup>) -> Markup {
+    let each = blocks.iter().map(|block| match block {
+        Block::Text { texts, .. } => html! { @for text in texts { p { (text) } } },
+        Block::Table(table) => laid_out(table).map_or_else(Markup::default, |table| table_markup(&table, tables)),
+        Block::Section(section) => {
+            let inner = self::blocks(&section.blocks, tables, pictures);
+            html! { h3 { (section.title) } (inner) }
+        }
+        Block::Chart(_) | Block::Map(_) | Block::Field(_) => pictures.next().unwrap_or_default(),
+    });
+    let parts: Vec<Markup> = each.collect();
+    html! { @for part in &parts { (part) } }
 }
 
 fn summary_of(i: usize, source: &SourceSection) -> Markup {

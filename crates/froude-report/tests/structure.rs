@@ -3,13 +3,14 @@
 
 mod sample;
 
+use froude_records::block::{Block, Section, TableBuilder};
 use froude_records::comparison::{
     AddedTerms, CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LargestLoad, LoadComparison,
     Side, Verdict,
 };
 use froude_records::estimate::{Coefficient, Estimate, Measured, Range, Status};
 use froude_records::finding::{Finding, Severity};
-use froude_records::page::{Chart, DocumentSection, TextTable};
+use froude_records::page::Chart;
 use froude_report::{
     Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection, figures, html,
 };
@@ -249,17 +250,20 @@ fn hostile_names_are_escaped_everywhere() {
     e.sigma.insert(h(), Measured { value: 1.0, unit: h() });
     e.validity.insert(h(), Range { low: 0.0, high: 1.0, unit: h() });
     let side = || Side { source: h(), value: Some(1.0), ..Side::default() };
+    let table = TableBuilder::new("", h(), &[()]);
     let report = Report {
         title: h(),
         subtitle: h(),
         date: Some(h()),
         method: vec![h()],
-        blocks: vec![DocumentSection {
-            title: h(),
-            paragraphs: vec![h()],
-            tables: vec![TextTable { caption: h(), head: vec![h()], rows: vec![vec![h()]] }],
-            charts: vec![Chart { title: h(), caption: h(), ..Chart::default() }],
-        }],
+        blocks: vec![Section::new(
+            h(),
+            [
+                Block::words([h()]),
+                table.build(vec![table.text("", &h(), |()| h())]).into(),
+                Chart { title: h(), caption: h(), ..Chart::default() }.into(),
+            ],
+        )],
         sources: vec![SourceSection {
             not_fitted: Vec::new(),
             name: h(),

@@ -17,14 +17,13 @@ use froude_identify::prediction::{of_rows, same_rows};
 use froude_identify::reduce::reduce;
 use froude_identify::unexplained::unexplained;
 use froude_identify::{IdentifyError, asked, observations, origins};
-use froude_records::block::sections;
+use froude_records::block::Section;
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
 use froude_records::json::read_estimates;
-use froude_records::page::DocumentSection;
 use froude_records::text::in_a_file_name;
 use indexmap::IndexMap;
 
@@ -141,7 +140,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
 struct Gathered {
     sources: Vec<Answer>,
     summaries: Vec<Summary>,
-    blocks: Vec<DocumentSection>,
+    blocks: Vec<Section>,
     exports: Vec<Export>,
     /// Records beside them, as they are called.
     published: Vec<(String, EstimateFile)>,
@@ -204,9 +203,9 @@ impl Gathered {
                 estimate.data = files.keys_of(&read, |role| observes(needs, role))?;
             }
         }
-        let titled = |section: DocumentSection| {
+        let titled = |section: Section| {
             let title = if is_one { section.title.clone() } else { format!("{}: {}", source.name, section.title) };
-            DocumentSection { title, ..section }
+            Section { title, ..section }
         };
         let first = self.sources.len();
         self.sources.append(&mut results);
@@ -271,7 +270,7 @@ impl Gathered {
         for predicted in &found.estimates {
             self.findings.push(found.finding(predicted).of_source(&source.name));
             let section = found.section(predicted);
-            self.blocks.extend(sections(&format!("{}: {}", source.name, section.title), &section.blocks));
+            self.blocks.push(Section { title: format!("{}: {}", source.name, section.title), ..section });
         }
         Ok(())
     }

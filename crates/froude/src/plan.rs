@@ -4,7 +4,7 @@ use std::path::Path;
 
 use froude_identify::method::Prospect;
 use froude_identify::simulate::tables::SimulateError;
-use froude_records::block::{Section, TableBuilder, facts, written};
+use froude_records::block::{Section, TableBuilder, facts};
 use froude_records::campaign::read_campaign;
 use froude_records::outcome::Outcome;
 
@@ -45,7 +45,7 @@ fn section(prospect: Prospect) -> Section {
         t.number("standard_uncertainty", "", |e| e.standard_uncertainty),
         t.number("half_width_95", "", |e| e.half_width_95),
     ]);
-    let title = prospect.section.title.clone();
-    let blocks = [vec![about.into(), expected.into()], written(prospect.section)].concat();
+    let Section { title, blocks, .. } = prospect.section;
+    let blocks = [vec![about.into(), expected.into()], blocks].concat();
     Section { key: "sources[]".to_owned(), title, blocks, ..Section::default() }
 }

@@ -9,6 +9,7 @@
 use std::path::Path;
 
 use froude_identify::method::MethodError;
+use froude_records::block::Section;
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
@@ -37,7 +38,7 @@ pub fn held_against(
     sidecar: Option<&Path>,
     name: &str,
     estimates: &[&Estimate],
-) -> Result<(Vec<Finding>, DocumentSection), MethodError> {
+) -> Result<(Vec<Finding>, Section), MethodError> {
     let (imported, log) = read_log(path, sidecar)?;
     let rate_hz = log.rate_hz().map_err(MethodError::refused)?;
     let force_per_volt_n_v = force_per_volt_n_v(path, sidecar)?;
@@ -87,5 +88,5 @@ pub fn held_against(
         rows: found.iter().map(row).collect(),
     };
     let title = format!("{name}: held against the fits");
-    Ok((findings, DocumentSection { title, tables: vec![table], ..DocumentSection::default() }))
+    Ok((findings, DocumentSection { title, tables: vec![table], ..DocumentSection::default() }.into()))
 }

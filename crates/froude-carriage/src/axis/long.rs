@@ -166,7 +166,7 @@ pub(super) fn of_table(
         out.results.push(Made { name, estimate, files: super::files_of_table(path, sidecar) }.into());
     }
     out.summary =
-        Some(DocumentSection { title: "Axis by every model".to_owned(), tables, ..DocumentSection::default() });
+        Some(DocumentSection { title: "Axis by every model".to_owned(), tables, ..DocumentSection::default() }.into());
     Ok(out)
 }
 

@@ -3,6 +3,7 @@
 use froude_identify::answer::{Answer, Made};
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::source::ReadFile;
+use froude_records::block::summary;
 use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::estimate::Estimate;
 use froude_records::page::DocumentSection;
@@ -126,7 +127,7 @@ fn found(runs: Runs, what: &str, estimates: Vec<(Estimate, Vec<ReadFile>)>, sect
     };
     Found {
         results: estimates.into_iter().map(answer).collect(),
-        summary: Some(section),
+        summary: Some(summary(section)),
         beside: Some(runs.results(what)),
         is_part: runs.beside > 0,
         findings: runs.findings,

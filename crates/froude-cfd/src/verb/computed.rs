@@ -12,7 +12,7 @@ use froude_identify::reduce::{Observations, reduce_table};
 use froude_identify::source::{ReadFile, identify_observations};
 use froude_identify::uncertainty::SharedError;
 use froude_identify::validation::{STD_ITERATIVE, STD_NUMERICAL};
-use froude_records::block::sections;
+use froude_records::block::Section;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::output::inside;
@@ -80,7 +80,7 @@ impl Method for Computed {
             progress(&format!("fitting {model}"));
         })?;
         let findings = std::mem::take(&mut result.findings).into_iter().filter(|f| !is_of_a_rig(f)).collect();
-        let blocks = sections("Collected", &collected.blocks());
+        let blocks = vec![Section::new("Collected", collected.blocks())];
         Ok(Found { results: vec![result.into()], findings, blocks, ..Found::default() })
     }
 }

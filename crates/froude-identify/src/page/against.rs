@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use froude_records::block::Section;
 use froude_records::campaign::{Campaign, Input, Source, SourceKind};
 use froude_records::comparison::Validation;
 use froude_records::csv_table::csv_bytes;
 use froude_records::estimate::EstimateFile;
-use froude_records::page::DocumentSection;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::text::in_a_file_name;
 use froude_records::units::{Dimension, Unit};
@@ -25,9 +25,9 @@ pub struct Validated {
     /// For the record.
     pub numbers: Vec<Validation>,
     /// What a person reads first.
-    pub first: Option<DocumentSection>,
+    pub first: Option<Section>,
     /// The others.
-    pub others: Vec<DocumentSection>,
+    pub others: Vec<Section>,
     /// A table of the flows of each computed source.
     pub exports: Vec<Export>,
 }

@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use froude_records::block::Section;
 use froude_records::campaign::Campaign;
 use froude_records::estimate::Estimate;
 use froude_records::estimate::EstimateFile;
-use froude_records::page::{DocumentSection, InputFile, Report};
+use froude_records::page::{InputFile, Report};
 use froude_records::text::counted;
 
 use super::{method, section, steps};
@@ -23,7 +24,7 @@ pub fn report(
     file: &EstimateFile,
     sources: &[Answer],
     published: Vec<Estimate>,
-    blocks: Vec<DocumentSection>,
+    blocks: Vec<Section>,
     date: Option<String>,
 ) -> Result<Report, IdentifyError> {
     // A line per file and source that reads it; a file that several name is one file.

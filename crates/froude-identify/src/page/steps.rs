@@ -1,7 +1,7 @@
 //! What was done to the data of the runs, as a table of the report.
 
+use froude_records::block::{Block, Section, TableBuilder};
 use froude_records::estimate::DataFile;
-use froude_records::page::{DocumentSection, TextTable};
 use froude_records::run::step::Step;
 use froude_records::text::counted;
 
@@ -15,7 +15,7 @@ struct Row<'a> {
 }
 
 /// The steps of all files, those of one kind and channel once; `None` where none is stated.
-pub fn section<'a>(files: impl Iterator<Item = &'a DataFile>) -> Option<DocumentSection> {
+pub fn section<'a>(files: impl Iterator<Item = &'a DataFile>) -> Option<Section> {
     let mut rows: Vec<Row<'_>> = Vec::new();
     let mut logs = 0;
     for file in files.filter(|file| !file.steps.is_empty()) {
@@ -35,26 +35,25 @@ pub fn section<'a>(files: impl Iterator<Item = &'a DataFile>) -> Option<Document
             }
         }
     }
-    let of = |row: &Row<'_>| {
+    let words = |row: &Row<'_>| {
         let words = &row.step.words;
-        let words = if row.differs {
+        if row.differs {
             format!("{words} (the first of them; each with its own numbers in the record)")
         } else {
             words.clone()
-        };
-        let channel = if row.step.channel.is_empty() { "all".to_owned() } else { row.step.channel.clone() };
-        vec![row.step.step.clone(), channel, words, row.runs.to_string()]
+        }
     };
-    (!rows.is_empty()).then(|| DocumentSection {
-        title: "Steps".to_owned(),
-        paragraphs: vec!["What was done to the data before anything was fitted, in this order. The record has every step of every run with its numbers.".to_owned()],
-        tables: vec![TextTable {
-            caption: format!("Steps from {} to channels in SI.", counted(logs, "log", "logs")),
-            head: ["step", "channel", "what was done", "runs"].map(str::to_owned).to_vec(),
-            rows: rows.iter().map(of).collect(),
-        }],
-        ..DocumentSection::default()
-    })
+    let channel = |row: &Row<'_>| if row.step.channel.is_empty() { "all".to_owned() } else { row.step.channel.clone() };
+    let t =
+        TableBuilder::new("steps", format!("Steps from {} to channels in SI.", counted(logs, "log", "logs")), &rows);
+    let table = t.build(vec![
+        t.text("step", "step", |row| row.step.step.clone()),
+        t.text("channel", "channel", channel),
+        t.text("words", "what was done", words),
+        t.count("runs", "runs", |row| row.runs),
+    ]);
+    let said = "What was done to the data before anything was fitted, in this order. The record has every step of every run with its numbers.";
+    (!rows.is_empty()).then(|| Section::new("Steps", [Block::words([said.to_owned()]), table.into()]))
 }
 
 #[cfg(test)]
@@ -74,10 +73,11 @@ mod tests {
             file(&[]),
         ];
         let section = section(files.iter()).unwrap();
-        let rows: Vec<(&str, &str)> = section.tables[0].rows.iter().map(|r| (r[0].as_str(), r[3].as_str())).collect();
-        assert_eq!(rows, [("read", "2"), ("window", "2"), ("mark", "1")]);
-        assert_eq!(section.tables[0].rows[0][2], "column a");
-        assert!(section.tables[0].rows[1][2].starts_with("1 s to 2 s (the first of them"));
+        let [_, Block::Table(table)] = &section.blocks[..] else { panic!("{section:?}") };
+        let row = |i: usize| table.columns.iter().map(|column| column.text(i).unwrap()).collect::<Vec<_>>();
+        assert_eq!(row(0), ["read", "f_x", "column a", "2"]);
+        assert!(row(1)[2].starts_with("1 s to 2 s (the first of them"));
+        assert_eq!((&row(2)[0][..], &row(2)[3][..], table.n_rows), ("mark", "1", 3));
         assert!(super::section([file(&[])].iter()).is_none());
     }
 }

@@ -1,9 +1,10 @@
 //! The comparison with measurements by ASME V&V 20, as a page and a terminal show it.
 
+use froude_records::block::{Block, Section, TableBuilder};
 use froude_records::campaign::SourceKind;
 use froude_records::comparison::Validation;
 use froude_records::number::{percent, significant};
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 
 use crate::dataset::Dataset;
 use crate::result::SourceResult;
@@ -20,7 +21,7 @@ pub const fn is_measured(kind: SourceKind) -> bool {
 
 /// What a person reads first: loads, and the coefficients of the recommended law; then the coefficients of all others. Empty where nothing was compared.
 #[must_use]
-pub fn sections(found: &Validated, result: &SourceResult) -> Vec<DocumentSection> {
+pub fn sections(found: &Validated, result: &SourceResult) -> Vec<Section> {
     let (loads, coefficients): (Vec<&Validation>, Vec<&Validation>) =
         found.numbers.iter().partition(|number| number.flows.is_some());
     let recommended = result.estimates.iter().find(|e| e.recommended).map(|e| e.id.as_str());
@@ -28,18 +29,16 @@ pub fn sections(found: &Validated, result: &SourceResult) -> Vec<DocumentSection
         coefficients.into_iter().partition(|number| Some(number.simulation.as_str()) == recommended);
     let mut out = Vec::new();
     if !loads.is_empty() || !first.is_empty() || !found.without_range.is_empty() {
-        out.push(DocumentSection {
-            title: format!("Validation of {}", result.name),
-            paragraphs: paragraphs(found, &loads),
-            tables: [load_table(&loads), coefficient_table(&first)].into_iter().flatten().collect(),
-            charts: chart(found, &result.data, &result.name).into_iter().collect(),
-        });
+        let tables = [load_table(&loads), coefficient_table(&first)].into_iter().flatten();
+        let said = Block::words(paragraphs(found, &loads));
+        let chart = chart(found, &result.data, &result.name).map(Block::Chart);
+        out.push(Section::new(format!("Validation of {}", result.name), tables.chain([said]).chain(chart)));
     }
-    out.extend(coefficient_table(&others).map(|table| DocumentSection {
-        title: format!("Validation of {}: coefficients of the other laws", result.name),
-        tables: vec![table],
-        ..DocumentSection::default()
-    }));
+    out.extend(
+        coefficient_table(&others).map(|table| {
+            Section::new(format!("Validation of {}: coefficients of the other laws", result.name), [table])
+        }),
+    );
     out
 }
 
@@ -81,88 +80,45 @@ fn paragraphs(found: &Validated, loads: &[&Validation]) -> Vec<String> {
     out
 }
 
-fn known(u: Option<f64>) -> String {
-    u.map_or_else(|| "not stated".to_owned(), |u| significant(u, 2))
+fn load_table(loads: &[&Validation]) -> Option<Block> {
+    let t = TableBuilder::new("validated_loads", "Computed and measured loads", loads);
+    let columns = vec![
+        t.text("load", "load", |v| v.quantity.clone()),
+        t.text("measured_by", "measured", |v| v.data.clone()),
+        t.count("flows", "flows", |v| v.flows),
+        t.number("computed", "S", |v| v.computed).significant(3),
+        t.number("measured", "D", |v| v.measured).significant(3),
+        t.number("ratio", "S over D", |v| v.ratio).significant(3),
+        t.number("error", "E", |v| v.error).significant(3),
+        t.number("u_numerical", "u_num", |v| v.u_numerical).significant(2),
+        t.number("u_input", "u_input", |v| v.u_input).significant(2),
+        t.number("u_data", "u_D", |v| v.u_data).significant(2),
+        t.number("u_validation", "u_val", |v| v.u_validation).significant(2),
+        t.count("beyond", "beyond 2 u_val", |v| v.beyond),
+        t.text("unit", "unit", |v| v.unit.clone()),
+    ];
+    (!loads.is_empty()).then(|| t.build(columns).into())
 }
 
-fn load_table(loads: &[&Validation]) -> Option<TextTable> {
-    let row = |v: &&Validation| {
-        vec![
-            v.quantity.clone(),
-            v.data.clone(),
-            v.flows.unwrap_or(0).to_string(),
-            significant(v.computed, 3),
-            significant(v.measured, 3),
-            v.ratio.map_or_else(String::new, |ratio| significant(ratio, 3)),
-            significant(v.error, 3),
-            significant(v.u_numerical, 2),
-            significant(v.u_input, 2),
-            known(v.u_data),
-            significant(v.u_validation, 2),
-            v.beyond.unwrap_or(0).to_string(),
-            v.unit.clone(),
-        ]
-    };
-    let head = [
-        "load",
-        "measured",
-        "flows",
-        "S",
-        "D",
-        "S over D",
-        "E",
-        "u_num",
-        "u_input",
-        "u_D",
-        "u_val",
-        "beyond 2 u_val",
-        "unit",
+fn coefficient_table(coefficients: &[&Validation]) -> Option<Block> {
+    let t = TableBuilder::new("validated_coefficients", "Computed and measured coefficients", coefficients);
+    let verdict = |v: &&Validation| if v.is_beyond() { "beyond 2 u_val" } else { "within" }.to_owned();
+    let columns = vec![
+        t.text("coefficient", "coefficient", |v| v.quantity.clone()),
+        t.text("computed_by", "computed", |v| v.simulation.clone()),
+        t.text("measured_by", "measured", |v| v.data.clone()),
+        t.number("computed", "S", |v| v.computed).significant(3),
+        t.number("measured", "D", |v| v.measured).significant(3),
+        t.number("error", "E", |v| v.error).significant(2),
+        t.number("u_numerical", "u_num", |v| v.u_numerical).significant(2),
+        t.number("u_input", "u_input", |v| v.u_input).significant(2),
+        t.number("u_fit", "u_fit", |v| v.u_fit).significant(2),
+        t.number("u_data", "u_D", |v| v.u_data).significant(2),
+        t.number("u_validation", "u_val", |v| v.u_validation).significant(2),
+        t.text("verdict", "E is", verdict),
+        t.text("unit", "unit", |v| v.unit.clone()),
     ];
-    (!loads.is_empty()).then(|| TextTable {
-        caption: "Computed and measured loads".to_owned(),
-        head: head.map(str::to_owned).to_vec(),
-        rows: loads.iter().map(row).collect(),
-    })
-}
-
-fn coefficient_table(coefficients: &[&Validation]) -> Option<TextTable> {
-    let row = |v: &&Validation| {
-        vec![
-            v.quantity.clone(),
-            v.simulation.clone(),
-            v.data.clone(),
-            significant(v.computed, 3),
-            significant(v.measured, 3),
-            significant(v.error, 2),
-            significant(v.u_numerical, 2),
-            significant(v.u_input, 2),
-            significant(v.u_fit, 2),
-            known(v.u_data),
-            significant(v.u_validation, 2),
-            if v.is_beyond() { "beyond 2 u_val" } else { "within" }.to_owned(),
-            v.unit.clone(),
-        ]
-    };
-    let head = [
-        "coefficient",
-        "computed",
-        "measured",
-        "S",
-        "D",
-        "E",
-        "u_num",
-        "u_input",
-        "u_fit",
-        "u_D",
-        "u_val",
-        "E is",
-        "unit",
-    ];
-    (!coefficients.is_empty()).then(|| TextTable {
-        caption: "Computed and measured coefficients".to_owned(),
-        head: head.map(str::to_owned).to_vec(),
-        rows: coefficients.iter().map(row).collect(),
-    })
+    (!coefficients.is_empty()).then(|| t.build(columns).into())
 }
 
 /// Loads against the angle at the highest speed that has several, of the configuration that has the most flows.

@@ -34,24 +34,6 @@ pub fn laid_out(table: &ResultTable) -> Option<TextTable> {
     Some(TextTable { caption: table.caption.clone(), head: shown.iter().map(head).collect(), rows })
 }
 
-/// Blocks as sections of a page that has others too: what stands in none is the first, under this title.
-#[must_use]
-pub fn sections(title: &str, blocks: &[Block]) -> Vec<DocumentSection> {
-    let mut first = DocumentSection { title: title.to_owned(), ..DocumentSection::default() };
-    let mut others = Vec::new();
-    for block in blocks {
-        match block {
-            Block::Text { texts, .. } => first.paragraphs.extend(texts.iter().cloned()),
-            Block::Table(table) => first.tables.extend(laid_out(table)),
-            Block::Chart(chart) => first.charts.push(chart.clone()),
-            Block::Section(Section { title, blocks, .. }) => others.extend(sections(title, blocks)),
-            Block::Map(_) | Block::Field(_) => {}
-        }
-    }
-    let is_empty = first.paragraphs.is_empty() && first.tables.is_empty() && first.charts.is_empty();
-    (!is_empty).then_some(first).into_iter().chain(others).collect()
-}
-
 /// A table whose cells are written already, for people alone.
 impl From<TextTable> for ResultTable {
     fn from(TextTable { caption, head, rows }: TextTable) -> Self {
@@ -61,9 +43,22 @@ impl From<TextTable> for ResultTable {
     }
 }
 
-/// A section that is written already, for people alone: its tables before its sentences.
+/// A section that is written already, for people alone.
+impl From<DocumentSection> for Section {
+    fn from(DocumentSection { title, paragraphs, tables, charts }: DocumentSection) -> Self {
+        let tables = tables.into_iter().map(|table| ResultTable::from(table).into());
+        Self::new(
+            title,
+            [Block::words(paragraphs)].into_iter().chain(tables).chain(charts.into_iter().map(Block::Chart)),
+        )
+    }
+}
+
+/// The same, with its tables before its sentences.
 #[must_use]
-pub fn written(section: DocumentSection) -> Vec<Block> {
-    let tables = section.tables.into_iter().map(|table| ResultTable::from(table).into());
-    tables.chain([Block::text("", section.paragraphs)]).chain(section.charts.into_iter().map(Block::Chart)).collect()
+pub fn summary(section: DocumentSection) -> Section {
+    let mut out = Section::from(section);
+    let is_words = |block: &Block| matches!(block, Block::Text { .. });
+    out.blocks.sort_by_key(|block| (matches!(block, Block::Chart(_)), is_words(block)));
+    out
 }

@@ -11,7 +11,8 @@
 
 use indexmap::IndexMap;
 
-use super::{DocumentSection, SourceSection};
+use super::SourceSection;
+use crate::block::Section;
 use crate::comparison::Comparison;
 use crate::estimate::{DataFile, Estimate};
 use crate::finding::Finding;
@@ -28,7 +29,7 @@ pub struct Report {
     /// Paragraphs of the method section.
     pub method: Vec<String>,
     /// What methods state about the runs that they reduced together, before the sections of their results.
-    pub blocks: Vec<DocumentSection>,
+    pub blocks: Vec<Section>,
     /// One section per source that was fitted.
     pub sources: Vec<SourceSection>,
     /// Published estimates shown beside the fitted ones; their `kind` is `published`.

@@ -13,6 +13,7 @@ use froude_fit::serial::to_expect;
 use froude_fit::series::taper;
 use froude_identify::law::ForceLaw;
 use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
+use froude_records::block::summary;
 use froude_records::campaign::{Campaign, SensorSpec, Source};
 use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
@@ -287,7 +288,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         runs: planned.len(),
         duration_s,
         expected: expected.collect(),
-        section: DocumentSection {
+        section: summary(DocumentSection {
             title: format!("Plan of {}", source.name),
             paragraphs: vec![format!(
                 "{} of {:.1} min in all on the log, waits between them and the way back not counted; {steady_m:.1} m of steady distance; the longest needs {longest_m:.2} m of travel. The \
@@ -297,7 +298,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
             )],
             tables: vec![matrix(&planned, &setup), coefficients(&truth.law, &found)],
             charts: Vec::new(),
-        },
+        }),
     })
 }
 

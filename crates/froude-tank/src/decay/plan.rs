@@ -1,6 +1,7 @@
 //! The plan of a free decay: run matrix, time, peaks of each release, and the intervals to expect.
 
 use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
+use froude_records::block::summary;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
@@ -50,7 +51,7 @@ pub fn prospect(campaign: &Campaign, source: &Source, setup: &DecaySetup) -> Res
         minutes(duration_s)
     )];
     paragraphs.extend(found.left_out.iter().map(|why| format!("Of no use: {why}.")));
-    let section = DocumentSection {
+    let section = summary(DocumentSection {
         title: format!("Plan of {}", source.name),
         paragraphs,
         tables: vec![
@@ -58,7 +59,7 @@ pub fn prospect(campaign: &Campaign, source: &Source, setup: &DecaySetup) -> Res
             expected_table(&found.expected, &found.parts, &format!(", with the law {LAW} of [simulate]")),
         ],
         charts: Vec::new(),
-    };
+    });
     Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected: expected.collect(), section })
 }
 

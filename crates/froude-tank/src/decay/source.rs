@@ -99,7 +99,7 @@ impl Method for FreeDecay {
                 said.push(finding);
             }
         }
-        let blocks = fits.last().map(|fit| section(fit, &runs)).into_iter().collect();
+        let blocks = fits.last().map(|fit| section(fit, &runs).into()).into_iter().collect();
         Ok(Found { results: out, blocks, findings: said, ..Found::default() })
     }
 

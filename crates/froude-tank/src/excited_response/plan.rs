@@ -8,6 +8,7 @@
 use faer::c64;
 use froude_fit::budget::{Combined, OUTSIDE_95, Part, combine};
 use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
+use froude_records::block::summary;
 use froude_records::campaign::{Campaign, SensorSpec, Source};
 use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
@@ -148,7 +149,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         })
     });
     let duration_s = planned.iter().map(|run| run.rig.still_s + run.rig.lasts_s).sum();
-    let section = DocumentSection {
+    let section = summary(DocumentSection {
         title: format!("Plan of {}", source.name),
         paragraphs: vec![format!(
             "{} of {:.1} min in all on the log; the wait for the water to come to rest between them is not counted. The intervals are those at the true coefficients of [simulate], with the noise of \
@@ -158,7 +159,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         )],
         tables: vec![matrix(&found, window_s), intervals(&found)],
         charts: Vec::new(),
-    };
+    });
     Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected: expected.collect(), section })
 }
 

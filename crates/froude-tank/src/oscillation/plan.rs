@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use froude_hydro::similarity::keulegan_carpenter;
 use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
+use froude_records::block::summary;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
@@ -48,7 +49,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         ],
     );
     let duration_s = planned.iter().map(duration_s).sum();
-    let section = DocumentSection {
+    let section = summary(DocumentSection {
         title: format!("Plan of {}", source.name),
         paragraphs: vec![format!(
             "{} of {} in all on the log, waits between them and changes of configuration not counted. The intervals are those of the linearised joint fit at the true coefficients of \
@@ -58,7 +59,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         )],
         tables,
         charts: Vec::new(),
-    };
+    });
     Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected, section })
 }
 

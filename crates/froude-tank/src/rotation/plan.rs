@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
+use froude_records::block::summary;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
@@ -57,12 +58,12 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         .map(|run| run.turn.amplitude_rad * run.turn.omega_rad_s)
         .fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], rate| [low.min(rate), high.max(rate)]);
     paragraphs.extend(one_rate(rates, found.correlation(LAMBDAS[1], LAMBDAS[2])).map(|text| format!("Mind: {text}.")));
-    let section = DocumentSection {
+    let section = summary(DocumentSection {
         title: format!("Plan of {}", source.name),
         paragraphs,
         tables: vec![runs(&planned, &found, &setup), expected(&found.expected, &found.parts, "")],
         charts: Vec::new(),
-    };
+    });
     Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected: each.collect(), section })
 }
 

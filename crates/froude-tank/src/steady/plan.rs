@@ -12,6 +12,7 @@
 use froude_fit::budget::{Combined, Kind, OUTSIDE_95, combine};
 use froude_fit::faer::Mat;
 use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
+use froude_records::block::summary;
 use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
 use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
@@ -261,12 +262,12 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         runs: plan.data.rows,
         duration_s,
         expected: of_law(&plan, &expected),
-        section: DocumentSection {
+        section: summary(DocumentSection {
             title: format!("Plan of {}", source.name),
             paragraphs: vec![paragraph],
             tables: vec![matrix, coefficients],
             charts: Vec::new(),
-        },
+        }),
     })
 }
 

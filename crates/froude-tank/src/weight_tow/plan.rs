@@ -4,6 +4,7 @@
 //! move, go through the linearised fit ([`crate::steady::plan`]). A speed that errs by δU moves a load by −∂f/∂U δU.
 
 use froude_identify::method::{MethodError, Prospect};
+use froude_records::block::summary;
 use froude_records::campaign::{Campaign, SensorSpec, Source};
 use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
@@ -175,11 +176,11 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         runs: runs.len(),
         duration_s,
         expected: steady::of_law(&weights.plan, &expected),
-        section: DocumentSection {
+        section: summary(DocumentSection {
             title: format!("Plan of {}", source.name),
             paragraphs: vec![paragraph],
             tables: vec![matrix, steady::coefficients(&weights.plan, &expected)],
             charts: Vec::new(),
-        },
+        }),
     })
 }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use froude_identify::answer::Answer;
 use froude_records::added_mass_options::GivenOption;
+use froude_records::block::Section;
 use froude_records::estimate::EstimateFile;
-use froude_records::page::DocumentSection;
 
 use crate::results::Written;
 
@@ -109,7 +109,7 @@ pub struct Summary {
     /// Which of [`Outcome::sources`].
     pub sources: Range<usize>,
     /// The section of the page.
-    pub section: DocumentSection,
+    pub section: Section,
 }
 
 /// The folder of results beside an input, where none is named: `tow-results` of `tow.csv`.

@@ -2,6 +2,7 @@
 
 use froude_identify::answer::{Answer, Made};
 use froude_identify::method::{Found, Method, MethodError, Need};
+use froude_records::block::summary as of_summary;
 use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
@@ -84,7 +85,14 @@ impl Method for KnownWeights {
         });
         let beside = calibration.is_some().then(|| runs.results(NAME));
         let summary = section(calibration.as_ref(), &setup, &results, &jogs);
-        Ok(Found { results, summary: Some(summary), findings, beside, is_part: runs.beside > 0, ..Found::default() })
+        Ok(Found {
+            results,
+            summary: Some(of_summary(summary)),
+            findings,
+            beside,
+            is_part: runs.beside > 0,
+            ..Found::default()
+        })
     }
 }
 

@@ -1,0 +1,72 @@
+//! What all pages share: the sheet around their contents, and tables.
+
+use froude_records::page::TextTable;
+use froude_records::text::visible;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::style::{POLICY, STYLE};
+use crate::tables::Tables;
+
+/// Cells longer than this are sentences, and break into lines.
+const WORDS: usize = 44;
+
+/// A page around its contents: everything stands in it.
+pub(crate) fn sheet(title: &str, contents: &Markup, main: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="generator" content="Froude";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                div class="sheet" {
+                    nav aria-label="Sections" { p { "Contents" } (contents) }
+                    main { (main) }
+                }
+            }
+        }
+    };
+    visible(&page.into_string()).into_owned()
+}
+
+pub(crate) fn table_markup(table: &TextTable, tables: &mut Tables) -> Markup {
+    let caption = tables.caption(&table.caption);
+    let is_words =
+        |column: usize| table.rows.iter().any(|row| row.get(column).is_some_and(|c| c.chars().count() > WORDS));
+    let class: Vec<&str> =
+        (0..table.head.len()).map(|column| if is_words(column) { "message" } else { "num" }).collect();
+    let class_of = |column: usize| class.get(column).copied().unwrap_or("num");
+    html! {
+        div class="table wide" {
+            table class=[class.contains(&"message").then_some("named")] {
+                (caption)
+                thead {
+                    tr {
+                        @for (i, head) in table.head.iter().enumerate() {
+                            th scope="col" class=[(i > 0).then(|| class_of(i))] { (head) }
+                        }
+                    }
+                }
+                tbody {
+                    @for row in &table.rows {
+                        tr {
+                            @for (i, cell) in row.iter().enumerate() {
+                                @if i == 0 { th scope="row" { (cell) } } @else { td class=(class_of(i)) { (cell) } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+pub(crate) fn count(n: &mut usize) -> usize {
+    *n += 1;
+    *n
+}
