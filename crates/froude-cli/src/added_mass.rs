@@ -33,11 +33,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Failure> {
         Some(text) => say!("{}", print::wrapped(&text)),
         None => {}
     }
-    if json {
-        return print::json(&outcome.file);
-    }
-    print::outcome(&outcome, false);
-    Ok(())
+    print::answer(&outcome.outcome(), json)
 }
 
 /// What an option was called before says what it is called now.

@@ -3,19 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use froude::carriage::drive::{DriveJob, drive, prepare};
+use froude::carriage::scale::scale;
 use froude::carriage::tune::{find_resonance, tune};
 use froude::fit::budget::Uncertain;
-use froude::methods::carriage::drag::calibration::encoder_scale;
-use froude::methods::carriage::runs;
 use froude::pipeline::{Input, Job, Purpose};
+use froude::records::block::Block;
 use froude::records::carriage::plan::Step;
-use froude::records::run::Role;
 use froude::records::units::{Dimension, parse_quantity};
 
 use crate::args::{CarriageJob, Experiment};
 use crate::failure::Failure;
 use crate::mistaken::{self, Takes};
-use crate::out::say;
 use crate::print;
 use crate::stage::Stage;
 
@@ -57,24 +55,25 @@ pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Failure> {
         }
         CarriageJob::Calibrate { runs, campaign, out, measured, measured_standard, counted } => {
             let explain = |error| mistaken::CALIBRATE.explain(error, &runs);
-            if let Some(measured) = measured {
-                scale(&runs, &measured, &measured_standard, &counted).map_err(explain)?;
-            }
+            let scale = measured.map(|measured| encoder_scale(&runs, &measured, &measured_standard, &counted));
+            let scale = scale.transpose().map_err(explain)?;
             let input = Input::Runs { paths: runs.clone(), campaign };
             let job = Job { out, purpose: Some(Purpose::Calibration), ..Job::of(input) };
-            crate::identify(job, is_json, false).map_err(explain)
+            let mut outcome = crate::identified(job).map_err(explain)?.outcome();
+            outcome.blocks.splice(0..0, scale);
+            print::answer(&outcome, is_json)
         }
         CarriageJob::Tune(e) => {
             let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::TUNE)?;
             let outcome = tune(&job, &switch, &mut person, &mut bar);
             bar.end();
-            crate::print_found(&outcome?, is_json, false)
+            print::answer(&outcome?.outcome(), is_json)
         }
         CarriageJob::Resonance(e) => {
             let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::RESONANCE)?;
             let outcome = find_resonance(&job, &switch, &mut person, &mut bar);
             bar.end();
-            crate::print_found(&outcome?, is_json, false)
+            print::answer(&outcome?.outcome(), is_json)
         }
     }
 }
@@ -108,31 +107,19 @@ fn servo(input: &[PathBuf], out: Option<PathBuf>) -> Result<Job, Failure> {
     })
 }
 
-/// Sprocket radius that makes the counted distances the measured one.
-fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) -> Result<(), Failure> {
-    let length = |option: &'static str, text: &str| {
-        parse_quantity(text).and_then(|q| q.expect(Dimension::LENGTH)).map_err(|source| Failure::Length {
-            option,
-            text: text.to_owned(),
-            source,
-        })
-    };
+/// A length as somebody typed it, m.
+fn length(option: &'static str, text: &str) -> Result<f64, Failure> {
+    parse_quantity(text).and_then(|q| q.expect(Dimension::LENGTH)).map_err(|source| Failure::Length {
+        option,
+        text: text.to_owned(),
+        source,
+    })
+}
+
+fn encoder_scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) -> Result<Block, Failure> {
     let known = Uncertain::new(length("--measured", measured)?, length("--measured-standard", standard)?);
     let counted_m = counted.iter().map(|text| length("--counted", text)).collect::<Result<Vec<_>, _>>()?;
-    let factor = encoder_scale(&counted_m, known)?;
-    let kinds = [Role::Calibration, Role::Jog];
-    let read = runs::read(paths, &kinds, None)?;
-    let Some(axis) = read.logs.iter().find_map(|log| log.meta.moving_axis()) else {
-        return Err(Failure::NoRig);
-    };
-    let radius_mm = 1e3 * axis.sprocket_radius_m.value;
-    say!(
-        "encoder scale {}: sprocket_radius = {{ value = \"{:.4} mm\", standard = \"{:.4} mm\" }} (declared {radius_mm:.4} mm)",
-        froude::records::number::short_form(factor.value, factor.standard),
-        radius_mm * factor.value,
-        radius_mm * factor.standard
-    );
-    Ok(())
+    scale(paths, known, &counted_m)?.ok_or(Failure::NoRig)
 }
 
 fn experiment(e: &Experiment, takes: &Takes) -> Result<(DriveJob, Stage), Failure> {

@@ -8,14 +8,12 @@
 mod added_mass;
 mod args;
 mod carriage;
-mod cells;
 mod cfd;
 mod failure;
 mod last_word;
 mod mistaken;
 mod out;
 mod print;
-mod side_by_side;
 mod signals;
 mod stage;
 mod swim;
@@ -26,7 +24,7 @@ use args::{Cli, RobotJob, Verb};
 use clap::Parser;
 use failure::Failure;
 use froude::identify::prediction;
-use froude::pipeline::{self, Input, Job};
+use froude::pipeline::{self, Identified, Input, Job};
 use froude::report::write::write_files;
 use froude::swim::verb::look;
 use froude::{demo, inspect, plan, twin};
@@ -55,14 +53,9 @@ fn run(cli: Cli) -> Result<(), Failure> {
     match cli.verb {
         Verb::Demo { dir } => {
             let bar = spinner();
-            let outcomes = demo::run(&dir, Some(today()), &|step| bar.set_message(step.to_owned()))?;
+            let outcome = demo::run(&dir, Some(today()), &|step| bar.set_message(step.to_owned()))?;
             bar.finish_and_clear();
-            if cli.json {
-                return print::json(&outcomes.iter().map(|o| &o.file).collect::<Vec<_>>());
-            }
-            for outcome in &outcomes {
-                print::outcome(outcome, false);
-            }
+            print::answer(&outcome, cli.json)?;
         }
         Verb::Identify { input, out, sidecar, models } => {
             let job = Job { out, sidecar, models, ..Job::new(&input) };
@@ -83,10 +76,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Verb::Inspect { file, sidecar } => {
             let inspection = inspect::inspect(&file, sidecar.as_deref())
                 .map_err(|error| mistaken::INSPECT.explain(error, &[file]))?;
-            if cli.json {
-                return print::json(&inspection);
-            }
-            print::inspection(&inspection);
+            print::answer(&inspection.outcome(), cli.json)?;
         }
         Verb::Plan { campaign } => {
             let found = plan::plan(&campaign).map_err(|error| mistaken::PLAN.explain(error, &[campaign]))?;
@@ -116,20 +106,11 @@ fn run(cli: Cli) -> Result<(), Failure> {
 
 /// `identify`, `compare` and `carriage drag`: one job, one way through it, one outcome, printed or as its record.
 fn identify(job: Job, is_json: bool, all: bool) -> Result<(), Failure> {
-    print_found(&identified(job)?, is_json, all)
-}
-
-/// What a job found: the record for another program, or all of it for a person.
-fn print_found(outcome: &pipeline::Outcome, is_json: bool, all: bool) -> Result<(), Failure> {
-    if is_json {
-        return print::json(&outcome.file);
-    }
-    print::outcome(outcome, all);
-    Ok(())
+    print::answer_with(&identified(job)?.outcome(), is_json, all)
 }
 
 /// The same, not yet printed.
-fn identified(job: Job) -> Result<pipeline::Outcome, Failure> {
+fn identified(job: Job) -> Result<Identified, Failure> {
     let bar = spinner();
     let outcome = pipeline::identify(&Job { date: Some(today()), ..job }, &|step| bar.set_message(step.to_owned()))?;
     bar.finish_and_clear();

@@ -1,23 +1,14 @@
 //! Results as a person reads them, and as JSON.
 
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table};
-use froude::identify::answer::Answer;
-use froude::identify::source::SourceResult;
-use froude::inspect::{ChannelFacts, ColumnFacts, Inspection, SourceFacts};
-use froude::pipeline::{Outcome, Summary};
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use froude::records::block::{Block, laid_out};
-use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
-use froude::records::number;
-use froude::records::outcome::{Exit, Outcome as Answered};
+use froude::records::outcome::{Exit, Outcome};
 use froude::records::page::TextTable;
-use froude::records::text::{counted, visible, visible_json};
-use froude::results::Written;
+use froude::records::text::{visible, visible_json};
 
-use crate::cells::{WIDEST, cell, right, sentence, table};
 use crate::failure::Failure;
 use crate::out::say;
-use crate::side_by_side::{comparison, verdicts};
 
 /// One JSON document on standard output.
 pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Failure> {
@@ -27,38 +18,17 @@ pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The coefficient tables or the summaries, records side by side, the findings, and where the report lies.
-pub fn outcome(outcome: &Outcome, all: bool) {
-    for of_none in outcome.summaries.iter().filter(|summary| summary.sources.is_empty()) {
-        blocks_after(&of_none.section.blocks, &mut true);
-    }
-    for (i, result) in outcome.sources.iter().enumerate() {
-        match outcome.summaries.iter().find(|summary| summary.sources.contains(&i)) {
-            Some(Summary { sources, section }) if sources.start == i => blocks_after(&section.blocks, &mut true),
-            Some(_) => {}
-            None => source(result),
-        }
-    }
-    match &outcome.file.comparison {
-        Some(c) if outcome.sources.is_empty() => comparison(c, all),
-        Some(c) if !c.coefficients.is_empty() => {
-            say!("\nThe sources are compared in the report.");
-            verdicts(c);
-        }
-        _ => {}
-    }
-    findings(&outcome.file.findings);
-    if let Some(written) = &outcome.written {
-        self::written(written);
-    }
+/// What a verb returns, for a person or as one JSON document.
+pub fn answer(answer: &Outcome, is_json: bool) -> Result<(), Failure> {
+    answer_with(answer, is_json, false)
 }
 
-/// What a verb returns, for a person or as one JSON document.
-pub fn answer(answer: &Answered, is_json: bool) -> Result<(), Failure> {
+/// The same; `has_details` where a person asks for details too.
+pub fn answer_with(answer: &Outcome, is_json: bool, has_details: bool) -> Result<(), Failure> {
     if is_json {
         json(&answer.json())?;
     } else {
-        blocks(&answer.blocks);
+        blocks_after(&answer.blocks, has_details, &mut false);
         if let Some(found) = &answer.findings {
             findings(found);
         }
@@ -66,7 +36,7 @@ pub fn answer(answer: &Answered, is_json: bool) -> Result<(), Failure> {
             say!("");
         }
         for file in &answer.files {
-            say!("{:<10} {}", file.key.trim_end_matches("[]"), file.path.display());
+            say!("{:<9} {}", file.key.trim_end_matches("[]"), file.path.display());
         }
     }
     match &answer.exit {
@@ -79,11 +49,11 @@ pub fn answer(answer: &Answered, is_json: bool) -> Result<(), Failure> {
 
 /// The blocks of an answer, with an empty line between them.
 pub fn blocks(all: &[Block]) {
-    blocks_after(all, &mut false);
+    blocks_after(all, false, &mut false);
 }
 
 /// `is_begun` says whether something stands above.
-fn blocks_after(all: &[Block], is_begun: &mut bool) {
+fn blocks_after(all: &[Block], has_details: bool, is_begun: &mut bool) {
     let gap = |is_begun: &mut bool| {
         if std::mem::replace(is_begun, true) {
             say!("");
@@ -98,94 +68,25 @@ fn blocks_after(all: &[Block], is_begun: &mut bool) {
                 }
             }
             Block::Table(table) => {
-                let Some(table) = laid_out(table).filter(|table| !table.rows.is_empty()) else { continue };
+                let Some(text) = laid_out(table).filter(|table| !table.rows.is_empty()) else { continue };
                 gap(is_begun);
-                if !table.caption.is_empty() {
-                    say!("{}", wrapped(&table.caption));
+                if !text.caption.is_empty() {
+                    say!("{}", wrapped(&text.caption));
                 }
-                text_table(&table);
+                for panel in panels(printable(text), 1 + table.more_names, usize::from(WIDEST)) {
+                    say!("{}", fitted(&panel, usize::from(WIDEST)));
+                }
             }
-            Block::Section(section) if !section.is_detail => blocks_after(&section.blocks, is_begun),
-            Block::Text { .. } | Block::Section(_) | Block::Chart(_) | Block::Map(_) | Block::Field(_) => {}
+            Block::Section(section) if !section.is_detail || has_details => {
+                blocks_after(&section.blocks, has_details, is_begun);
+            }
+            Block::Text { .. }
+            | Block::Section(_)
+            | Block::Estimates(_)
+            | Block::Chart(_)
+            | Block::Map(_)
+            | Block::Field(_) => {}
         }
-    }
-}
-
-/// Where record and page lie.
-pub fn written(Written { estimate, report, exports, .. }: &Written) {
-    say!("\nestimates {}", estimate.display());
-    say!("report    {}", report.display());
-    for export in exports {
-        say!("export    {}", export.display());
-    }
-}
-
-fn source(answer: &Answer) {
-    match answer.observations() {
-        0 => say!("\n{}", answer.name()),
-        n => say!("\n{} ({})", answer.name(), observations(n)),
-    }
-    if let Some(source) = answer.fitted() {
-        choice(source);
-    }
-    // Of several models the recommended one; of a method's only one, that.
-    let all = answer.estimates();
-    let (shown, others): (Vec<&Estimate>, Vec<&Estimate>) = all.iter().partition(|e| e.recommended || all.len() == 1);
-    for estimate in shown {
-        say!("{}", coefficients(estimate));
-        for combination in &estimate.undetermined {
-            say!("  determined only together: {combination}");
-        }
-    }
-    let others: Vec<&str> = others.into_iter().map(|e| e.law.name.as_str()).collect();
-    if !others.is_empty() {
-        say!("  also fitted: {} (see the report)", others.join(", "));
-    }
-    for n in answer.fitted().iter().flat_map(|source| &source.not_fitted) {
-        say!("  not fitted: {}: {}", n.model, n.why);
-    }
-}
-
-/// Which of the fitted models, and why.
-fn choice(source: &SourceResult) {
-    if let Some(r) = &source.recommendation {
-        let is_recommended = source.estimates[r.index].recommended;
-        say!("  {}: {}", if is_recommended { "recommended" } else { "method" }, r.reason);
-        if let Some(why) = source.scores[r.index].note.as_ref().filter(|_| source.data.configurations().len() > 1) {
-            say!("  cross-validation: {why}");
-        }
-    }
-}
-
-fn observations(n: usize) -> String {
-    counted(n, "observation", "observations")
-}
-
-fn coefficients(estimate: &Estimate) -> Table {
-    let has_others = estimate.not_contradicted.len() > 1;
-    let intervals =
-        if has_others { &["95 % interval if law is true", "range over laws"][..] } else { &["95 % interval"] };
-    let mut out = table(&[&["coefficient", "value", "unit"], intervals, &["type A", "type B", "status"]].concat());
-    let ends = |ends: Option<[f64; 2]>| right(ends.map_or("—".to_owned(), number::interval));
-    for (name, c) in &estimate.coefficients {
-        let mut row = vec![cell(name), right(number::coefficient(c)), cell(&c.unit), ends(c.interval_95)];
-        row.extend(has_others.then(|| ends(c.range_95)));
-        row.extend([c.type_a, c.type_b].map(|x| right(x.map_or("—".to_owned(), |x| number::significant(x, 2)))));
-        row.push(cell(status(c.status)));
-        out.add_row(row);
-    }
-    out
-}
-
-fn status(s: Status) -> &'static str {
-    match s {
-        Status::Free => "",
-        Status::AtBound => "at bound",
-        Status::Fixed => "fixed",
-        Status::Excluded => "excluded",
-        Status::Prior => "with prior",
-        Status::Undetermined => "not determined",
-        Status::BoundContradicted => "bound contradicted",
     }
 }
 
@@ -212,175 +113,44 @@ pub fn wrapped(text: &str) -> String {
     wrap(text, usize::from(WIDEST))
 }
 
-/// What is in a file.
-pub fn inspection(i: &Inspection) {
-    say!("{}", i.kind);
-    for (name, value) in &i.facts {
-        sentence(&format!("{name}: {value}"));
-    }
-    if !i.columns.is_empty() {
-        say!("{}", columns(&i.columns));
-    }
-    for source in &i.sources {
-        source_facts(source);
-    }
-    for estimate in &i.estimates {
-        estimate_facts(estimate);
-    }
-    findings(&i.findings);
+/// Control characters are escaped before a text is wrapped: a carriage return would count as a space.
+fn printable(text: TextTable) -> TextTable {
+    let all = |cells: Vec<String>| cells.iter().map(|cell| visible(cell).into_owned()).collect::<Vec<_>>();
+    TextTable { caption: String::new(), head: all(text.head), rows: text.rows.into_iter().map(all).collect() }
 }
 
-fn columns(columns: &[ColumnFacts]) -> Table {
-    let is_run = columns.iter().any(|c| c.channel.is_some());
-    let of_run: &[&str] = if is_run { &["quantity", "positive along", "clock"] } else { &[] };
-    let mut out = table(&[&["column", "unit", "from", "to", "distinct"], of_run].concat());
-    for c in columns {
-        let show = |x: Option<f64>| right(x.map_or(String::new(), |x| number::plain(x, 7)));
-        let unit = if c.unit.is_empty() { "text" } else { &c.unit };
-        let mut row = vec![cell(&c.name), cell(unit), show(c.low), show(c.high), right(c.distinct.to_string())];
-        if let Some(ChannelFacts { quantity, frame, sign, clock }) = &c.channel {
-            let along = if frame == "none" {
-                "–".to_owned()
-            } else {
-                format!("{}{frame}", if *sign < 0 { "−" } else { "+" })
-            };
-            row.extend([cell(quantity), cell(along), cell(clock)]);
-        }
-        out.add_row(row);
-    }
-    out
-}
-
-fn source_facts(s: &SourceFacts) {
-    say!("\nsource {} ({})", s.name, s.kind);
-    let there = match (s.rows, s.kept, s.exists) {
-        (Some(rows), Some(kept), _) if kept == rows => format!(", {}", observations(rows)),
-        (Some(rows), Some(kept), _) => {
-            format!(", {kept} of {} {} fitted", observations(rows), if kept == 1 { "is" } else { "are" })
-        }
-        (_, _, true) => String::new(),
-        (_, _, false) => {
-            let verb = match (s.input.as_str(), s.kind.as_str()) {
-                ("cases", _) => "froude cfd plan",
-                ("runs", "cfd") => "froude cfd swing",
-                _ => "froude simulate",
-            };
-            format!(", not there yet: {verb} makes it")
-        }
+/// A table that is too wide for its words, in several that each begin with the columns that name its rows.
+fn panels(text: TextTable, names: usize, widest: usize) -> Vec<TextTable> {
+    let least = |i: usize| {
+        let cells = std::iter::once(&text.head).chain(&text.rows).filter_map(|row| row.get(i));
+        2 + cells.flat_map(|cell| words(cell)).map(|word| word.chars().count()).max().unwrap_or(0)
     };
-    sentence(&format!("{}: {}{there}", s.input, s.path));
-    if let Some(runs) = s.planned_runs {
-        say!("  plan: {}", counted(runs, "run", "runs"));
-    }
-    let what = if s.input == "record" { "estimates" } else { "models" };
-    if !s.models.is_empty() {
-        sentence(&format!("{what}: {}", s.models.join(", ")));
-    }
-    if !s.columns.is_empty() {
-        say!("{}", columns(&s.columns));
-    }
-    if s.input == "table" && s.budget.is_empty() {
-        say!("  budget: none; without [[source.uncertainty]] the uncertainties include the scatter only");
-    }
-    if !s.budget.is_empty() {
-        let mut out = table(&["budget", "standard", "shared by", "dof", "name"]);
-        for b in &s.budget {
-            out.add_row(vec![
-                cell(&b.quantity),
-                right(b.standard.clone()),
-                cell(&b.shared),
-                right(number::dof(b.dof.unwrap_or(f64::INFINITY))),
-                cell(b.name.as_deref().unwrap_or("")),
-            ]);
+    let columns = text.head.len();
+    let named: usize = (0..names.min(columns)).map(least).sum();
+    let (mut out, mut left): (Vec<Vec<usize>>, usize) = (Vec::new(), 0);
+    for i in names.min(columns)..columns {
+        let own = least(i);
+        match out.last_mut().filter(|_| own <= left) {
+            Some(panel) => panel.push(i),
+            None => {
+                out.push(vec![i]);
+                left = widest.saturating_sub(named);
+            }
         }
-        say!("{out}");
+        left = left.saturating_sub(own);
     }
-}
-
-fn estimate_facts(e: &Estimate) {
-    say!("\n{}{}", e.id, if e.recommended { " (recommended)" } else { "" });
-    if let Some(reason) = &e.reason {
-        sentence(reason);
+    if out.len() < 2 {
+        return vec![text];
     }
-    if e.not_contradicted.len() > 1 {
-        sentence(&format!("laws of this source that the data do not contradict: {}", e.not_contradicted.join(", ")));
-    }
-    let mut about = vec![observations(e.n_observations)];
-    about.extend(
-        [e.kind.as_str(), &e.method.words, e.covariance_kind()]
-            .into_iter()
-            .filter(|t| !t.is_empty())
-            .map(str::to_owned),
-    );
-    sentence(&about.join("; "));
-    let head = ["coefficient", "value", "unit", "standard uncertainty", "95 % interval", "range", "status"];
-    let mut out = table(&head);
-    for (name, c) in &e.coefficients {
-        let or_none = |x: Option<f64>, digits: usize| right(x.map_or("—".to_owned(), |x| number::plain(x, digits)));
-        out.add_row(vec![
-            cell(name),
-            or_none(c.value, 5),
-            cell(&c.unit),
-            or_none(c.standard_uncertainty, 2),
-            right(c.interval_95.map_or("—".to_owned(), number::interval)),
-            right(c.range_95.map_or("—".to_owned(), number::interval)),
-            cell(if c.status == Status::Free { "free" } else { status(c.status) }),
-        ]);
-    }
-    say!("{out}");
-    for combination in &e.undetermined {
-        sentence(&format!("determined only together: {combination}"));
-    }
-    if !e.validity.is_empty() {
-        let mut out = table(&["valid for", "from", "to", "unit"]);
-        for (name, r) in &e.validity {
-            let (low, high) = (right(number::plain(r.low, 5)), right(number::plain(r.high, 5)));
-            out.add_row(vec![cell(name), low, high, cell(&r.unit)]);
-        }
-        say!("{out}");
-    }
-    for (name, value) in diagnostics(&e.diagnostics) {
-        sentence(&format!("{name}: {value}"));
-    }
-}
-
-/// The diagnostics that a record has, in words.
-fn diagnostics(d: &Diagnostics) -> Vec<(&'static str, String)> {
-    let by_load = |values: &mut dyn Iterator<Item = (&String, &f64)>| {
-        values.map(|(load, x)| format!("{load} {}", number::plain(*x, 3))).collect::<Vec<_>>().join(", ")
+    let part = |panel: Vec<usize>| {
+        let of =
+            |row: &Vec<String>| (0..names).chain(panel.iter().copied()).filter_map(|i| row.get(i).cloned()).collect();
+        TextTable { caption: String::new(), head: of(&text.head), rows: text.rows.iter().map(of).collect() }
     };
-    let one = |x: Option<f64>| x.map_or(String::new(), |x| number::plain(x, 4));
-    let correlation = d.largest_correlation.as_ref();
-    let mut out = vec![
-        ("relative residual", by_load(&mut d.relative_residual.iter())),
-        ("Durbin–Watson", by_load(&mut d.durbin_watson.iter())),
-        ("lack of fit, p", by_load(&mut d.lack_of_fit_p.iter())),
-        ("cross-validation, rms error", by_load(&mut d.cross_validation_rmse.iter())),
-        ("cross-validation", d.cross_validation_note.clone().unwrap_or_default()),
-        ("AICc", one(d.aicc)),
-        ("condition number", one(d.condition_number)),
-        (
-            "largest correlation",
-            correlation
-                .map_or(String::new(), |c| format!("{} of {} and {}", number::plain(c.value, 3), c.first, c.second)),
-        ),
-        ("largest leverage", one(d.largest_leverage)),
-        ("largest power fed to the body (at most 0 where dissipative), W", one(d.largest_power_w)),
-    ];
-    out.extend(d.notes.iter().map(|note| ("note", note.clone())));
-    out.retain(|(_, value)| !value.is_empty());
-    out
+    out.into_iter().map(part).collect()
 }
 
-/// A table whose cells are written already; numbers to the right. No word is broken: a table of long words is wider than [`WIDEST`].
-pub fn text_table(text: &TextTable) {
-    // Control characters are escaped before the text is wrapped: a carriage return would count as a space.
-    let all = |cells: &[String]| cells.iter().map(|cell| visible(cell).into_owned()).collect::<Vec<_>>();
-    let rows = text.rows.iter().map(|row| all(row)).collect();
-    let text = TextTable { caption: String::new(), head: all(&text.head), rows };
-    say!("{}", fitted(&text, usize::from(WIDEST)));
-}
-
+/// A table as wide as the line; numbers to the right. No word is broken: a table of long words is wider.
 fn fitted(text: &TextTable, widest: usize) -> Table {
     let widths = widths(text, widest);
     let wrapped = |row: &[String]| -> Vec<String> {
@@ -398,6 +168,18 @@ fn fitted(text: &TextTable, widest: usize) -> Table {
     out
 }
 
+/// A cell; of a text that no table can show, its beginning.
+fn cell(text: String) -> Cell {
+    match text.char_indices().nth(LONGEST_CELL) {
+        Some((end, _)) => Cell::new(format!("{}…", &text[..end])),
+        None => Cell::new(text),
+    }
+}
+
+/// Widest line of a table: what a printed page and most terminals hold.
+const WIDEST: u16 = 120;
+/// Longest text of a cell, in characters: the table is laid out letter by letter.
+const LONGEST_CELL: usize = 1000;
 /// A first column up to this is not wrapped.
 const LONGEST_NAME: usize = 24;
 

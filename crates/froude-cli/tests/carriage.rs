@@ -43,12 +43,12 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
     let position = columns.iter().find(|c| c["name"] == "y/position").unwrap();
     assert_eq!(position["unit"], "m");
     let of_channel = |c: &Value| ["quantity", "frame", "sign", "clock"].map(|key| c[key].clone());
-    assert_eq!(of_channel(position), ["position".into(), "y".into(), 1.into(), "board".into()] as [Value; 4]);
+    assert_eq!(of_channel(position), ["position".into(), "y".into(), 1.0.into(), "board".into()] as [Value; 4]);
     let force = columns.iter().find(|c| c["name"] == "force").unwrap();
-    assert_eq!(of_channel(force), ["force".into(), "y".into(), (-1).into(), "board".into()] as [Value; 4]);
+    assert_eq!(of_channel(force), ["force".into(), "y".into(), (-1.0).into(), "board".into()] as [Value; 4]);
     let fact = |name: &str| {
         let facts = inside["facts"].as_array().unwrap();
-        facts.iter().find(|f| f[0] == name).unwrap()[1].as_str().unwrap().to_owned()
+        facts.iter().find(|f| f["name"] == name).unwrap()["value"].as_str().unwrap().to_owned()
     };
     assert_eq!(fact("method"), "tow, role wet");
     assert_eq!(fact("mounted"), "body wet, wheel load matched by ballast, axis along the travel not declared");

@@ -108,7 +108,7 @@ fn a_folder_of_releases_is_inspected() {
     let inside = json(&["inspect", text(&runs), "--json"]);
     assert_eq!(inside["kind"], "logs");
     let facts = inside["facts"].as_array().unwrap();
-    let of = |name: &str| facts.iter().find(|f| f[0] == name).unwrap()[1].as_str().unwrap().to_owned();
+    let of = |name: &str| facts.iter().find(|f| f["name"] == name).unwrap()["value"].as_str().unwrap().to_owned();
     assert_eq!(of("release-2.csv"), "725 samples at 50.0 Hz, 14.480 s: y/position [m]");
     assert!(findings_of(&inside, "run-unreadable")[0].1.contains("torn.csv:2"), "{inside}");
     // The drag of a carriage is not read from them; what reads them is said.

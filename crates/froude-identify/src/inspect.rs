@@ -1,5 +1,7 @@
 //! What is in a table, a campaign or a record, and everything doubtful about it. Nothing is fitted.
 
+mod told;
+
 use std::path::Path;
 
 use froude_records::campaign::{BudgetEntry, Campaign, Input, Source, read_campaign};
@@ -18,7 +20,7 @@ use crate::source::{asked_models, check_budget, laws};
 use crate::{columns, lint, validity};
 
 /// A column of a table in short.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ColumnFacts {
     /// Name without unit.
     pub name: String,
@@ -31,12 +33,11 @@ pub struct ColumnFacts {
     /// Distinct values.
     pub distinct: usize,
     /// What it is as a channel of a run; none for a column of a table.
-    #[serde(flatten)]
     pub channel: Option<ChannelFacts>,
 }
 
 /// What the numbers of a run's channel are, beside their unit.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ChannelFacts {
     /// `position`, `force`, ….
     pub quantity: String,
@@ -62,7 +63,7 @@ impl ChannelFacts {
 }
 
 /// One entry of a sensor budget.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BudgetFacts {
     /// The uncertain column.
     pub quantity: String,
@@ -77,7 +78,7 @@ pub struct BudgetFacts {
 }
 
 /// One source of a campaign.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SourceFacts {
     /// Its name.
     pub name: String,
@@ -104,20 +105,17 @@ pub struct SourceFacts {
 }
 
 /// What is in a file.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Inspection {
     /// `table`, `campaign`, `estimate`, `run`, `runs` for a folder of them, or `logs` for one of other programs' logs.
     pub kind: String,
     /// Facts in words, `(name, value)`.
     pub facts: Vec<(String, String)>,
     /// Columns of a table or a run.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub columns: Vec<ColumnFacts>,
     /// Sources of a campaign.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sources: Vec<SourceFacts>,
     /// Estimates of a record, as they stand in it.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub estimates: Vec<Estimate>,
     /// Every finding.
     pub findings: Vec<Finding>,

@@ -25,6 +25,7 @@ mod settings;
 mod steps;
 #[cfg(test)]
 mod tests;
+pub mod told;
 pub mod validation;
 
 use froude_records::page::SourceSection;

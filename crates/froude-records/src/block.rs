@@ -18,6 +18,7 @@ pub use json::Tree;
 pub(crate) use json::tree;
 pub use laid_out::{laid_out, summary};
 
+use crate::estimate::Estimate;
 use crate::page::{Chart, Field, Map};
 use crate::units::Unit;
 
@@ -41,6 +42,8 @@ pub enum Block {
     Field(Field),
     /// Blocks under a heading.
     Section(Section),
+    /// Estimates as records have them: programs alone read them, at the key `estimates`.
+    Estimates(Vec<Estimate>),
 }
 
 /// Blocks under a heading.
@@ -72,6 +75,8 @@ pub struct ResultTable {
     pub n_rows: usize,
     /// A table of one row, which people read as quantity, value and unit; what is missing is left out for them.
     pub are_facts: bool,
+    /// How many of the first columns name a row, beside the first: those that are repeated where a table is too wide.
+    pub more_names: usize,
     /// Rows that people see; `None`: all of them.
     pub shown_rows: Option<Vec<usize>>,
 }
@@ -131,6 +136,10 @@ pub enum Digits {
     Duration,
     /// A size on a disk.
     Bytes,
+    /// A normalised difference E_n, which a page marks where it is beyond 1.
+    Normalised,
+    /// A name, which a page sets as a symbol.
+    Symbol,
 }
 
 impl Block {

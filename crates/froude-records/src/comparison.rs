@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::finding::Finding;
+use crate::number::{fixed, p_equation};
 
 /// Estimates side by side.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -52,6 +53,32 @@ pub struct Verdict {
     pub coefficient: Option<LargestCoefficient>,
     /// Chance of a larger χ² if both measure the same; null where there is no χ².
     pub p: Option<f64>,
+}
+
+impl Verdict {
+    /// In words, with the numbers that it rests on; without a full stop.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let load = self.load.as_ref().map(|l| {
+            let links = l.n_links.map_or_else(String::new, |n| format!(", {n} links"));
+            let at = format!("{} m/s, {}°{links}", fixed(l.speed_m_s, 3), fixed(l.angle_rad.to_degrees(), 1));
+            format!("largest E_n of the forces {} ({} at {at})", signed(l.e_n), l.component)
+        });
+        let coefficient = self
+            .coefficient
+            .as_ref()
+            .map(|c| format!("largest E_n of the coefficients {} ({})", signed(c.e_n), c.coefficient));
+        let joint = self.p.map(|p| format!("all coefficients together {}", p_equation(p)));
+        let numbers: Vec<String> = [load, coefficient, joint].into_iter().flatten().collect();
+        let verdict =
+            if self.agree { "agree within their uncertainties" } else { "differ by more than their uncertainties" };
+        format!("{} and {} {verdict}: {}", self.first, self.second, numbers.join("; "))
+    }
+}
+
+fn signed(e_n: f64) -> String {
+    let text = fixed(e_n, 2);
+    if e_n > 0.0 { format!("+{text}") } else { text }
 }
 
 /// The predicted force on which two estimates differ most.

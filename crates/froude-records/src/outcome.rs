@@ -3,10 +3,14 @@
 //! A verb builds it once. Terminal, page, JSON and the writer of files know no verb.
 
 use std::fs::File;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
 
 use crate::block::{Block, Tree, tree};
+use crate::estimate::EstimateFile;
 use crate::finding::Finding;
+use crate::page::Report;
 use crate::table::Table;
 
 /// What a verb returns.
@@ -14,6 +18,10 @@ use crate::table::Table;
 pub struct Outcome {
     /// In order.
     pub blocks: Vec<Block>,
+    /// Records that it made, which programs read instead of the blocks.
+    pub records: Vec<EstimateFile>,
+    /// The report on a record.
+    pub report: Option<Box<Report>>,
     /// What its checks found; `None` for a verb that checks nothing.
     pub findings: Option<Vec<Finding>>,
     /// Files, in the order in which a person is told of them.
@@ -61,13 +69,17 @@ pub struct OutputFile {
 /// What is in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Content {
-    /// The outcome as one self-contained HTML file.
+    /// The blocks as one self-contained HTML file.
     Page(Head),
-    /// The outcome as JSON.
+    /// The blocks as JSON.
     Result,
+    /// The record.
+    Record,
+    /// The report as one self-contained HTML file.
+    Report,
     /// A table, as the name of its file has it.
     Table(Table),
-    /// A folder with each figure of the outcome as SVG.
+    /// A folder with each figure of the report, else of the blocks, as SVG.
     Figures,
     /// Bytes of a format of its own.
     Bytes(Vec<u8>),
@@ -96,15 +108,43 @@ pub fn names_of_figures(blocks: &[Block]) -> Vec<String> {
         Block::Map(map) => vec![format!("{}.svg", map.name)],
         Block::Field(field) => vec![format!("{}.svg", field.name)],
         Block::Section(section) => names_of_figures(&section.blocks),
-        Block::Text { .. } | Block::Table(_) => Vec::new(),
+        Block::Text { .. } | Block::Table(_) | Block::Estimates(_) => Vec::new(),
     };
     blocks.iter().flat_map(of).collect()
 }
 
+/// An outcome as programs read it.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub enum Document<'a> {
+    /// The record that it made.
+    Record(&'a EstimateFile),
+    /// Several.
+    Records(&'a [EstimateFile]),
+    /// Its blocks.
+    Blocks(Tree<'a>),
+}
+
 impl Outcome {
-    /// As a JSON document.
+    /// As a JSON document: its records where it made any, else its blocks.
     #[must_use]
-    pub fn json(&self) -> Tree<'_> {
+    pub fn json(&self) -> Document<'_> {
+        match &self.records[..] {
+            [] => Document::Blocks(tree(self)),
+            [one] => Document::Record(one),
+            several => Document::Records(several),
+        }
+    }
+
+    /// Its blocks as a JSON document.
+    #[must_use]
+    pub fn result(&self) -> Tree<'_> {
         tree(self)
+    }
+
+    /// The first file of a kind.
+    #[must_use]
+    pub fn path(&self, key: &str) -> Option<&Path> {
+        self.files.iter().find(|file| file.key.trim_end_matches("[]") == key).map(|file| file.path.as_path())
     }
 }

@@ -3,7 +3,7 @@
 //! All files grow in a folder beside it and come into place by one rename, so that results of two runs are never mixed. Beside them lies
 //! the list of what was written: what is not on it, or was changed since, is a person's. Then nothing is written at all.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::error::RecordError;
 use crate::folder::UnfinishedFolder;
@@ -73,12 +73,12 @@ impl RecordError {
     }
 
     /// The same where it speaks of a folder that grew as `unfinished` and would have become `finished`.
-    fn in_finished(self, unfinished: &Path, finished: &Path) -> Self {
+    #[must_use]
+    pub fn in_finished(self, unfinished: &Path, finished: &Path) -> Self {
+        let seen = |path: PathBuf| path.strip_prefix(unfinished).map(|rest| finished.join(rest)).unwrap_or(path);
         match self {
-            Self::Write { path, reason } => {
-                let path = path.strip_prefix(unfinished).map_or_else(|_| path.clone(), |rest| finished.join(rest));
-                Self::Write { path, reason }
-            }
+            Self::Write { path, reason } => Self::Write { path: seen(path), reason },
+            Self::Output { path, reason } => Self::Output { path: seen(path), reason },
             other => other,
         }
     }

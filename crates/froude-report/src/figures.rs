@@ -91,7 +91,7 @@ fn drawings_of(blocks: &[Block]) -> Vec<Drawing> {
                 (&field.name, &field.title, crate::field::caption(field), crate::field::canvas(field))
             }
             Block::Section(section) => return drawings_of(&section.blocks),
-            Block::Text { .. } | Block::Table(_) => return Vec::new(),
+            Block::Text { .. } | Block::Table(_) | Block::Estimates(_) => return Vec::new(),
         };
         vec![Drawing { slug: name.clone(), title: title.clone(), caption, canvas }]
     };

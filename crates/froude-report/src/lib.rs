@@ -38,11 +38,11 @@ pub mod outcome;
 mod page;
 mod plot;
 mod sheet;
+pub mod side_by_side;
 mod statistics;
 mod style;
 mod symbol;
 mod tables;
-pub mod verdict;
 pub mod write;
 
 pub use error::ReportError;

@@ -1,6 +1,6 @@
 //! The page of what a verb returns: its blocks in order, what its checks found behind them.
 
-use froude_records::block::{Block, Section, laid_out};
+use froude_records::block::{Block, Section};
 use froude_records::outcome::{Head, Outcome};
 use maud::{Markup, PreEscaped, html};
 
@@ -60,13 +60,11 @@ impl Numbers {
         let each = blocks.iter().map(|block| {
             Ok(match block {
                 Block::Text { texts, .. } => html! { @for text in texts { p { (text) } } },
-                Block::Table(table) => match laid_out(table) {
-                    Some(table) => table_markup(&table, &mut self.tables),
-                    None => html! {},
-                },
+                Block::Table(table) => table_markup(table, &mut self.tables),
                 Block::Chart(chart) => self.figure(&chart::svg(chart)?, &chart.caption),
                 Block::Map(map) => self.figure(&map::svg(map)?, &map.caption),
                 Block::Field(field) => self.figure(&field::svg(field)?, &field::caption(field)),
+                Block::Estimates(_) => Markup::default(),
                 Block::Section(section) => {
                     let inner = self.markup(&section.blocks.iter().collect::<Vec<_>>())?;
                     html! { h3 { (section.title) } (inner) }

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use froude_records::block::{Block, laid_out};
+use froude_records::block::Block;
 use froude_records::estimate::{Estimate, Measured};
 use froude_records::finding::Severity;
 use froude_records::number;
@@ -17,9 +17,9 @@ use crate::figures::drawing::{recommended, slug};
 use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs};
 use crate::findings::findings_by_severity;
 use crate::sheet::{sheet, table_markup};
+use crate::side_by_side;
 use crate::symbol::unit_text;
 use crate::tables::{self, Tables, counted, html_symbol};
-use crate::verdict::verdict_words;
 use froude_records::page::{InputFile, Report};
 
 /// What a reader of two sources needs to know first.
@@ -173,7 +173,7 @@ impl Page<'_> {
                     p { @if self.report.published.is_empty() { "No source was fitted." } @else { "Records side by side; nothing was fitted." } }
                 }
                 @if let Some(comparison) = &self.report.comparison {
-                    @for verdict in &comparison.verdicts { p { (verdict_words(verdict)) "." } }
+                    @for verdict in &comparison.verdicts { p { (verdict.words()) "." } }
                 }
                 @for (i, source) in self.report.sources.iter().enumerate().filter(|(_, s)| !self.is_beside_the_recommended(s)) {
                     (summary_of(i, source))
@@ -354,35 +354,18 @@ impl Page<'_> {
         }
         let heading = self.open("comparison", "Sources side by side", "");
         let mut parts: Vec<Markup> = Vec::new();
-        if let Some(comparison) = &report.comparison {
-            parts.push(html! { @if !comparison.coefficients.is_empty() || !comparison.loads.is_empty() { p { (SIDE_BY_SIDE) } } });
+        if report.comparison.is_some() {
+            parts.push(html! { p { (SIDE_BY_SIDE) } });
         }
         if has_forest {
             parts.push(self.part("forest", "Coefficients by source"));
             parts.push(self.figures_at(Place::Forest));
         }
         if let Some(comparison) = &report.comparison {
-            if !comparison.coefficients.is_empty() {
-                parts.push(self.part("differences", "Normalised differences"));
-                parts.push(self.tables.differences(comparison));
-            }
-            if !comparison.joint.is_empty() {
-                parts.push(self.part("joint", "Joint test"));
-                parts.push(self.tables.joint(comparison));
-            }
-            if !comparison.loads.is_empty() {
-                parts.push(self.part("predictions", "Predicted loads"));
-                parts.push(self.tables.predictions(comparison));
-                if !comparison.coverage.is_empty() {
-                    parts.push(
-                        html! { p class="notes" { "Coverage factor of U. " (comparison.coverage.join("; ")) "." } },
-                    );
-                }
-            }
-            if !comparison.findings.is_empty() {
-                let notes = comparison.findings.iter().map(|finding| &finding.message);
-                parts.push(html! { ul class="plain" { @for note in notes { li { (note) } } } });
-            }
+            parts.push(self.part("differences", "Normalised differences"));
+            parts.push(blocks(&side_by_side::blocks(comparison), &mut self.tables, &mut std::iter::empty()));
+            let notes = comparison.findings.iter().map(|finding| &finding.message);
+            parts.push(html! { @if !comparison.findings.is_empty() { ul class="plain" { @for note in notes { li { (note) } } } } });
         }
         html! { section { (heading) @for part in &parts { (part) } } }
     }
@@ -428,11 +411,16 @@ impl Page<'_> {
 fn blocks(blocks: &[Block], tables: &mut Tables, pictures: &mut dyn Iterator<Item = Markup>) -> Markup {
     let each = blocks.iter().map(|block| match block {
         Block::Text { texts, .. } => html! { @for text in texts { p { (text) } } },
-        Block::Table(table) => laid_out(table).map_or_else(Markup::default, |table| table_markup(&table, tables)),
+        Block::Table(table) => table_markup(table, tables),
+        Block::Section(section) if section.is_detail => {
+            let inner = self::blocks(&section.blocks, tables, pictures);
+            html! { details { summary { (section.title) } (inner) } }
+        }
         Block::Section(section) => {
             let inner = self::blocks(&section.blocks, tables, pictures);
             html! { h3 { (section.title) } (inner) }
         }
+        Block::Estimates(_) => Markup::default(),
         Block::Chart(_) | Block::Map(_) | Block::Field(_) => pictures.next().unwrap_or_default(),
     });
     let parts: Vec<Markup> = each.collect();

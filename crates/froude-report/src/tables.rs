@@ -2,7 +2,6 @@
 
 mod budget;
 mod coefficients;
-mod comparison;
 mod selection;
 
 use froude_records::estimate::{Coefficient, Estimate, Status};

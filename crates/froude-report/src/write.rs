@@ -5,6 +5,7 @@ use std::path::Path;
 
 use froude_records::RecordError;
 use froude_records::block::Block;
+use froude_records::json::write_estimates;
 use froude_records::manifest::take_own_place;
 use froude_records::outcome::{Content, Outcome, OutputFile};
 use froude_records::results::replace;
@@ -32,18 +33,32 @@ pub enum WriteError {
 ///
 /// A folder that holds what a person wrote, a full disk, a figure that cannot be drawn: what stood there is untouched.
 pub fn write_folder(outcome: &Outcome, out: &Path) -> Result<(), WriteError> {
-    replace(out, |folder| {
+    let fill = |folder: &Path| {
         for file in &outcome.files {
             let path = folder.join(file.path.strip_prefix(out).unwrap_or(&file.path));
-            if file.content == Content::Figures {
-                std::fs::create_dir(&path).map_err(|e| RecordError::output(&path, &e))?;
-                figures(&outcome.blocks, &path)?;
-            } else {
-                prepared(outcome, file, &path)?.take_place()?;
+            match (&file.content, outcome.records.first()) {
+                (Content::Figures, _) => all_figures(outcome, &path)?,
+                (Content::Record, Some(record)) => write_estimates(&path, record)?,
+                _ => prepared(outcome, file, &path)?.take_place()?,
             }
         }
         Ok(())
+    };
+    replace(out, |folder| {
+        fill(folder).map_err(|error| match error {
+            WriteError::Record(error) => error.in_finished(folder, out).into(),
+            other @ WriteError::Report(_) => other,
+        })
     })
+}
+
+fn all_figures(outcome: &Outcome, folder: &Path) -> Result<(), WriteError> {
+    std::fs::create_dir(folder).map_err(|e| RecordError::output(folder, &e))?;
+    let Some(report) = &outcome.report else { return figures(&outcome.blocks, folder) };
+    for figure in crate::figures(report)? {
+        write_atomically(&folder.join(figure.file_name), figure.svg.as_bytes())?;
+    }
+    Ok(())
 }
 
 /// Writes the files of an outcome one by one into a folder that holds others too. All of them are made before the first takes its place.
@@ -74,7 +89,7 @@ fn figures(blocks: &[Block], folder: &Path) -> Result<(), WriteError> {
                 figures(&section.blocks, folder)?;
                 continue;
             }
-            Block::Text { .. } | Block::Table(_) => continue,
+            Block::Text { .. } | Block::Table(_) | Block::Estimates(_) => continue,
         };
         write_atomically(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
     }
@@ -88,12 +103,16 @@ fn prepared(outcome: &Outcome, file: &OutputFile, path: &Path) -> Result<Prepare
             Prepared::new(path, |out| out.write_all(page.as_bytes()))?
         }
         Content::Result => Prepared::new(path, |out| {
-            serde_json::to_writer_pretty(&mut *out, &outcome.json())?;
+            serde_json::to_writer_pretty(&mut *out, &outcome.result())?;
             writeln!(out)
         })?,
+        Content::Report => {
+            let page = outcome.report.as_deref().map_or_else(|| Ok(String::new()), crate::html)?;
+            Prepared::new(path, |out| out.write_all(page.as_bytes()))?
+        }
         Content::Table(table) => prepare_table(table, path)?,
-        // A folder of its own.
-        Content::Figures => Prepared::new(path, |_| Ok(()))?,
+        // Of a folder of their own.
+        Content::Figures | Content::Record => Prepared::new(path, |_| Ok(()))?,
         Content::Bytes(bytes) => Prepared::new(path, |out| out.write_all(bytes))?,
     })
 }

@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use froude_identify::simulate::tables;
 use froude_records::RecordError;
 use froude_records::folder::UnfinishedFolder;
+use froude_records::outcome::{Outcome, OutputFile};
 use froude_records::write::write_atomically;
 use include_dir::{Dir, include_dir};
 
 use crate::Error;
-use crate::pipeline::{Job, Outcome, identify};
+use crate::pipeline::{Identified, Job, identify};
 
 static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../examples");
 
@@ -28,19 +29,28 @@ pub const CAMPAIGNS: [&str; 3] = ["unh-rm2/tare.toml", "unh-rm2/rotor.toml", "ma
 /// # Errors
 ///
 /// A folder that is not empty or cannot be written; anything that [`identify`] finds.
-pub fn run(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Result<Vec<Outcome>, Error> {
+pub fn run(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let occupied = std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
     if occupied {
         return Err(Error::NotEmpty { path: folder.to_owned() });
     }
     let unfinished = UnfinishedFolder::beside(folder)?;
     let outcomes = build(unfinished.path(), date, progress).map_err(|e| e.in_finished(unfinished.path(), folder))?;
-    let finished = outcomes.into_iter().map(|outcome| in_finished(outcome, unfinished.path(), folder)).collect();
+    let mut all = Outcome { findings: Some(Vec::new()), ..Outcome::default() };
+    for Outcome { blocks, findings, records, files, .. } in outcomes.into_iter().map(Identified::outcome) {
+        all.blocks.extend(blocks);
+        all.findings.iter_mut().for_each(|all| all.extend(findings.clone().unwrap_or_default()));
+        all.records.extend(records);
+        let finished = |path: &Path| {
+            path.strip_prefix(unfinished.path()).map_or_else(|_| path.to_owned(), |inside| folder.join(inside))
+        };
+        all.files.extend(files.into_iter().map(|file| OutputFile { path: finished(&file.path), ..file }));
+    }
     unfinished.take_place()?;
-    Ok(finished)
+    Ok(all)
 }
 
-fn build(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Result<Vec<Outcome>, Error> {
+fn build(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Result<Vec<Identified>, Error> {
     for name in FOLDERS {
         progress(&format!("writing {name}"));
         if let Some(dir) = EXAMPLES.get_dir(name) {
@@ -57,18 +67,6 @@ fn build(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Result
             identify(&job, &|step| progress(&format!("{name}: {step}")))
         })
         .collect()
-}
-
-/// The same results, where they will lie.
-fn in_finished(mut outcome: Outcome, unfinished: &Path, finished: &Path) -> Outcome {
-    let Some(written) = &mut outcome.written else { return outcome };
-    let paths = [&mut written.estimate, &mut written.report].into_iter();
-    for path in paths.chain(&mut written.figures).chain(&mut written.observations) {
-        if let Ok(inside) = path.strip_prefix(unfinished) {
-            *path = finished.join(inside);
-        }
-    }
-    outcome
 }
 
 fn write_files(dir: &Dir<'_>, folder: &Path) -> Result<(), Error> {

@@ -46,7 +46,7 @@ pub mod twin;
 /// What most programs need.
 pub mod prelude {
     pub use crate::pipeline::identify;
-    pub use crate::pipeline::{Input, Job, Outcome};
+    pub use crate::pipeline::{Identified, Input, Job};
     pub use crate::records::estimate::{Coefficient, Estimate, EstimateFile, Status};
     pub use crate::records::finding::{Finding, Severity};
 }

@@ -3,6 +3,7 @@
 mod job;
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_carriage::axis::held_against;
@@ -13,24 +14,29 @@ use froude_identify::dataset::Dataset;
 use froude_identify::method::{Export, Found, Method, observes};
 use froude_identify::page::against::against;
 use froude_identify::page::campaign::report;
+use froude_identify::page::told;
 use froude_identify::prediction::{of_rows, same_rows};
 use froude_identify::reduce::reduce;
 use froude_identify::unexplained::unexplained;
 use froude_identify::{IdentifyError, asked, observations, origins};
-use froude_records::block::Section;
+use froude_records::block::{Block, Section};
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
 use froude_records::json::read_estimates;
+use froude_records::outcome::{Content, Outcome, OutputFile};
+use froude_records::table::Table;
 use froude_records::text::in_a_file_name;
+use froude_report::side_by_side;
+use froude_report::write::write_folder;
 use indexmap::IndexMap;
 
 use crate::{Error, method, results};
 
 pub use crate::pipeline::job::default_out;
-pub use crate::pipeline::job::{Input, Job, Outcome, Purpose, Summary};
+pub use crate::pipeline::job::{Identified, Input, Job, Purpose};
 
 /// Reads, fits, chooses, compares, reports; `progress` receives each step.
 ///
@@ -39,7 +45,7 @@ pub use crate::pipeline::job::{Input, Job, Outcome, Purpose, Summary};
 /// # Errors
 ///
 /// See [`Error`].
-pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
+pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Identified, Error> {
     let mut campaign = campaign_of(job)?;
     let out = job.folder();
     if let Some(out) = &out {
@@ -116,23 +122,72 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let (_, fitted) = all.remove(0);
     let file = EstimateFile { versions: results::versions(), comparison, findings, ..fitted };
-    let mut outcome = Outcome { file, written: None, sources, summaries };
-    let Some(out) = out.or(beside) else { return Ok(outcome) };
+    let mut told = Outcome { blocks: told(&sources, &summaries, &file), ..Outcome::default() };
+    let Some(out) = out.or(beside) else { return Ok(Identified { file, sources, told }) };
     if is_part {
-        replaces_no_more(&out, &outcome.file, job.out.is_some())?;
+        replaces_no_more(&out, &file, job.out.is_some())?;
     }
     progress("writing the report");
     if campaign.name.is_empty() {
-        campaign.name = outcome.file.estimates.first().map_or_else(String::new, |e| e.source.clone());
+        campaign.name = file.estimates.first().map_or_else(String::new, |e| e.source.clone());
     }
     let records: Vec<Estimate> = all.iter().flat_map(|(_, record)| record.estimates.iter().cloned()).collect();
-    let blocks = outcome.summaries.iter().map(|summary| summary.section.clone()).chain(blocks).collect();
-    let report = report(&campaign, &outcome.file, &outcome.sources, records, blocks, job.date.clone())?;
-    let html = froude_report::html(&report)?;
-    let figures = froude_report::figures(&report)?;
-    let tables = observations::tables(&outcome.sources, &campaign)?;
-    outcome.written = Some(results::write(&out, &outcome.file, &tables, &figures, &exports, &html)?);
-    Ok(outcome)
+    let sections = summaries.into_iter().map(|summary| summary.section).chain(blocks).collect();
+    let report = report(&campaign, &file, &sources, records, sections, job.date.clone())?;
+    told.files = files_in(&out, observations::tables(&sources, &campaign)?, exports);
+    told.records = vec![file.clone()];
+    told.report = Some(Box::new(report));
+    write_folder(&told, &out)?;
+    Ok(Identified { file, sources, told })
+}
+
+/// The coefficients of each source, or what its method states of all its results together; then records side by side.
+fn told(sources: &[Answer], summaries: &[Summary], file: &EstimateFile) -> Vec<Block> {
+    let of_none = summaries.iter().filter(|summary| summary.sources.is_empty());
+    let mut out: Vec<Block> = of_none.map(|summary| summary.section.clone().into()).collect();
+    for (i, answer) in sources.iter().enumerate() {
+        match summaries.iter().find(|summary| summary.sources.contains(&i)) {
+            Some(Summary { sources, section }) if sources.start == i => out.push(section.clone().into()),
+            Some(_) => {}
+            None => out.extend(told::source(answer)),
+        }
+    }
+    if let Some(comparison) = &file.comparison {
+        let is_told = sources.is_empty();
+        if !is_told && !comparison.coefficients.is_empty() {
+            out.push(Block::words(["The sources are compared in the report.".to_owned()]));
+        }
+        out.push(side_by_side::verdicts(comparison));
+        if is_told {
+            out.extend(side_by_side::blocks(comparison));
+        }
+    }
+    out
+}
+
+/// The files of a folder of results.
+fn files_in(out: &Path, observations: Vec<Table>, exports: Vec<Export>) -> Vec<OutputFile> {
+    let file = |key, name: &str, content| OutputFile { key, path: out.join(name), content };
+    let observed = observations.into_iter().map(|table| {
+        let name = table.path.display().to_string();
+        file("observations[]", &name, Content::Table(table))
+    });
+    let exported =
+        exports.into_iter().map(|Export { name, content }| file("exports[]", &name, Content::Bytes(content)));
+    let first = [
+        file("estimates", "estimate.json", Content::Record),
+        file("result", "result.json", Content::Result),
+        file("report", "report.html", Content::Report),
+        file("figures", "figures", Content::Figures),
+    ];
+    first.into_iter().chain(observed).chain(exported).collect()
+}
+
+/// What a method states about all results that it has from one source.
+struct Summary {
+    /// Which of them.
+    sources: Range<usize>,
+    section: Section,
 }
 
 /// What the sources gave.

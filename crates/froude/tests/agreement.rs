@@ -2,8 +2,12 @@
 //! the key ends in, and rounds to what is shown.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use froude::identify::prediction;
+use froude::inspect::inspect;
+use froude::pipeline::{self, identify};
 use froude::records::block::{Block, Cells, ResultColumn, ResultTable, laid_out};
 use froude::records::outcome::Outcome;
 use froude::report::write::{write_files, write_folder};
@@ -69,18 +73,37 @@ fn column_agrees(place: &Value, table: &ResultTable, column: &ResultColumn) {
     }
 }
 
-/// What has no key is text; every other cell is in the document.
-fn agrees(blocks: &[Block], place: &Value) {
+/// All numbers of a document.
+fn numbers(document: &Value, into: &mut BTreeSet<u64>) {
+    match document {
+        Value::Number(x) => drop(x.as_f64().map(|x| into.insert(x.to_bits()))),
+        Value::Array(all) => all.iter().for_each(|value| numbers(value, into)),
+        Value::Object(all) => all.values().for_each(|value| numbers(value, into)),
+        Value::Null | Value::Bool(_) | Value::String(_) => {}
+    }
+}
+
+/// What has no key is text, or stands in the record; every other cell is in the document.
+fn agrees(blocks: &[Block], place: &Value, recorded: &BTreeSet<u64>) {
+    let mut items: BTreeMap<&str, usize> = BTreeMap::new();
     for block in blocks {
         match block {
             Block::Table(table) => {
-                let place = at(place, &table.key);
-                for column in &table.columns {
-                    if column.key.is_empty() {
-                        assert!(matches!(column.cells, Cells::Text(_) | Cells::Texts(_)), "{} has no key", column.head);
-                    } else {
-                        column_agrees(place, table, column);
+                for column in table.columns.iter().filter(|column| column.key.is_empty()) {
+                    let shown = match &column.cells {
+                        Cells::Number(all) => all.clone(),
+                        Cells::Interval(all) => all.iter().flatten().flatten().copied().collect(),
+                        Cells::Text(_) | Cells::Texts(_) => continue,
+                        _ => panic!("{} has no key", column.head),
+                    };
+                    for x in shown.into_iter().filter(|x| x.is_finite()) {
+                        assert!(recorded.contains(&x.to_bits()), "{x} of {} is in no record", column.head);
                     }
+                }
+                let mut keyed = table.columns.iter().filter(|column| !column.key.is_empty()).peekable();
+                if keyed.peek().is_some() && (table.n_rows > 0 || table.are_facts) {
+                    let place = at(place, &table.key);
+                    keyed.for_each(|column| column_agrees(place, table, column));
                 }
                 if let Some(text) = laid_out(table) {
                     assert!(text.rows.iter().all(|row| row.len() == text.head.len()));
@@ -90,18 +113,33 @@ fn agrees(blocks: &[Block], place: &Value) {
                 let said = at(place, key).as_array().unwrap();
                 assert!(texts.iter().all(|text| said.iter().any(|said| said == text)), "{key}");
             }
-            Block::Section(section) => agrees(&section.blocks, at(place, &section.key)),
+            Block::Section(section) => match section.key.strip_suffix("[]") {
+                Some(key) => {
+                    let item = items.entry(key).or_default();
+                    agrees(&section.blocks, &at(place, key)[*item], recorded);
+                    *item += 1;
+                }
+                None => agrees(&section.blocks, at(place, &section.key), recorded),
+            },
+            Block::Estimates(estimates) => {
+                assert_eq!(at(place, "estimates").as_array().unwrap().len(), estimates.len());
+            }
             Block::Text { .. } | Block::Chart(_) | Block::Map(_) | Block::Field(_) => {}
         }
     }
 }
 
 fn holds(outcome: &Outcome) {
-    let document: Value = serde_json::from_str(&serde_json::to_string(&outcome.json()).unwrap()).unwrap();
-    agrees(&outcome.blocks, &document);
+    let read = |text: String| -> Value { serde_json::from_str(&text).unwrap() };
+    let document = read(serde_json::to_string(&outcome.result()).unwrap());
+    let mut recorded = BTreeSet::new();
+    numbers(&read(serde_json::to_string(&outcome.json()).unwrap()), &mut recorded);
+    agrees(&outcome.blocks, &document, &recorded);
     for file in &outcome.files {
-        assert_eq!(document[file.key].as_str(), Some(file.path.to_str().unwrap()), "{}", file.key);
-        assert!(file.path.is_file(), "{}", file.path.display());
+        if let Some(path) = document[file.key].as_str() {
+            assert_eq!(Some(path), file.path.to_str(), "{}", file.key);
+        }
+        assert!(file.path.exists(), "{}", file.path.display());
     }
 }
 
@@ -135,6 +173,31 @@ fn robots_and_swimmers() {
         let found = swim(&job, &|_, _| {}).unwrap();
         write_folder(&found, &out).unwrap();
         holds(&found);
+    }
+}
+
+/// What is fitted, compared, predicted, planned and looked at.
+#[test]
+fn identify_and_what_reads_its_records() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let rows =
+        "speed [m/s],f_x [N]\n0.1,-0.05\n0.2,-0.19\n0.3,-0.46\n0.4,-0.79\n0.5,-1.26\n0.6,-1.78\n0.7,-2.47\n0.8,-3.19\n";
+    std::fs::write(path("monday.csv"), rows).unwrap();
+    std::fs::write(path("tuesday.csv"), rows.replace("-1.26", "-1.24").replace("-0.46", "-0.44")).unwrap();
+    for day in ["monday", "tuesday"] {
+        let found = identify(&pipeline::Job::new(path(&format!("{day}.csv"))), &|_| {}).unwrap();
+        assert_eq!(found.path("result"), Some(&*path(&format!("{day}-results/result.json"))));
+        holds(&found.outcome());
+    }
+    let [monday, tuesday] = ["monday", "tuesday"].map(|day| path(&format!("{day}-results/estimate.json")));
+    let records = pipeline::Input::Records(vec![monday.clone(), tuesday]);
+    holds(&identify(&pipeline::Job::of(records), &|_| {}).unwrap().outcome());
+    let (record, table) = (monday.clone(), path("tuesday.csv"));
+    let job = prediction::Job { record, table, sidecar: None, laws: Vec::new(), out: None };
+    holds(&prediction::predict(&job).unwrap());
+    for file in [monday, path("tuesday.csv")] {
+        holds(&inspect(&file, None).unwrap().outcome());
     }
 }
 

@@ -33,10 +33,11 @@ fn every_row_has_its_numbers_of_similarity_what_was_fitted_and_what_is_left() {
     )
     .unwrap();
     let done = identify(&Job::new(folder.path().join("c.toml")), &|_| {}).unwrap();
-    let written = done.written.unwrap().observations;
+    let written: Vec<_> =
+        done.told.files.iter().filter(|file| file.key == "observations[]").map(|file| &file.path).collect();
     let names: Vec<_> = written.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
     assert_eq!(names, ["observations-day-1.csv", "observations-day-1-2.csv"]);
-    let table = read_table(&written[0], None).unwrap();
+    let table = read_table(written[0], None).unwrap();
     let d = done.file.estimates[0].coefficients["D_x_II"].value.unwrap();
     for i in 0..loads.len() {
         let (u, t) = (0.1 * (i + 1) as f64, 20.0 + i as f64);

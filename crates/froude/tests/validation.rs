@@ -1,7 +1,7 @@
 //! A computed source held against a measured one, by ASME V&V 20, through the pipeline.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-use froude::pipeline::{Job, Outcome, identify};
+use froude::pipeline::{Identified, Job, identify};
 use froude::records::comparison::Validation;
 
 const SPEEDS: [f64; 6] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
@@ -11,7 +11,7 @@ const NOISE: [f64; 6] = [0.1, -0.1, 0.05, 0.0, -0.05, 0.02];
 /// Computed over measured.
 const RATIO: f64 = 0.8;
 
-fn validated(folder: &std::path::Path, budget: &str) -> Outcome {
+fn validated(folder: &std::path::Path, budget: &str) -> Identified {
     let table = |of: &dyn Fn(usize, f64) -> f64| {
         let rows = SPEEDS.iter().enumerate().map(|(k, u)| format!("{u},{}\n", of(k, -u * u)));
         format!("speed [m/s],f_x [N]\n{}", rows.collect::<String>())
@@ -28,7 +28,7 @@ fn validated(folder: &std::path::Path, budget: &str) -> Outcome {
     identify(&Job::new(folder.join("c.toml")), &|_| {}).unwrap()
 }
 
-fn number<'a>(found: &'a Outcome, quantity: &str) -> &'a Validation {
+fn number<'a>(found: &'a Identified, quantity: &str) -> &'a Validation {
     let all = &found.file.comparison.as_ref().unwrap().validation;
     all.iter().find(|v| v.quantity == quantity).unwrap_or_else(|| panic!("no {quantity} in {all:?}"))
 }
@@ -79,10 +79,9 @@ fn the_comparison_error_and_its_uncertainty_are_those_of_the_standard() {
     close(f.declared_model_form, 0.2 * s * mean);
 
     // The record, the page and the table of flows have it.
-    let written = found.written.as_ref().unwrap();
-    let html = std::fs::read_to_string(&written.report).unwrap();
+    let html = std::fs::read_to_string(found.path("report").unwrap()).unwrap();
     assert!(html.contains("Validation of computed") && html.contains("V&amp;V 20"));
-    let flows = written.exports.iter().find(|p| p.ends_with("validation-computed.csv")).unwrap();
+    let flows = found.path("exports").filter(|path| path.ends_with("validation-computed.csv")).unwrap();
     let table = froude::records::table::read_table(flows, None).unwrap();
     let headers: Vec<String> = table.columns.iter().map(froude::records::table::Column::header).collect();
     assert_eq!(table.n_rows, 6);

@@ -79,7 +79,14 @@ impl<'r, R> TableBuilder<'r, R> {
     #[must_use]
     pub fn build(&self, columns: Vec<ResultColumn>) -> ResultTable {
         let (key, caption) = (self.key.clone(), self.caption.clone());
-        ResultTable { key, caption, columns, n_rows: self.rows.len(), are_facts: self.are_facts, shown_rows: None }
+        ResultTable {
+            key,
+            caption,
+            columns,
+            n_rows: self.rows.len(),
+            are_facts: self.are_facts,
+            ..ResultTable::default()
+        }
     }
 }
 
@@ -129,6 +136,18 @@ impl ResultColumn {
     #[must_use]
     pub fn bytes(self) -> Self {
         Self { digits: Digits::Bytes, ..self }
+    }
+
+    /// Its numbers are normalised differences.
+    #[must_use]
+    pub fn normalised(self) -> Self {
+        Self { digits: Digits::Normalised, ..self }
+    }
+
+    /// Its texts are names of coefficients, loads or channels.
+    #[must_use]
+    pub fn symbol(self) -> Self {
+        Self { digits: Digits::Symbol, ..self }
     }
 
     /// Its numbers are probabilities.

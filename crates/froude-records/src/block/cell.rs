@@ -54,6 +54,8 @@ impl ResultColumn {
             Digits::PValue => p_value(x),
             Digits::Duration => duration(x),
             Digits::Bytes => bytes(x),
+            Digits::Normalised => fixed(x, 2),
+            Digits::Symbol => plain(x, 5),
         })
     }
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
 use super::{Block, Cells, ResultTable};
+use crate::estimate::Estimate;
 use crate::finding::Finding;
 use crate::outcome::{Content, Outcome, names_of_figures};
 
@@ -31,6 +32,7 @@ enum Value<'a> {
     /// Files of a folder.
     Figures(&'a Path, Vec<String>),
     Findings(&'a [Finding]),
+    Estimates(&'a [Estimate]),
 }
 
 /// The document of an outcome.
@@ -57,6 +59,7 @@ impl<'a> Tree<'a> {
                 Block::Table(table) if table.are_facts => self.at(&table.key).put_row(table, 0),
                 Block::Table(table) => self.put_table(table),
                 Block::Section(section) => self.at(&section.key).put_all(&section.blocks),
+                Block::Estimates(estimates) => self.put("estimates", Value::Estimates(estimates)),
                 Block::Chart(_) | Block::Map(_) | Block::Field(_) => {}
             }
         }
@@ -141,6 +144,7 @@ impl Serialize for Tree<'_> {
                 to.collect_seq(names.iter().map(|name| folder.join(name).display().to_string()))
             }
             Some(Value::Findings(findings)) => findings.serialize(to),
+            Some(Value::Estimates(estimates)) => estimates.serialize(to),
             None if !self.items.is_empty() => self.items.serialize(to),
             None => {
                 let mut map = to.serialize_map(Some(self.fields.len()))?;

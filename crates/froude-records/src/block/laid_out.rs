@@ -7,7 +7,7 @@ use crate::page::{DocumentSection, TextTable};
 /// A table as people read it; `None` where programs alone read it.
 #[must_use]
 pub fn laid_out(table: &ResultTable) -> Option<TextTable> {
-    let shown: Vec<&ResultColumn> = table.columns.iter().filter(|column| !column.head.is_empty()).collect();
+    let shown: Vec<&ResultColumn> = table.shown().collect();
     if shown.is_empty() {
         return None;
     }
@@ -32,6 +32,13 @@ pub fn laid_out(table: &ResultTable) -> Option<TextTable> {
         None => (0..table.n_rows).map(row).collect(),
     };
     Some(TextTable { caption: table.caption.clone(), head: shown.iter().map(head).collect(), rows })
+}
+
+impl ResultTable {
+    /// The columns that people read.
+    pub fn shown(&self) -> impl Iterator<Item = &ResultColumn> {
+        self.columns.iter().filter(|column| !column.head.is_empty())
+    }
 }
 
 /// A table whose cells are written already, for people alone.

@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use froude::cfd::verb::{Engine, Job as Run, Running, plan, run, status};
 use froude::identify::law::ForceLaw;
-use froude::pipeline::{Job, Outcome, identify};
+use froude::pipeline::{Identified, Job, identify};
 use froude::records::comparison::Validation;
 use froude::records::estimate::Estimate;
 use froude_cfd::collect::{Collected, collect};
@@ -398,7 +398,7 @@ fn minutes(seconds: &Value) -> f64 {
 }
 
 /// Coefficients of the six laws beside Table 5 and the tanks.
-fn coefficients(claims: &mut Claims, found: &Outcome) {
+fn coefficients(claims: &mut Claims, found: &Identified) {
     let Some(comparison) = &found.file.comparison else { return };
     for estimate in found.file.estimates.iter().filter(|e| e.source.starts_with("CFD")) {
         let mut own = String::new();
@@ -589,7 +589,7 @@ fn adaptive(claims: &mut Claims, cases: &Path) -> Result<(), Failed> {
 }
 
 /// The largest computed load, and the largest difference of what two estimates of one law give in the computed flows.
-fn apart(found: &Outcome, one: &Estimate, other: &Estimate, load: &str) -> Option<(f64, f64)> {
+fn apart(found: &Identified, one: &Estimate, other: &Estimate, load: &str) -> Option<(f64, f64)> {
     let data = &found.sources.iter().find_map(|s| s.fitted())?.data;
     let law = ForceLaw::of_estimate(one, data).ok()?;
     let response = law.responses.iter().position(|name| name == load)?;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use froude::identify::dataset::Dataset;
 use froude::identify::law::ForceLaw;
-use froude::pipeline::Outcome;
+use froude::pipeline::Identified;
 use froude::records::comparison::Comparison;
 use froude::records::estimate::Estimate;
 use froude::records::page::{Chart, ChartPanel, Mark, Scale, Series};
@@ -24,14 +24,14 @@ const CONFIGURATION: &str = "H2LT";
 const SPEED_M_S: f64 = 0.4;
 
 /// Writes the page and its figure.
-pub fn write(found: &Outcome, pairs: &[Pair], pages: &Path) -> Result<(), Box<dyn Error>> {
+pub fn write(found: &Identified, pairs: &[Pair], pages: &Path) -> Result<(), Box<dyn Error>> {
     let figure = figure(found)?;
     write_atomically(&pages.join("cfd-laws.svg"), chart::svg(&figure)?.as_bytes())?;
     write_atomically(&pages.join("cfd-laws.md"), page(found, pairs)?.as_bytes())?;
     Ok(())
 }
 
-fn of<'a>(found: &'a Outcome, source: &str, law: &str) -> Option<&'a Estimate> {
+fn of<'a>(found: &'a Identified, source: &str, law: &str) -> Option<&'a Estimate> {
     found.file.estimates.iter().find(|e| e.source == source && e.law.name == law)
 }
 
@@ -52,7 +52,7 @@ fn published(comparison: &Comparison, source: &str, law: &str, name: &str) -> St
     found.map_or_else(|| "–".to_owned(), |v| format!("{v:.3}"))
 }
 
-fn table(found: &Outcome) -> Result<String, Box<dyn Error>> {
+fn table(found: &Identified) -> Result<String, Box<dyn Error>> {
     let comparison = found.file.comparison.as_ref().ok_or("nothing was compared")?;
     let mut out = "| law | coefficient | paper's CFD | computed here, 0 to 90° | computed here, to 39° | towing rig, to 39° | circulation tank, to 39° |\n| --- | --- | --- | --- | --- | --- | --- |\n".to_owned();
     for law in LAWS {
@@ -73,7 +73,7 @@ fn table(found: &Outcome) -> Result<String, Box<dyn Error>> {
 }
 
 /// What each law leaves of the loads, and which is recommended.
-fn left(found: &Outcome) -> Result<String, Box<dyn Error>> {
+fn left(found: &Identified) -> Result<String, Box<dyn Error>> {
     let mut out =
         "| law | 0 to 90°: f_x, N | f_y, N | to 39°: f_x, N | f_y, N |\n| --- | --- | --- | --- | --- |\n".to_owned();
     for law in LAWS {
@@ -104,7 +104,7 @@ fn rows(data: &Dataset) -> Option<Vec<usize>> {
     Some(rows)
 }
 
-fn figure(found: &Outcome) -> Result<Chart, Box<dyn Error>> {
+fn figure(found: &Identified) -> Result<Chart, Box<dyn Error>> {
     let data = &found.sources.iter().find_map(|s| s.fitted()).ok_or("no computed source")?.data;
     let rows = rows(data).ok_or("no speed or angle")?;
     let angle = data.values("angle").ok_or("no angle")?;
@@ -156,7 +156,7 @@ fn figure(found: &Outcome) -> Result<Chart, Box<dyn Error>> {
 }
 
 /// How far computed f_y lies above v_y|v_y| through its value at 90°, at each angle of the configuration and speed of the figure.
-fn above_square(found: &Outcome) -> Result<String, Box<dyn Error>> {
+fn above_square(found: &Identified) -> Result<String, Box<dyn Error>> {
     let data = &found.sources.iter().find_map(|s| s.fitted()).ok_or("no computed source")?.data;
     let rows = rows(data).ok_or("no speed or angle")?;
     let (angle, force) = (data.values("angle").ok_or("no angle")?, data.values("f_y").ok_or("no f_y")?);
@@ -168,7 +168,7 @@ fn above_square(found: &Outcome) -> Result<String, Box<dyn Error>> {
 }
 
 /// By how much fits to 39° lie above fits to 90°, and the tanks above both, in the square terms across.
-fn ratios(found: &Outcome) -> Result<String, Box<dyn Error>> {
+fn ratios(found: &Identified) -> Result<String, Box<dyn Error>> {
     let comparison = found.file.comparison.as_ref().ok_or("nothing was compared")?;
     let mut out = "| law | coefficient | to 39° over 0 to 90°, computed here | tank over computed here to 39° | rig over computed here to 39° | tank over the paper's CFD |\n| --- | --- | --- | --- | --- | --- |\n".to_owned();
     for (law, name) in [("f2", "C_d_II"), ("f4", "C_d_II"), ("f6", "C_d"), ("f2", "C_f_II"), ("f6", "C_f")] {
@@ -191,7 +191,7 @@ fn ratios(found: &Outcome) -> Result<String, Box<dyn Error>> {
     Ok(out)
 }
 
-fn page(found: &Outcome, pairs: &[Pair]) -> Result<String, Box<dyn Error>> {
+fn page(found: &Identified, pairs: &[Pair]) -> Result<String, Box<dyn Error>> {
     Ok(format!(
         "# Which law do computed forces support?\n\n\
          This page is written by `cargo xtask validate --full cfd-campaign --page`; no figure is typed by hand. It takes the campaign of `examples/mamba-cfd`: the smooth stand-in of the snake robot Mamba, nine configurations, k-ω SST on 22,400 cells over half a turn ([computed flows](cfd.md)). \

@@ -8,7 +8,7 @@ use froude::methods::tank::excited_response::plan::forecast;
 use froude::methods::tank::excited_response::simulate::{Simulated, planned, simulated, truth};
 use froude::methods::tank::excited_response::source::setup_of;
 use froude::methods::tank::excited_response::{AtPeriod, WaveRun, fit};
-use froude::pipeline::{Job, Outcome, identify};
+use froude::pipeline::{Identified, Job, identify};
 use froude::records::campaign::read_campaign;
 use froude::records::estimate::{Coefficient, Status};
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ pub fn all(claims: &mut Claims, root: &Path, shared: &Path, seeds: usize) -> Res
 }
 
 /// The whole logs at 200 Hz with the example's sidecars, identified with another window.
-fn identified(root: &Path, shared: &Path, window: &str) -> Result<Option<Outcome>, Box<dyn Error>> {
+fn identified(root: &Path, shared: &Path, window: &str) -> Result<Option<Identified>, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let waves = folder.path().join("waves");
     std::fs::create_dir(&waves)?;
@@ -62,7 +62,7 @@ fn identified(root: &Path, shared: &Path, window: &str) -> Result<Option<Outcome
     Ok(Some(identify(&job, &|_| {})?))
 }
 
-fn coefficient(done: &Outcome, period_s: f64, name: &str) -> Result<Coefficient, Box<dyn Error>> {
+fn coefficient(done: &Identified, period_s: f64, name: &str) -> Result<Coefficient, Box<dyn Error>> {
     let of = format!("at {period_s:.3} s");
     let found = done.file.estimates.iter().find(|e| e.id.ends_with(&of)).and_then(|e| e.coefficients.get(name));
     found.cloned().ok_or_else(|| format!("no {name} {of}").into())

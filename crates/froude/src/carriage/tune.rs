@@ -7,7 +7,7 @@ use froude_rig::campaign::runner::{Operator, Progress};
 use froude_rig::campaign::stop::StopSwitch;
 
 use super::drive::{DriveJob, Prepared, drive, prepare_with};
-use crate::pipeline::{Input, Job, Outcome, Purpose, identify};
+use crate::pipeline::{Identified, Input, Job, Purpose, identify};
 use crate::{Error, results};
 
 /// The sweep below the margins, Hz: from well below the chain to well above the crossover of a loop that is stiff against it.
@@ -23,7 +23,7 @@ pub fn tune(
     switch: &StopSwitch,
     operator: &mut dyn Operator,
     progress: &mut dyn Progress,
-) -> Result<Outcome, Error> {
+) -> Result<Identified, Error> {
     let experiments = Experiments { sweep_hz: TUNING_HZ, ..Experiments::default() };
     let prepared = prepare_with(&with_folder(job, "tune"), &|asked, start_m, _| tuning(asked, start_m, &experiments))?
         .logging_every_tick();
@@ -40,7 +40,7 @@ pub fn find_resonance(
     switch: &StopSwitch,
     operator: &mut dyn Operator,
     progress: &mut dyn Progress,
-) -> Result<Outcome, Error> {
+) -> Result<Identified, Error> {
     let experiments = Experiments::default();
     let prepared =
         prepare_with(&with_folder(job, "resonance"), &|asked, start_m, _| resonance(asked, start_m, &experiments))?;
@@ -61,7 +61,7 @@ fn driven(
     switch: &StopSwitch,
     operator: &mut dyn Operator,
     progress: &mut dyn Progress,
-) -> Result<Outcome, Error> {
+) -> Result<Identified, Error> {
     let out = prepared.folder.join("report");
     results::can_be_written(&out)?;
     drive(prepared, switch, operator, progress)?.whole()?;

@@ -1,14 +1,11 @@
 //! What a job reads and asks for, and what comes out.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_identify::answer::Answer;
 use froude_records::added_mass_options::GivenOption;
-use froude_records::block::Section;
 use froude_records::estimate::EstimateFile;
-
-use crate::results::Written;
+use froude_records::outcome::Outcome;
 
 /// What a job reads.
 #[derive(Debug, Clone)]
@@ -91,25 +88,28 @@ impl Job {
 }
 
 /// What came out.
-#[derive(Debug, Clone)]
-pub struct Outcome {
+#[derive(Debug)]
+pub struct Identified {
     /// The record, as it stands in `estimate.json`; sources side by side are in it.
     pub file: EstimateFile,
-    /// Where it lies, with report, figures and observations; `None` where nobody asked for files.
-    pub written: Option<Written>,
     /// Every answer that was found, with everything that is known about its fit.
     pub sources: Vec<Answer>,
-    /// What methods state about several of them together.
-    pub summaries: Vec<Summary>,
+    /// All else that is told, and the files that were written where somebody asked for them.
+    pub told: Outcome,
 }
 
-/// What a method states about all results that it has from one source.
-#[derive(Debug, Clone)]
-pub struct Summary {
-    /// Which of [`Outcome::sources`].
-    pub sources: Range<usize>,
-    /// The section of the page.
-    pub section: Section,
+impl Identified {
+    /// Where a file lies that was written: `estimates`, `report`, `observations`, `exports`.
+    #[must_use]
+    pub fn path(&self, key: &str) -> Option<&Path> {
+        self.told.path(key)
+    }
+
+    /// As a verb returns it.
+    #[must_use]
+    pub fn outcome(self) -> Outcome {
+        Outcome { findings: Some(self.file.findings.clone()), records: vec![self.file], ..self.told }
+    }
 }
 
 /// The folder of results beside an input, where none is named: `tow-results` of `tow.csv`.
