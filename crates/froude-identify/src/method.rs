@@ -138,27 +138,8 @@ pub struct Prospect {
     pub runs: usize,
     /// Their time on the log, s.
     pub duration_s: f64,
-    /// The intervals to expect.
-    pub expected: Vec<ExpectedCoefficient>,
-    /// All of it for a person: run matrix and intervals.
+    /// Run matrix and intervals to expect.
     pub section: Section,
-}
-
-/// The interval to expect of one coefficient.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExpectedCoefficient {
-    /// The force model.
-    pub model: String,
-    /// Its name.
-    pub name: String,
-    /// SI unit text.
-    pub unit: String,
-    /// The truth that the interval is computed at.
-    pub value: f64,
-    /// Combined standard uncertainty.
-    pub standard_uncertainty: f64,
-    /// Half-width of the 95 % interval.
-    pub half_width_95: f64,
 }
 
 /// A file for another program.

@@ -15,6 +15,7 @@ mod long_logs;
 pub mod motion;
 mod noise;
 pub mod oscillation;
+mod plan;
 mod reference;
 mod residual_spectrum;
 pub mod rotation;

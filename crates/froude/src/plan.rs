@@ -4,7 +4,7 @@ use std::path::Path;
 
 use froude_identify::method::Prospect;
 use froude_identify::simulate::tables::SimulateError;
-use froude_records::block::{Section, TableBuilder, facts};
+use froude_records::block::{Section, facts};
 use froude_records::campaign::read_campaign;
 use froude_records::outcome::Outcome;
 
@@ -36,16 +36,6 @@ fn section(prospect: Prospect) -> Section {
         f.count("runs", "", |p| p.runs),
         f.number("duration_s", "", |p| p.duration_s),
     ]);
-    let t = TableBuilder::new("expected", "", &prospect.expected);
-    let expected = t.build(vec![
-        t.text("model", "", |e| e.model.clone()),
-        t.text("coefficient", "", |e| e.name.clone()),
-        t.text("unit", "", |e| e.unit.clone()),
-        t.number("value", "", |e| e.value),
-        t.number("standard_uncertainty", "", |e| e.standard_uncertainty),
-        t.number("half_width_95", "", |e| e.half_width_95),
-    ]);
-    let Section { title, blocks, .. } = prospect.section;
-    let blocks = [vec![about.into(), expected.into()], blocks].concat();
-    Section { key: "sources[]".to_owned(), title, blocks, ..Section::default() }
+    let blocks = [vec![about.into()], prospect.section.blocks].concat();
+    Section { key: "sources[]".to_owned(), blocks, ..prospect.section }
 }

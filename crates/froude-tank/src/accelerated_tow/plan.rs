@@ -7,17 +7,15 @@
 //! **Source.** As [`crate::oscillation::forecast`].
 
 use froude_fit::FEWEST_CLUSTERS;
-use froude_fit::budget::{Kind, OUTSIDE_95, Part, combine};
+use froude_fit::budget::{Kind, Part};
 use froude_fit::faer::Mat;
 use froude_fit::serial::to_expect;
 use froude_fit::series::taper;
-use froude_identify::law::ForceLaw;
-use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
-use froude_records::block::summary;
+use froude_identify::method::{MethodError, Prospect};
+use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, SensorSpec, Source};
-use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
 use froude_records::run::Declared;
+use froude_records::text::counted;
 
 use super::law::names;
 use super::reduce::{Setup, reduce};
@@ -28,8 +26,8 @@ use super::source::{declared, no_mass, setup_of};
 use crate::joint::conclude::part;
 use crate::joint::forecast::inverted;
 use crate::noise::correlated;
+use crate::plan::{self, Expected};
 use crate::sensors::seed_and_sensors;
-use crate::steady::plan::Expected;
 
 /// What a plan will determine.
 #[derive(Debug, Clone)]
@@ -115,17 +113,9 @@ pub fn forecast(
         let direction: Vec<f64> = error.directions[0].1.iter().map(|row| standard * row[0]).collect();
         parts.push(moved(&error.name, &sensitivity, &direction, error.dof));
     }
-    let expected = (0..p).map(|j| {
-        let largest = parts.iter().max_by(|a, b| a.standard(j).total_cmp(&b.standard(j)));
-        Expected {
-            name: truth.law.coefficients[j].name.clone(),
-            unit: truth.law.coefficients[j].unit.clone(),
-            value: truth.values[j],
-            combined: combine(&parts, j, OUTSIDE_95),
-            mostly: largest.map_or_else(Default::default, |part| (part.name.clone(), part.standard(j))),
-        }
-    });
-    let expected: Vec<Expected> = expected.collect();
+    let of = truth.law.coefficients.iter().zip(&truth.values).enumerate();
+    let expected = of.map(|(j, (c, value))| Expected::of(&truth.law.name, (&c.name, &c.unit), *value, &parts, j));
+    let expected = expected.collect();
     let sum = |i: usize, j: usize| parts.iter().map(|part| part.covariance[(i, j)]).sum::<f64>();
     let correlation = Mat::from_fn(p, p, |i, j| sum(i, j) / (sum(i, i) * sum(j, j)).sqrt());
     Ok(Forecast { expected, correlation })
@@ -274,89 +264,48 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let duration_s: f64 = planned.iter().map(|run| run.profile.duration_s()).sum();
     let longest_m = planned.iter().map(|run| run.profile.travel_m()).fold(0.0, f64::max);
     let steady_m: f64 = planned.iter().map(|run| run.profile.speed_m_s.abs() * run.profile.steady_s).sum();
-    let model = truth.law.name.clone();
-    let expected = found.expected.iter().map(|e| ExpectedCoefficient {
-        model: model.clone(),
-        name: e.name.clone(),
-        unit: e.unit.clone(),
-        value: e.value,
-        standard_uncertainty: e.combined.standard,
-        half_width_95: e.combined.arms[1],
-    });
-    Ok(Prospect {
-        source: source.name.clone(),
-        runs: planned.len(),
-        duration_s,
-        expected: expected.collect(),
-        section: summary(DocumentSection {
-            title: format!("Plan of {}", source.name),
-            paragraphs: vec![format!(
-                "{} of {:.1} min in all on the log, waits between them and the way back not counted; {steady_m:.1} m of steady distance; the longest needs {longest_m:.2} m of travel. The \
-                 intervals are those of the linearised fit at the true coefficients of [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
-                froude_records::text::counted(planned.len(), "run", "runs"),
-                duration_s / 60.0
-            )],
-            tables: vec![matrix(&planned, &setup), coefficients(&truth.law, &found)],
-            charts: Vec::new(),
-        }),
-    })
+    let paragraph = format!(
+        "{} of {:.1} min in all on the log, waits between them and the way back not counted; {steady_m:.1} m of steady distance; the longest needs {longest_m:.2} m of travel. The \
+         intervals are those of the linearised fit at the true coefficients of [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
+        counted(planned.len(), "run", "runs"),
+        duration_s / 60.0
+    );
+    let tables = [matrix(&planned, &setup), coefficients(&truth.law.name, &found)];
+    Ok(plan::prospect(source, (planned.len(), duration_s), tables, vec![paragraph]))
 }
 
-fn matrix(planned: &[Planned], setup: &Setup) -> TextTable {
-    let rows = planned.iter().map(|run| {
-        vec![
-            run.id.clone(),
-            setup.bodies[run.body].name.clone(),
-            if run.is_dry { "air" } else { "water" }.to_owned(),
-            number::significant(run.profile.speed_m_s, 3),
-            number::significant(run.profile.acceleration_m_s2, 3),
-            number::fixed(run.profile.duration_s(), 1),
-            number::fixed(run.profile.travel_m(), 2),
-            number::fixed(run.profile.speed_m_s.abs() * run.profile.steady_s, 2),
-        ]
-    });
-    TextTable {
-        caption: "Run matrix.".to_owned(),
-        head: [
-            "run",
-            "configuration",
-            "in",
-            "speed [m/s]",
-            "acceleration [m/s²]",
-            "duration [s]",
-            "travel [m]",
-            "steady distance [m]",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    }
+fn matrix(planned: &[Planned], setup: &Setup) -> ResultTable {
+    let t = TableBuilder::new("matrix", "Run matrix.", planned);
+    t.build(vec![
+        t.text("run", "run", |run| run.id.clone()),
+        t.text("configuration", "configuration", |run| setup.bodies[run.body].name.clone()),
+        t.text("in", "in", |run| if run.is_dry { "air" } else { "water" }.to_owned()),
+        t.number("speed_m_s", "speed [m/s]", |run| run.profile.speed_m_s).significant(3),
+        t.number("acceleration_m_s2", "acceleration [m/s²]", |run| run.profile.acceleration_m_s2).significant(3),
+        t.number("duration_s", "duration [s]", |run| run.profile.duration_s()).places(1),
+        t.number("travel_m", "travel [m]", |run| run.profile.travel_m()).places(2),
+        t.number("steady_distance_m", "steady distance [m]", |run| run.profile.speed_m_s.abs() * run.profile.steady_s)
+            .places(2),
+    ])
 }
 
-fn coefficients(law: &ForceLaw, found: &Forecast) -> TextTable {
-    let row = |(j, e): (usize, &Expected)| {
-        let half = e.combined.arms[1];
-        let others = (0..found.expected.len()).filter(|k| *k != j);
-        let most = others.max_by(|a, b| found.correlation[(j, *a)].abs().total_cmp(&found.correlation[(j, *b)].abs()));
-        vec![
-            e.name.clone(),
-            e.unit.clone(),
-            number::significant(e.value, 4),
-            number::significant(half, 2),
-            if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) },
-            format!("{} ({})", e.mostly.0, number::significant(e.mostly.1, 2)),
-            most.map_or_else(String::new, |k| format!("{} ({:.2})", found.expected[k].name, found.correlation[(j, k)])),
-        ]
+/// The intervals to expect, each with the coefficient that it is most correlated with.
+fn coefficients(law: &str, found: &Forecast) -> ResultTable {
+    let most = |j: usize| {
+        let others = found.expected.iter().enumerate().filter(|(k, _)| *k != j);
+        others.map(|(k, e)| (&e.name, found.correlation[(j, k)])).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     };
-    TextTable {
-        caption: format!(
-            "Intervals to expect, with the law {} of [simulate]: true value, half-width U at 95 %, the largest of the standard uncertainties behind it, and the coefficient that it is \
-             most correlated with.",
-            law.name
-        ),
-        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from", "correlated with"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: found.expected.iter().enumerate().map(row).collect(),
-    }
+    let most: Vec<Option<(&String, f64)>> = (0..found.expected.len()).map(most).collect();
+    let t = TableBuilder::new("", "", &most);
+    let mut table = plan::intervals(&found.expected, "");
+    table.columns.extend([
+        t.text("", "correlated with", |most| most.map(|(name, r)| format!("{name} ({r:.2})"))),
+        t.text("correlated_with", "", |most| most.map(|(name, _)| name.clone())),
+        t.number("correlation", "", |most| most.map(|(_, r)| r)),
+    ]);
+    let caption = format!(
+        "Intervals to expect, with the law {law} of [simulate]: true value, half-width U at 95 %, the largest of the standard uncertainties behind it, and the coefficient that it is \
+         most correlated with."
+    );
+    ResultTable { caption, ..table }
 }

@@ -13,26 +13,26 @@
 //!
 //! Fisher information of a non-linear model at its truth, Ljung (1999), ch. 9; JCGM 100:2008 (GUM), 5.2.
 
-use froude_fit::budget::{Kind, OUTSIDE_95, Uncertain, combine};
+use froude_fit::budget::{Kind, Uncertain};
 use froude_fit::faer::Mat;
 use froude_records::campaign::SensorSpec;
 
 use super::error::DecayError;
 use super::output_error::linearised;
+use super::record::LAW;
 use super::releases::{Planned, sensor_of, simulated};
 use super::run::{DecayRun, DecaySetup, Restoring};
 use super::simulate::Logged;
 use crate::joint::conclude::part;
-use crate::joint::forecast::{Expected, inverted};
+use crate::joint::forecast::inverted;
 use crate::noise::correlated;
+use crate::plan::Expected;
 
 /// What a plan will determine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
     /// The coefficients.
     pub expected: Vec<Expected>,
-    /// Names of the errors.
-    pub parts: Vec<String>,
     /// Peaks of each release that the fit uses, by its name.
     pub peaks: Vec<(String, usize)>,
     /// Releases that show too little, each with the reason.
@@ -86,19 +86,9 @@ pub fn forecast(
     for (name, u, by) in setup.restoring.parts() {
         parts.push(declared(name, by_stiffness.map(|d| d * by), u));
     }
-    let expected = (0..3).map(|j| Expected {
-        name: setup.axis.decay_names()[j].clone(),
-        unit: setup.axis.decay_units()[j].to_owned(),
-        value: truth[j],
-        combined: combine(&parts, j, OUTSIDE_95),
-        by_part: parts.iter().map(|part| part.standard(j)).collect(),
-    });
-    Ok(Forecast {
-        expected: expected.collect(),
-        parts: parts.iter().map(|part| part.name.clone()).collect(),
-        peaks: at.used,
-        left_out: at.left_out,
-    })
+    let (names, units) = (setup.axis.decay_names(), setup.axis.decay_units());
+    let expected = (0..3).map(|j| Expected::of(LAW, (&names[j], units[j]), truth[j], &parts, j)).collect();
+    Ok(Forecast { expected, peaks: at.used, left_out: at.left_out })
 }
 
 /// Everything as declared, without errors: what the plan is linearised at.

@@ -1,10 +1,8 @@
 //! The plan of a free decay: run matrix, time, peaks of each release, and the intervals to expect.
 
-use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
-use froude_records::block::summary;
+use froude_identify::method::{MethodError, Prospect};
+use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
-use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
 use froude_records::text::counted;
 
 use super::fit::Method;
@@ -13,7 +11,7 @@ use super::record::LAW;
 use super::releases::senses;
 use super::releases::{Planned, planned, truth_of};
 use super::run::DecaySetup;
-use crate::joint::page::{expected as expected_table, minutes};
+use crate::plan::{self, minutes};
 use crate::sensors::seed_and_sensors;
 
 /// What the plan of a source takes and determines.
@@ -26,15 +24,7 @@ pub fn prospect(campaign: &Campaign, source: &Source, setup: &DecaySetup) -> Res
     let planned = planned(source);
     let (_, sensors) = seed_and_sensors(campaign, &senses(setup.axis))?;
     let found = forecast(&planned, setup, truth, sensors).map_err(MethodError::refused)?;
-    let duration_s = planned.iter().map(|run| run.release.held_s + run.release.free_s).sum();
-    let expected = found.expected.iter().map(|e| ExpectedCoefficient {
-        model: LAW.to_owned(),
-        name: e.name.clone(),
-        unit: e.unit.clone(),
-        value: e.value,
-        standard_uncertainty: e.combined.standard,
-        half_width_95: e.combined.arms[1],
-    });
+    let duration_s = planned.iter().map(duration_s).sum();
     let few = planned.iter().filter(|run| peaks_of(&found, &run.id) < Method::Envelope.fewest_peaks()).count();
     let of_envelope = match few {
         0 => String::new(),
@@ -51,37 +41,28 @@ pub fn prospect(campaign: &Campaign, source: &Source, setup: &DecaySetup) -> Res
         minutes(duration_s)
     )];
     paragraphs.extend(found.left_out.iter().map(|why| format!("Of no use: {why}.")));
-    let section = summary(DocumentSection {
-        title: format!("Plan of {}", source.name),
-        paragraphs,
-        tables: vec![
-            runs(&planned, &found, setup),
-            expected_table(&found.expected, &found.parts, &format!(", with the law {LAW} of [simulate]")),
-        ],
-        charts: Vec::new(),
-    });
-    Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected: expected.collect(), section })
+    let law = format!(", with the law {LAW} of [simulate]");
+    let tables = [matrix(&planned, &found, setup), plan::intervals(&found.expected, &law)];
+    Ok(plan::prospect(source, (planned.len(), duration_s), tables, paragraphs))
 }
 
-fn runs(planned: &[Planned], found: &Forecast, setup: &DecaySetup) -> TextTable {
-    let is_rotation = setup.axis.is_rotation();
-    let rows = planned.iter().map(|run| {
-        let from = run.release.displacement;
-        vec![
-            run.id.clone(),
-            run.configuration.clone(),
-            number::plain(if is_rotation { from.to_degrees() } else { from }, 4),
-            peaks_of(found, &run.id).to_string(),
-            number::fixed(run.release.held_s + run.release.free_s, 1),
-        ]
-    });
-    let from = if is_rotation { "released from [deg]" } else { "released from [m]" };
-    TextTable {
-        caption: format!(
-            "Run matrix; a peak is the extreme of a half cycle that is further from rest than {} times the noise of a sample.",
-            setup.window.smallest_over_noise
-        ),
-        head: ["run", "configuration", from, "peaks", "duration [s]"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-    }
+fn duration_s(run: &Planned) -> f64 {
+    run.release.held_s + run.release.free_s
+}
+
+fn matrix(planned: &[Planned], found: &Forecast, setup: &DecaySetup) -> ResultTable {
+    let caption = format!(
+        "Run matrix; a peak is the extreme of a half cycle that is further from rest than {} times the noise of a sample.",
+        setup.window.smallest_over_noise
+    );
+    let is_angle = setup.axis.is_rotation();
+    let [key, head] = if is_angle { ["from_rad", "released from [deg]"] } else { ["from_m", "released from [m]"] };
+    let t = TableBuilder::new("matrix", caption, planned);
+    t.build(vec![
+        t.text("run", "run", |run| run.id.clone()),
+        t.text("configuration", "configuration", |run| run.configuration.clone()),
+        t.number(key, head, |run| run.release.displacement).plain(4),
+        t.count("peaks", "peaks", |run| peaks_of(found, &run.id)),
+        t.number("duration_s", "duration [s]", duration_s).places(1),
+    ])
 }

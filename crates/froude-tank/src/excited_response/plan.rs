@@ -7,11 +7,9 @@
 
 use faer::c64;
 use froude_fit::budget::{Combined, OUTSIDE_95, Part, combine};
-use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
-use froude_records::block::summary;
+use froude_identify::method::{MethodError, Prospect};
+use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, SensorSpec, Source};
-use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
 use froude_records::text::counted;
 use froude_rig::steady::Reading;
 
@@ -23,6 +21,7 @@ use super::simulate::senses;
 use super::simulate::{Planned, SENSORS, planned, reading, truth};
 use super::source::setup_of;
 use super::wave::LEFT_OUT;
+use crate::plan::{self, Expected};
 use crate::sensors::seed_and_sensors;
 
 /// What a plan gives at one period.
@@ -138,70 +137,37 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     })?;
     let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     let found = forecast(&planned, &setup, window_s, sensors).map_err(MethodError::refused)?;
-    let expected = found.iter().flat_map(|at| {
-        [0, 1].map(|j| ExpectedCoefficient {
-            model: format!("at {:.3} s", at.period_s),
-            name: NAMES[j].to_owned(),
-            unit: UNITS[j].to_owned(),
-            value: at.values[j],
-            standard_uncertainty: at.combined[j].standard,
-            half_width_95: at.combined[j].arms[1],
-        })
-    });
     let duration_s = planned.iter().map(|run| run.rig.still_s + run.rig.lasts_s).sum();
-    let section = summary(DocumentSection {
-        title: format!("Plan of {}", source.name),
-        paragraphs: vec![format!(
-            "{} of {:.1} min in all on the log; the wait for the water to come to rest between them is not counted. The intervals are those at the true coefficients of [simulate], with the noise of \
-             [[simulate.sensor]] and everything that is declared.",
-            counted(planned.len(), "run", "runs"),
-            duration_s / 60.0
-        )],
-        tables: vec![matrix(&found, window_s), intervals(&found)],
-        charts: Vec::new(),
-    });
-    Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected: expected.collect(), section })
+    let paragraph = format!(
+        "{} of {:.1} min in all on the log; the wait for the water to come to rest between them is not counted. The intervals are those at the true coefficients of [simulate], with the noise of \
+         [[simulate.sensor]] and everything that is declared.",
+        counted(planned.len(), "run", "runs"),
+        duration_s / 60.0
+    );
+    let tables = [matrix(&found, window_s), intervals(&found)];
+    Ok(plan::prospect(source, (planned.len(), duration_s), tables, vec![paragraph]))
 }
 
-fn matrix(found: &[Forecast], window_s: [f64; 2]) -> TextTable {
-    let rows = found.iter().map(|at| {
-        vec![
-            number::fixed(at.period_s, 3),
-            at.runs[0].to_string(),
-            at.runs[1].to_string(),
-            at.cycles.to_string(),
-            number::significant(1e3 * at.heave_m, 3),
-        ]
-    });
-    TextTable {
-        caption: format!(
-            "Run matrix; the window is from {} s to {} s after the wavemaker's start.",
-            window_s[0], window_s[1]
-        ),
-        head: ["period [s]", "held runs", "free runs", "cycles used", "heave [mm]"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-    }
+fn matrix(found: &[Forecast], [from_s, to_s]: [f64; 2]) -> ResultTable {
+    let caption = format!("Run matrix; the window is from {from_s} s to {to_s} s after the wavemaker's start.");
+    let t = TableBuilder::new("matrix", caption, found);
+    t.build(vec![
+        t.number("period_s", "period [s]", |at| at.period_s).places(3),
+        t.count("held_runs", "held runs", |at| at.runs[0]),
+        t.count("free_runs", "free runs", |at| at.runs[1]),
+        t.count("cycles", "cycles used", |at| at.cycles),
+        t.number("heave_m", "heave [mm]", |at| at.heave_m).significant(3),
+    ])
 }
 
-fn intervals(found: &[Forecast]) -> TextTable {
-    let rows = found.iter().flat_map(|at| {
-        [0, 1].map(|j| {
-            let half = at.combined[j].arms[1];
-            let largest = at.parts.iter().max_by(|a, b| a.standard(j).total_cmp(&b.standard(j)));
-            vec![
-                number::fixed(at.period_s, 3),
-                NAMES[j].to_owned(),
-                UNITS[j].to_owned(),
-                number::significant(at.values[j], 4),
-                number::significant(half, 2),
-                if at.values[j] == 0.0 { "–".to_owned() } else { number::percent((half / at.values[j]).abs()) },
-                largest.map_or_else(String::new, |p| format!("{} ({})", p.name, number::significant(p.standard(j), 2))),
-            ]
-        })
-    });
-    TextTable {
-        caption: "Intervals to expect: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it.".to_owned(),
-        head: ["period [s]", "coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-    }
+fn intervals(found: &[Forecast]) -> ResultTable {
+    let rows: Vec<(&Forecast, usize)> = found.iter().flat_map(|at| [(at, 0), (at, 1)]).collect();
+    let expected = |&(at, j): &(&Forecast, usize)| {
+        let law = format!("at {:.3} s", at.period_s);
+        Expected::of(&law, (NAMES[j], UNITS[j]), at.values[j], &at.parts, j)
+    };
+    let mut table = plan::intervals(&rows.iter().map(expected).collect::<Vec<_>>(), "");
+    let period = TableBuilder::new("", "", &rows).number("period_s", "period [s]", |(at, _)| at.period_s).places(3);
+    table.columns.insert(0, period);
+    table
 }

@@ -12,7 +12,7 @@
 //! Fisher information of a linear model with correlated noise, JCGM 100:2008 (GUM), 5.2.
 
 use froude_fit::FEWEST_CLUSTERS;
-use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, combine};
+use froude_fit::budget::{Kind, Part};
 use froude_fit::faer::Mat;
 use froude_fit::faer::prelude::*;
 use froude_fit::jackknife::{AtEqualErrors, at_equal_errors};
@@ -23,31 +23,16 @@ use super::solve::Columns;
 use super::{Equation, Problem};
 use crate::noise::correlated;
 
+pub use crate::plan::Expected;
+
 /// Variance of a load without noise, N² or N² m²: nothing beside that of any sensor, and its inverse still a number.
 const NO_NOISE: f64 = 1e-30;
-
-/// A coefficient with the interval to expect.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Expected {
-    /// Its name.
-    pub name: String,
-    /// SI unit text.
-    pub unit: String,
-    /// The truth that it was computed at.
-    pub value: f64,
-    /// Standard uncertainty and interval.
-    pub combined: Combined,
-    /// Each error's part in the standard uncertainty, in the order of [`Forecast::parts`].
-    pub by_part: Vec<f64>,
-}
 
 /// What a plan will determine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
     /// The coefficients.
     pub expected: Vec<Expected>,
-    /// Names of the errors.
-    pub parts: Vec<String>,
     /// Covariance of the coefficients from all errors together.
     pub covariance: Mat<f64>,
     /// Whole cycles used of each run.
@@ -145,17 +130,11 @@ pub(crate) fn forecast<E: Equation>(
         let covariance = Mat::from_fn(p, p, |i, j| moved[(i, k)] * moved[(j, k)]);
         parts.push(part(&input.name, Kind::B, spread(covariance), input.declared.dof));
     }
-    let expected = problem.names.iter().enumerate().map(|(j, (name, unit))| Expected {
-        name: name.clone(),
-        unit: unit.clone(),
-        value: beta[j],
-        combined: combine(&parts, j, OUTSIDE_95),
-        by_part: parts.iter().map(|part| part.standard(j)).collect(),
-    });
+    let of = problem.names.iter().zip(beta).enumerate();
+    let expected = of.map(|(j, ((name, unit), value))| Expected::of(&problem.law, (name, unit), *value, &parts, j));
     Ok(Some(Forecast {
         expected: expected.collect(),
         covariance: total(&parts, n),
-        parts: parts.iter().map(|part| part.name.clone()).collect(),
         cycles: problem.runs.iter().map(|run| run.motion.whole).collect(),
     }))
 }

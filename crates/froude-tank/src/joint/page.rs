@@ -3,7 +3,6 @@
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark, Series, TextTable};
 
-use super::forecast::Expected;
 use super::{Fitted, JointFit, Run};
 use crate::residual_spectrum::{self, Left};
 
@@ -106,33 +105,4 @@ pub(crate) fn spectrum(
         (&what, unit),
         "A line at a multiple of the driven frequency is a term that the law lacks; a rise towards low frequencies is slow noise, which the scatter between clusters counts.",
     )
-}
-
-/// A time as a person says it.
-pub(crate) fn minutes(seconds: f64) -> String {
-    if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.1} min", seconds / 60.0) }
-}
-
-/// The intervals to expect; `parts` are the errors that each is made of, and `law` names it in the caption.
-pub(crate) fn expected(expected: &[Expected], parts: &[String], law: &str) -> TextTable {
-    let rows = expected.iter().map(|e| {
-        let half = e.combined.arms[1];
-        let relative = if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) };
-        let largest = (0..parts.len()).max_by(|&a, &b| e.by_part[a].total_cmp(&e.by_part[b]));
-        vec![
-            e.name.clone(),
-            e.unit.clone(),
-            number::significant(e.value, 4),
-            number::significant(half, 2),
-            relative,
-            largest.map_or_else(String::new, |k| format!("{} ({})", parts[k], number::significant(e.by_part[k], 2))),
-        ]
-    });
-    TextTable {
-        caption: format!(
-            "Intervals to expect{law}: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it."
-        ),
-        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-    }
 }

@@ -3,11 +3,10 @@
 use std::f64::consts::TAU;
 
 use froude_hydro::similarity::keulegan_carpenter;
-use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
-use froude_records::block::summary;
+use froude_identify::method::{MethodError, Prospect};
+use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
-use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
+use froude_records::text::counted;
 
 use super::forces::Drag;
 use super::forecast::forecast;
@@ -15,7 +14,7 @@ use super::setup::Setup;
 use super::simulate::senses;
 use super::simulate::{Planned, Truths, configurations, planned};
 use super::source::{declared, setup_of};
-use crate::joint::page::{expected as expected_table, minutes};
+use crate::plan::{self, minutes};
 use crate::sensors::seed_and_sensors;
 
 /// What the plan of a source takes and determines.
@@ -31,79 +30,43 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     // Another law than the true one is off by what it lacks, which no linearisation forecasts.
     let drag = Drag::new(truth.law.clone()).map_err(MethodError::refused)?;
-    let law = drag.law.name.clone();
     let found = forecast(&planned, &setup, &truth, &drag, sensors, &campaign.identify).map_err(MethodError::refused)?;
-    let expected = found.expected.iter().map(|e| ExpectedCoefficient {
-        model: law.clone(),
-        name: e.name.clone(),
-        unit: e.unit.clone(),
-        value: e.value,
-        standard_uncertainty: e.combined.standard,
-        half_width_95: e.combined.arms[1],
-    });
-    let (expected, tables) = (
-        expected.collect(),
-        vec![
-            runs(&planned, &found.cycles, &setup, campaign),
-            expected_table(&found.expected, &found.parts, &format!(", with the drag law {law} of [simulate]")),
-        ],
-    );
     let duration_s = planned.iter().map(duration_s).sum();
-    let section = summary(DocumentSection {
-        title: format!("Plan of {}", source.name),
-        paragraphs: vec![format!(
-            "{} of {} in all on the log, waits between them and changes of configuration not counted. The intervals are those of the linearised joint fit at the true coefficients of \
-             [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
-            froude_records::text::counted(planned.len(), "run", "runs"),
-            minutes(duration_s)
-        )],
-        tables,
-        charts: Vec::new(),
-    });
-    Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected, section })
+    let paragraph = format!(
+        "{} of {} in all on the log, waits between them and changes of configuration not counted. The intervals are those of the linearised joint fit at the true coefficients of \
+         [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
+        counted(planned.len(), "run", "runs"),
+        minutes(duration_s)
+    );
+    let law = format!(", with the drag law {} of [simulate]", drag.law.name);
+    let tables = [matrix(&planned, &found.cycles, &setup, campaign), plan::intervals(&found.expected, &law)];
+    Ok(plan::prospect(source, (planned.len(), duration_s), tables, vec![paragraph]))
 }
 
 fn duration_s(run: &Planned) -> f64 {
     run.swing.still_s + run.swing.periods * TAU / run.swing.omega_rad_s
 }
 
-fn runs(planned: &[Planned], cycles: &[usize], setup: &Setup, campaign: &Campaign) -> TextTable {
+fn matrix(planned: &[Planned], cycles: &[usize], setup: &Setup, campaign: &Campaign) -> ResultTable {
     let height_m = campaign.body.as_ref().and_then(|b| b.link).map(|link| 2.0 * link.major_semi_axis_m);
-    let rows = planned.iter().zip(cycles).map(|(run, cycles)| {
-        let (alpha, omega) = (run.swing.amplitude_rad, run.swing.omega_rad_s);
-        let speed = setup.radius_m.value.abs() * alpha * omega;
-        vec![
-            run.id.clone(),
-            setup.bodies[run.body].name.clone(),
-            number::significant(run.swing.flow_m_s, 3),
-            number::plain(alpha.to_degrees(), 4),
-            number::plain(omega.to_degrees(), 4),
-            number::plain(omega / TAU, 4),
-            number::significant(speed, 3),
-            number::significant(speed * omega, 3),
-            height_m
-                .map_or_else(|| "–".to_owned(), |h| number::significant(keulegan_carpenter(speed, TAU / omega, h), 3)),
-            cycles.to_string(),
-            number::fixed(duration_s(run), 1),
-        ]
-    });
-    TextTable {
-        caption: "Run matrix.".to_owned(),
-        head: [
-            "run",
-            "configuration",
-            "stream [m/s]",
-            "amplitude [deg]",
-            "ω [deg/s]",
-            "frequency [Hz]",
-            "speed amplitude [m/s]",
-            "acceleration amplitude [m/s²]",
-            "KC [1]",
-            "cycles used",
-            "duration [s]",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    }
+    let speed_m_s = |run: &Planned| setup.radius_m.value.abs() * run.swing.amplitude_rad * run.swing.omega_rad_s;
+    let rows: Vec<_> = planned.iter().zip(cycles).map(|(run, cycles)| (run, speed_m_s(run), cycles)).collect();
+    let kc = |run: &Planned, speed| height_m.map(|h| keulegan_carpenter(speed, TAU / run.swing.omega_rad_s, h));
+    let t = TableBuilder::new("matrix", "Run matrix.", &rows);
+    t.build(vec![
+        t.text("run", "run", |(run, ..)| run.id.clone()),
+        t.text("configuration", "configuration", |(run, ..)| setup.bodies[run.body].name.clone()),
+        t.number("flow_m_s", "stream [m/s]", |(run, ..)| run.swing.flow_m_s).significant(3),
+        t.number("amplitude_rad", "amplitude [deg]", |(run, ..)| run.swing.amplitude_rad).plain(4),
+        t.number("omega_rad_s", "ω [deg/s]", |(run, ..)| run.swing.omega_rad_s).plain(4),
+        t.number("frequency_hz", "frequency [Hz]", |(run, ..)| run.swing.omega_rad_s / TAU).plain(4),
+        t.number("speed_m_s", "speed amplitude [m/s]", |(_, speed, _)| *speed).significant(3),
+        t.number("acceleration_m_s2", "acceleration amplitude [m/s²]", |(run, speed, _)| {
+            speed * run.swing.omega_rad_s
+        })
+        .significant(3),
+        t.number("kc", "KC [1]", |(run, speed, _)| kc(run, *speed)).significant(3),
+        t.count("cycles", "cycles used", |(.., cycles)| **cycles),
+        t.number("duration_s", "duration [s]", |(run, ..)| duration_s(run)).places(1),
+    ])
 }

@@ -2,21 +2,20 @@
 
 use std::f64::consts::TAU;
 
-use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
-use froude_records::block::summary;
+use froude_identify::method::{MethodError, Prospect};
+use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
-use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
+use froude_records::text::counted;
 use froude_rig::rotation::Mounted;
 
 use super::findings::one_rate;
-use super::fit::{LAMBDAS, LAW};
+use super::fit::LAMBDAS;
 use super::forecast::{Forecast, forecast};
 use super::setup::Setup;
 use super::simulate::senses;
 use super::simulate::{Planned, Truths, planned};
 use super::source::{declared, setup_of};
-use crate::joint::page::{expected, minutes};
+use crate::plan::{self, minutes};
 use crate::sensors::seed_and_sensors;
 
 /// What the plan of a source takes and determines.
@@ -30,19 +29,11 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let planned = planned(source);
     let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     let found = forecast(&planned, &setup, &truth, sensors, &campaign.identify).map_err(MethodError::refused)?;
-    let each = found.expected.iter().map(|e| ExpectedCoefficient {
-        model: LAW.to_owned(),
-        name: e.name.clone(),
-        unit: e.unit.clone(),
-        value: e.value,
-        standard_uncertainty: e.combined.standard,
-        half_width_95: e.combined.arms[1],
-    });
     let duration_s = planned.iter().map(duration_s).sum();
     let mut paragraphs = vec![format!(
         "{} of {} in all on the log, waits between them and changes of what is mounted not counted. The intervals are those of the linearised joint fit at the true coefficients of \
          [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
-        froude_records::text::counted(planned.len(), "run", "runs"),
+        counted(planned.len(), "run", "runs"),
         minutes(duration_s)
     )];
     let pairs = [(0, 1), (0, 2), (1, 2)].into_iter().filter_map(|(i, j)| {
@@ -58,51 +49,29 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         .map(|run| run.turn.amplitude_rad * run.turn.omega_rad_s)
         .fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], rate| [low.min(rate), high.max(rate)]);
     paragraphs.extend(one_rate(rates, found.correlation(LAMBDAS[1], LAMBDAS[2])).map(|text| format!("Mind: {text}.")));
-    let section = summary(DocumentSection {
-        title: format!("Plan of {}", source.name),
-        paragraphs,
-        tables: vec![runs(&planned, &found, &setup), expected(&found.expected, &found.parts, "")],
-        charts: Vec::new(),
-    });
-    Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected: each.collect(), section })
+    let tables = [matrix(&planned, &found, &setup), plan::intervals(&found.expected, "")];
+    Ok(plan::prospect(source, (planned.len(), duration_s), tables, paragraphs))
 }
 
 fn duration_s(run: &Planned) -> f64 {
     run.turn.still_s + run.turn.periods * TAU / run.turn.omega_rad_s
 }
 
-fn runs(planned: &[Planned], found: &Forecast, setup: &Setup) -> TextTable {
-    let rows = planned.iter().zip(&found.cycles).map(|(run, cycles)| {
-        let (alpha, omega) = (run.turn.amplitude_rad, run.turn.omega_rad_s);
-        vec![
-            run.id.clone(),
-            words(run.turn.mounted).to_owned(),
-            number::plain(alpha.to_degrees(), 4),
-            number::plain(omega.to_degrees(), 4),
-            number::plain(omega / TAU, 4),
-            number::significant(alpha * omega, 3),
-            tip_kc(setup, alpha).map_or_else(|| "–".to_owned(), |kc| number::significant(kc, 3)),
-            cycles.to_string(),
-            number::fixed(duration_s(run), 1),
-        ]
-    });
-    TextTable {
-        caption: "Run matrix.".to_owned(),
-        head: [
-            "run",
-            "mounted",
-            "amplitude [deg]",
-            "ω [deg/s]",
-            "frequency [Hz]",
-            "rate amplitude [rad/s]",
-            "KC of the tip [1]",
-            "cycles used",
-            "duration [s]",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    }
+fn matrix(planned: &[Planned], found: &Forecast, setup: &Setup) -> ResultTable {
+    let rows: Vec<_> = planned.iter().map(|run| (run, &run.turn)).zip(&found.cycles).collect();
+    let t = TableBuilder::new("matrix", "Run matrix.", &rows);
+    t.build(vec![
+        t.text("run", "run", |((run, _), _)| run.id.clone()),
+        t.text("mounted", "mounted", |((_, turn), _)| words(turn.mounted).to_owned()),
+        t.number("amplitude_rad", "amplitude [deg]", |((_, turn), _)| turn.amplitude_rad).plain(4),
+        t.number("omega_rad_s", "ω [deg/s]", |((_, turn), _)| turn.omega_rad_s).plain(4),
+        t.number("frequency_hz", "frequency [Hz]", |((_, turn), _)| turn.omega_rad_s / TAU).plain(4),
+        t.number("rate_rad_s", "rate amplitude [rad/s]", |((_, turn), _)| turn.amplitude_rad * turn.omega_rad_s)
+            .significant(3),
+        t.number("tip_kc", "KC of the tip [1]", |((_, turn), _)| tip_kc(setup, turn.amplitude_rad)).significant(3),
+        t.count("cycles", "cycles used", |(_, cycles)| **cycles),
+        t.number("duration_s", "duration [s]", |((run, _), _)| duration_s(run)).places(1),
+    ])
 }
 
 /// What is mounted, in words.

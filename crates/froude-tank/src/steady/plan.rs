@@ -9,40 +9,27 @@
 //!
 //! **Source.** As [`crate::oscillation::forecast`].
 
-use froude_fit::budget::{Combined, Kind, OUTSIDE_95, combine};
+use froude_fit::budget::Kind;
 use froude_fit::faer::Mat;
-use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
-use froude_records::block::summary;
+use froude_identify::method::{MethodError, Prospect};
+use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
-use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
+use froude_records::text::counted;
 
 use super::simulate::senses;
 use super::simulate::{Plan, Simulated, loads_at, plan_of, simulated};
 use super::window::window;
 use crate::joint::conclude::part;
 use crate::joint::forecast::inverted;
+use crate::plan;
 use crate::sensors::seed_and_sensors;
+
+pub use crate::plan::Expected;
 
 /// What a taper over a window costs in independent samples ([`froude_fit::series`]).
 const TAPER_COST: f64 = 0.6875 / 0.5625;
 /// Step of differences by speed and angle, as part of the standard uncertainty.
 const STEP: f64 = 1e-3;
-
-/// A coefficient with the interval to expect.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Expected {
-    /// Its name.
-    pub name: String,
-    /// SI unit text.
-    pub unit: String,
-    /// The truth.
-    pub value: f64,
-    /// Standard uncertainty and interval.
-    pub combined: Combined,
-    /// The largest error behind it, and its standard uncertainty.
-    pub mostly: (String, f64),
-}
 
 /// Lengths of the steady window and of a part at rest, s, of each planned run.
 fn windows(plan: &Plan, source: &Source) -> Result<Vec<[f64; 2]>, MethodError> {
@@ -146,12 +133,8 @@ pub(crate) fn linearised(
             parts.push(part(&error.name, Kind::B, covariance, error.dof));
         }
         for (at, &j) in own.iter().enumerate() {
-            let combined = combine(&parts, at, OUTSIDE_95);
-            let largest = parts.iter().max_by(|a, b| a.standard(at).total_cmp(&b.standard(at)));
-            let mostly = largest.map_or_else(Default::default, |part| (part.name.clone(), part.standard(at)));
-            let coefficient = &plan.law.coefficients[j];
-            let (name, unit, value) = (coefficient.name.clone(), coefficient.unit.clone(), plan.values[j]);
-            out[j] = Some(Expected { name, unit, value, combined, mostly });
+            let c = &plan.law.coefficients[j];
+            out[j] = Some(Expected::of(&plan.law.name, (&c.name, &c.unit), plan.values[j], &parts, at));
         }
     }
     Ok(out.into_iter().flatten().collect())
@@ -214,96 +197,38 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let (_, sensors) = seed_and_sensors(campaign, &senses(&plan))?;
     let windows_s = windows(&plan, source)?;
     let expected = expected(&plan, source, sensors)?;
-    let speed = |i: usize| plan.data.values("speed").map_or(0.0, |v| v[i].abs());
-    let duration = |i: usize| 2.0 * (spec.tow.still_s + speed(i) / spec.tow.acceleration_m_s2) + spec.tow.steady_s;
-    let travel = |i: usize| speed(i).powi(2) / spec.tow.acceleration_m_s2 + speed(i) * spec.tow.steady_s;
-    let rows = (0..plan.data.rows).map(|i| {
-        vec![
-            format!("{:03}", i + 1),
-            plan.data.configuration[i].clone(),
-            number::significant(speed(i), 3),
-            number::plain(plan.data.values("angle").map_or(0.0, |a| a[i].to_degrees()), 4),
-            number::fixed(duration(i), 1),
-            number::fixed(travel(i), 2),
-            number::fixed(windows_s[i][0], 1),
-            number::fixed(windows_s[i][0] * speed(i), 2),
-        ]
-    });
-    let matrix = TextTable {
-        caption: "Run matrix.".to_owned(),
-        head: [
-            "run",
-            "configuration",
-            "speed [m/s]",
-            "angle [deg]",
-            "duration [s]",
-            "travel [m]",
-            "steady window [s]",
-            "steady distance [m]",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    };
-    let coefficients = coefficients(&plan, &expected);
-    let duration_s: f64 = (0..plan.data.rows).map(duration).sum();
-    let longest_m = (0..plan.data.rows).map(travel).fold(0.0, f64::max);
-    let steady_m: f64 = (0..plan.data.rows).map(|i| windows_s[i][0] * speed(i)).sum();
+    let speed = |i: &usize| plan.data.values("speed").map_or(0.0, |v| v[*i].abs());
+    let duration = |i: &usize| 2.0 * (spec.tow.still_s + speed(i) / spec.tow.acceleration_m_s2) + spec.tow.steady_s;
+    let travel = |i: &usize| speed(i).powi(2) / spec.tow.acceleration_m_s2 + speed(i) * spec.tow.steady_s;
+    let steady_m = |i: &usize| windows_s[*i][0] * speed(i);
+    let all: Vec<usize> = (0..plan.data.rows).collect();
+    let duration_s: f64 = all.iter().map(duration).sum();
+    let longest_m = all.iter().map(travel).fold(0.0, f64::max);
+    let all_steady_m: f64 = all.iter().map(steady_m).sum();
+    let t = TableBuilder::new("matrix", "Run matrix.", &all);
+    let matrix = t.build(vec![
+        t.text("run", "run", |i| format!("{:03}", i + 1)),
+        t.text("configuration", "configuration", |i| plan.data.configuration[*i].clone()),
+        t.number("speed_m_s", "speed [m/s]", speed).significant(3),
+        t.number("angle_rad", "angle [deg]", |i| plan.data.values("angle").map_or(0.0, |a| a[*i])).plain(4),
+        t.number("duration_s", "duration [s]", duration).places(1),
+        t.number("travel_m", "travel [m]", travel).places(2),
+        t.number("window_s", "steady window [s]", |i| windows_s[*i][0]).places(1),
+        t.number("steady_distance_m", "steady distance [m]", steady_m).places(2),
+    ]);
     let paragraph = format!(
         "{} of {:.1} min in all on the log, waits between them and the way back not counted; {:.1} m of steady distance; the longest needs {:.2} m of travel. The intervals are those of the \
          linearised fit at the true coefficients of [simulate], with the noise of [[simulate.sensor]] and everything that is declared; bounds are not counted.",
-        froude_records::text::counted(plan.data.rows, "run", "runs"),
+        counted(plan.data.rows, "run", "runs"),
         duration_s / 60.0,
-        steady_m,
+        all_steady_m,
         longest_m
     );
-    Ok(Prospect {
-        source: source.name.clone(),
-        runs: plan.data.rows,
-        duration_s,
-        expected: of_law(&plan, &expected),
-        section: summary(DocumentSection {
-            title: format!("Plan of {}", source.name),
-            paragraphs: vec![paragraph],
-            tables: vec![matrix, coefficients],
-            charts: Vec::new(),
-        }),
-    })
+    let tables = [matrix, coefficients(&plan, &expected)];
+    Ok(plan::prospect(source, (plan.data.rows, duration_s), tables, vec![paragraph]))
 }
 
-/// The intervals for a program.
-pub(crate) fn of_law(plan: &Plan, expected: &[Expected]) -> Vec<ExpectedCoefficient> {
-    let one = |e: &Expected| ExpectedCoefficient {
-        model: plan.law.name.clone(),
-        name: e.name.clone(),
-        unit: e.unit.clone(),
-        value: e.value,
-        standard_uncertainty: e.combined.standard,
-        half_width_95: e.combined.arms[1],
-    };
-    expected.iter().map(one).collect()
-}
-
-/// The intervals for a person.
-pub(crate) fn coefficients(plan: &Plan, expected: &[Expected]) -> TextTable {
-    TextTable {
-        caption: format!(
-            "Intervals to expect, with the law {} of [simulate]: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it.",
-            plan.law.name
-        ),
-        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
-        rows: expected.iter().map(row).collect(),
-    }
-}
-
-fn row(e: &Expected) -> Vec<String> {
-    let half = e.combined.arms[1];
-    vec![
-        e.name.clone(),
-        e.unit.clone(),
-        number::significant(e.value, 4),
-        number::significant(half, 2),
-        if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) },
-        format!("{} ({})", e.mostly.0, number::significant(e.mostly.1, 2)),
-    ]
+/// The intervals to expect of the plan's law.
+pub(crate) fn coefficients(plan: &Plan, expected: &[Expected]) -> ResultTable {
+    plan::intervals(expected, &format!(", with the law {} of [simulate]", plan.law.name))
 }

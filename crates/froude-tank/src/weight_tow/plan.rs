@@ -4,19 +4,20 @@
 //! move, go through the linearised fit ([`crate::steady::plan`]). A speed that errs by δU moves a load by −∂f/∂U δU.
 
 use froude_identify::method::{MethodError, Prospect};
-use froude_records::block::summary;
+use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, SensorSpec, Source};
 use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
 use froude_records::run::Declared;
+use froude_records::text::counted;
 use froude_records::units::Dimension;
 use froude_records::weight_tow::WeightTowSpec;
 
 use super::reduce::{ERRORS, Reduced, reduce};
 use super::simulate::senses;
 use super::simulate::{Simulated, Weights, declared, simulated, weights_of};
+use crate::plan::{Expected, prospect as of_plan};
 use crate::sensors::seed_and_sensors;
-use crate::steady::plan::{self as steady, Expected, PlannedError};
+use crate::steady::plan::{self as steady, PlannedError};
 use crate::steady::simulate::{Plan, loads_at};
 
 /// Step of differences by the speed, as part of it.
@@ -125,62 +126,37 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let (_, sensors) = seed_and_sensors(campaign, &senses(&weights))?;
     let (runs, reduced) = exact(&weights, &spec, sensors)?;
     let expected = expected(&weights, source, &spec, &reduced, (sensors, campaign.identify.errors_in_variables))?;
-    let duration = |run: &Simulated| run.time_s[run.time_s.len() - 1];
-    let rows = runs.iter().zip(&reduced).enumerate().map(|(i, (run, found))| {
-        vec![
-            run.id.clone(),
-            run.configuration.clone(),
-            number::significant(run.weight_n, 3),
-            number::plain(run.angle_rad.to_degrees(), 4),
-            number::significant(found.track.speed_m_s, 3),
-            found
-                .balance
-                .map_or_else(|| "steady".to_owned(), |b| number::percent(found.track.speed_m_s / b.terminal_m_s)),
-            weights
-                .plan
-                .data
-                .values("speed")
-                .and_then(|v| v.get(i))
-                .map_or_else(String::new, |v| number::significant(*v, 3)),
-            number::fixed(duration(run), 1),
-        ]
-    });
-    let matrix = TextTable {
-        caption: "Run matrix.".to_owned(),
-        head: [
-            "run",
-            "configuration",
-            "weight [N]",
-            "angle [deg]",
-            "speed at the end [m/s]",
-            "reached",
-            "terminal speed [m/s]",
-            "duration [s]",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    };
-    let duration_s: f64 = runs.iter().map(duration).sum();
+    let duration_s: f64 = runs.iter().map(duration_s).sum();
     let accelerating = reduced.iter().filter(|r| r.balance.is_some()).count();
     let paragraph = format!(
         "{} of {:.1} min in all on the log, over {} m of way, waits between them not counted; {accelerating} of them do not become steady and are balanced. The intervals are those of the \
          linearised fit at the true coefficients of [simulate], with the noise of [[simulate.sensor]] and everything that is declared; bounds are not counted, nor that errors of the \
          speed bias a fit without errors_in_variables.",
-        froude_records::text::counted(runs.len(), "run", "runs"),
+        counted(runs.len(), "run", "runs"),
         duration_s / 60.0,
         number::plain(spec.travel_m, 3)
     );
-    Ok(Prospect {
-        source: source.name.clone(),
-        runs: runs.len(),
-        duration_s,
-        expected: steady::of_law(&weights.plan, &expected),
-        section: summary(DocumentSection {
-            title: format!("Plan of {}", source.name),
-            paragraphs: vec![paragraph],
-            tables: vec![matrix, steady::coefficients(&weights.plan, &expected)],
-            charts: Vec::new(),
-        }),
-    })
+    let tables = [matrix(&runs, &reduced, &weights.plan), steady::coefficients(&weights.plan, &expected)];
+    Ok(of_plan(source, (runs.len(), duration_s), tables, vec![paragraph]))
+}
+
+fn duration_s(run: &Simulated) -> f64 {
+    run.time_s[run.time_s.len() - 1]
+}
+
+fn matrix(runs: &[Simulated], reduced: &[Reduced], plan: &Plan) -> ResultTable {
+    let rows: Vec<_> = runs.iter().zip(reduced).enumerate().collect();
+    let terminal = plan.data.values("speed");
+    let t = TableBuilder::new("matrix", "Run matrix.", &rows);
+    t.build(vec![
+        t.text("run", "run", |(_, (run, _))| run.id.clone()),
+        t.text("configuration", "configuration", |(_, (run, _))| run.configuration.clone()),
+        t.number("weight_n", "weight [N]", |(_, (run, _))| run.weight_n).significant(3),
+        t.number("angle_rad", "angle [deg]", |(_, (run, _))| run.angle_rad).plain(4),
+        t.number("speed_m_s", "speed at the end [m/s]", |(_, (_, found))| found.track.speed_m_s).significant(3),
+        t.text("", "reached", |(_, (_, found))| found.reached().map_or_else(|| "steady".to_owned(), number::percent)),
+        t.number("reached", "", |(_, (_, found))| found.reached()),
+        t.number("terminal_m_s", "terminal speed [m/s]", |(i, _)| terminal?.get(*i).copied()).significant(3),
+        t.number("duration_s", "duration [s]", |(_, (run, _))| duration_s(run)).places(1),
+    ])
 }

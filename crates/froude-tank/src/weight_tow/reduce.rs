@@ -66,6 +66,14 @@ pub struct Reduced {
     pub moves: [Moves; 4],
 }
 
+impl Reduced {
+    /// Its speed as part of the terminal one; `None` where it is steady.
+    #[must_use]
+    pub fn reached(&self) -> Option<f64> {
+        self.balance.map(|b| self.track.speed_m_s / b.terminal_m_s)
+    }
+}
+
 /// What is declared, moved by a standard uncertainty to see what that does.
 #[derive(Debug, Clone, Copy, Default)]
 struct Moved {
