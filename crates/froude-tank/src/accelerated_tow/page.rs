@@ -3,89 +3,71 @@
 use std::f64::consts::TAU;
 
 use froude_identify::regression::ModelFit;
+use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 use froude_records::run::ImportedRun;
 
 use super::law::names;
 use super::reduce::{Reduced, Setup};
+use super::rows::Rows;
 
 /// Runs that are drawn; more would be a page of the same.
 const DRAWN: usize = 4;
 
 /// What was done to the runs, and what the law `model` leaves of them.
 #[must_use]
-pub fn section(logs: &[ImportedRun], reduced: &Reduced, setup: &Setup, model: Option<&ModelFit>) -> DocumentSection {
+pub fn section(logs: &[ImportedRun], reduced: &Reduced, setup: &Setup, model: Option<&ModelFit>) -> Section {
     let paragraph = format!(
         "Motion and force are weighted by windows of {} s, a third of that apart; the acceleration is that of the windows' derivatives, so that it is as late and as smooth as the force. \
          The zero of each run is the straight line between the means of its parts at rest. The load of the water is the mass below the cell times the acceleration, less the force.",
         number::plain(setup.window_s, 4)
     );
-    let mut charts = vec![signals(logs, reduced)];
-    if let Some(model) = model {
-        charts.push(fitted(reduced, model, setup));
-        charts.push(spectrum(reduced, model, setup));
-    }
-    DocumentSection {
-        title: "Runs and windows".to_owned(),
-        paragraphs: vec![paragraph],
-        tables: vec![runs(reduced, setup), masses(reduced, setup)],
-        charts,
-    }
+    let tables = [runs(reduced, setup), masses(reduced, setup)].map(Block::from);
+    let of_law = model.map(|model| [fitted(reduced, model, setup), spectrum(reduced, model, setup)]);
+    let charts = std::iter::once(signals(logs, reduced)).chain(of_law.into_iter().flatten()).map(Block::from);
+    Section::new("Runs and windows", std::iter::once(Block::words([paragraph])).chain(tables).chain(charts))
 }
 
-fn runs(reduced: &Reduced, setup: &Setup) -> TextTable {
-    let rows = reduced.runs.iter().map(|(id, body, rows)| {
-        let largest = |of: &[f64]| of.iter().fold(0.0_f64, |m, x| if x.abs() > m.abs() { *x } else { m });
-        vec![
-            id.clone(),
-            setup.bodies[*body].name.clone(),
-            format!("{:.2} to {:.2}", rows.middle_s[0], rows.middle_s[rows.middle_s.len() - 1]),
-            rows.middle_s.len().to_string(),
-            number::significant(largest(&rows.speed_m_s), 3),
-            number::significant(largest(&rows.acceleration_m_s2), 3),
-            number::significant(rows.noise_m_s2, 2),
-            number::short_form(rows.zero_n[0], rows.zero_standard_n),
-            number::significant(rows.zero_n[1] - rows.zero_n[0], 2),
-        ]
-    });
-    TextTable {
-        caption: "Each run as it was weighted.".to_owned(),
-        head: [
-            "run",
-            "configuration",
-            "windows [s]",
-            "rows",
-            "largest speed [m/s]",
-            "largest acceleration [m/s²]",
-            "noise of the acceleration [m/s²]",
+fn runs(reduced: &Reduced, setup: &Setup) -> ResultTable {
+    let largest = |of: &[f64]| of.iter().fold(0.0_f64, |m, x| if x.abs() > m.abs() { *x } else { m });
+    let ends = |rows: &Rows| [rows.middle_s[0], rows.middle_s[rows.middle_s.len() - 1]];
+    let windows = |[from, to]: [f64; 2]| format!("{from:.2} to {to:.2}");
+    let t = TableBuilder::new("runs", "Each run as it was weighted.", &reduced.runs);
+    t.build(vec![
+        t.text("run", "run", |(id, ..)| id.clone()),
+        t.text("configuration", "configuration", |(_, body, _)| setup.bodies[*body].name.clone()),
+        t.text("", "windows [s]", |(.., rows)| windows(ends(rows))),
+        t.interval("windows_s", "", |(.., rows)| ends(rows)),
+        t.count("rows", "rows", |(.., rows)| rows.middle_s.len()),
+        t.number("speed_m_s", "largest speed [m/s]", |(.., rows)| largest(&rows.speed_m_s)).significant(3),
+        t.number("acceleration_m_s2", "largest acceleration [m/s²]", |(.., rows)| largest(&rows.acceleration_m_s2))
+            .significant(3),
+        t.number("noise_m_s2", "noise of the acceleration [m/s²]", |(.., rows)| rows.noise_m_s2).significant(2),
+        t.uncertain(
+            ["zero_n", "zero_standard_n"],
             "zero [N]",
-            "drift of the zero [N]",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    }
+            |(.., rows)| rows.zero_n[0],
+            |(.., rows)| rows.zero_standard_n,
+        ),
+        t.number("drift_n", "drift of the zero [N]", |(.., rows)| rows.zero_n[1] - rows.zero_n[0]).significant(2),
+    ])
 }
 
-fn masses(reduced: &Reduced, setup: &Setup) -> TextTable {
-    let rows = setup.bodies.iter().zip(&reduced.masses).map(|(body, mass)| {
-        vec![
-            body.name.clone(),
-            number::short_form(mass.value_kg, mass.standard_kg),
-            if mass.is_weighed { "by runs in air" } else { "declared" }.to_owned(),
-            number::plain(body.volume_m3, 5),
-        ]
-    });
-    TextTable {
-        caption: "Masses below the load cell, and the volumes that C_A refers to.".to_owned(),
-        head: ["configuration", "mass [kg]", "from", "reference volume [m³]"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-    }
+fn masses(reduced: &Reduced, setup: &Setup) -> ResultTable {
+    let rows: Vec<_> = setup.bodies.iter().zip(&reduced.masses).collect();
+    let caption = "Masses below the load cell, and the volumes that C_A refers to.";
+    let t = TableBuilder::new("masses", caption, &rows);
+    t.build(vec![
+        t.text("configuration", "configuration", |(body, _)| body.name.clone()),
+        t.uncertain(["mass_kg", "mass_standard_kg"], "mass [kg]", |(_, m)| m.value_kg, |(_, m)| m.standard_kg),
+        t.text("from", "from", |(_, m)| if m.is_weighed { "by runs in air" } else { "declared" }.to_owned()),
+        t.number("reference_volume_m3", "reference volume [m³]", |(body, _)| body.volume_m3).plain(5),
+    ])
 }
 
 fn signals(logs: &[ImportedRun], reduced: &Reduced) -> Chart {
-    let panel = |(id, _, rows): &(String, usize, super::rows::Rows)| {
+    let panel = |(id, _, rows): &(String, usize, Rows)| {
         let log = &logs.iter().find(|log| log.log.meta.id == *id)?.log;
         let force = &log.channels.get("force")?.values;
         let line = |name: &str, [from, to]: [f64; 2], [a, b]: [f64; 2]| Series {

@@ -123,7 +123,7 @@ impl Method for AcceleratedTow {
         let relative = added.and_then(|c| Some((c.standard_uncertainty? / c.value?).abs())).unwrap_or(f64::INFINITY);
         findings.extend(of_runs(&reduced, &setup, spec, relative));
         findings.extend(result.models.get(best).and_then(|model| lag::finding(campaign, &reduced, &setup, model)));
-        let blocks = vec![page::section(&logs, &reduced, &setup, result.models.get(best)).into()];
+        let blocks = vec![page::section(&logs, &reduced, &setup, result.models.get(best))];
         Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
     }
 

@@ -10,11 +10,11 @@ use crate::long_logs::Reading;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
 use froude_identify::runs::{recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
+use froude_records::block::{Section, TableBuilder};
 use froude_records::campaign::{Campaign, Motion, Source};
 use froude_records::decay::{DecaySpec, DeclaredRestoring};
 use froude_records::finding::{Finding, Severity};
-use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Series};
 use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role};
 use froude_records::units::Dimension;
 
@@ -99,7 +99,7 @@ impl Method for FreeDecay {
                 said.push(finding);
             }
         }
-        let blocks = fits.last().map(|fit| section(fit, &runs).into()).into_iter().collect();
+        let blocks = fits.last().map(|fit| section(fit, &runs)).into_iter().collect();
         Ok(Found { results: out, blocks, findings: said, ..Found::default() })
     }
 
@@ -159,25 +159,30 @@ fn setup_of(spec: &DecaySpec) -> DecaySetup {
 const DRAWN: usize = 6;
 
 /// The releases on the page: what was used of each, and the motion with that of the fit.
-fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> DocumentSection {
-    let unit = if fit.axis.is_rotation() { "rad" } else { "m" };
-    let rows = fit.runs.iter().map(|r| {
-        let [position, speed] = r.start;
-        vec![
-            r.id.clone(),
-            r.half_cycles.to_string(),
-            number::plain(r.from_s, 4),
-            number::plain(position, 4),
-            number::plain(speed, 3),
-            number::plain(r.rest, 3),
-            number::significant(r.noise, 2),
-            number::significant(r.residual_rms, 2),
-        ]
-    });
-    let left = match fit.method {
-        DecayMethod::OutputError => format!("residual of the position, rms [{unit}]"),
-        DecayMethod::Envelope => format!("residual of the force, rms [{}]", if unit == "rad" { "N m" } else { "N" }),
+fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> Section {
+    let is_angle = fit.axis.is_rotation();
+    let unit = if is_angle { "rad" } else { "m" };
+    let left = match (fit.method, is_angle) {
+        (DecayMethod::OutputError, true) => ["residual_rms_rad", "residual of the position, rms [rad]"],
+        (DecayMethod::OutputError, false) => ["residual_rms_m", "residual of the position, rms [m]"],
+        (DecayMethod::Envelope, true) => ["residual_rms_n_m", "residual of the force, rms [N m]"],
+        (DecayMethod::Envelope, false) => ["residual_rms_n", "residual of the force, rms [N]"],
     };
+    let caption = format!("Data used of each release, by {}.", fit.method.name());
+    let t = TableBuilder::new("releases", caption, &fit.runs);
+    let of = |key: &str, head: &str, of: fn(&RunSummary) -> f64| {
+        t.number(&format!("{key}_{unit}"), &format!("{head} [{unit}]"), of)
+    };
+    let table = t.build(vec![
+        t.text("release", "release", |r| r.id.clone()),
+        t.count("half_cycles", "half cycles", |r| r.half_cycles),
+        t.number("from_s", "from [s]", |r| r.from_s).plain(4),
+        of("position", "position there", |r| r.start[0]).plain(4),
+        t.number(&format!("speed_{unit}_s"), &format!("speed there [{unit}/s]"), |r| r.start[1]).plain(3),
+        of("rest", "rest", |r| r.rest).plain(3),
+        of("noise", "noise of a sample", |r| r.noise).significant(2),
+        t.number(left[0], left[1], |r| r.residual_rms).significant(2),
+    ]);
     let panel = |summary: &RunSummary| {
         let run = runs.iter().find(|run| run.id == summary.id)?;
         let first = run.time_s.partition_point(|t| *t < summary.from_s);
@@ -210,26 +215,8 @@ fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> DocumentSection {
         panels,
         ..Chart::default()
     };
-    DocumentSection {
-        title: "Releases".to_owned(),
-        paragraphs: Vec::new(),
-        tables: vec![TextTable {
-            caption: format!("Data used of each release, by {}.", fit.method.name()),
-            head: ["release", "half cycles", "from [s]"]
-                .map(str::to_owned)
-                .into_iter()
-                .chain([
-                    format!("position there [{unit}]"),
-                    format!("speed there [{unit}/s]"),
-                    format!("rest [{unit}]"),
-                    format!("noise of a sample [{unit}]"),
-                    left,
-                ])
-                .collect(),
-            rows: rows.collect(),
-        }],
-        charts: if chart.panels.is_empty() { Vec::new() } else { vec![chart] },
-    }
+    let chart = (!chart.panels.is_empty()).then(|| chart.into());
+    Section::new("Releases", std::iter::once(table.into()).chain(chart))
 }
 
 struct Releases {

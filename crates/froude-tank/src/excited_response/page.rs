@@ -1,11 +1,15 @@
 //! An excited response on the page: coefficients over the period, signals with their window and fit, spectrum of what is left, budget.
 
+use froude_fit::budget::Part;
+use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 use froude_signal::spectrum::density;
 
 use super::coefficients::{AtPeriod, NAMES, UNITS, Used};
+use super::response::Response;
 use super::setup::WaveRun;
+use super::wave::Wave;
 
 /// Runs that are drawn; more would be a page of the same.
 const DRAWN: usize = 10;
@@ -18,55 +22,50 @@ const NONE: &str = "not determined";
 
 /// The coefficients of all periods.
 #[must_use]
-pub fn coefficients(found: &[AtPeriod]) -> DocumentSection {
-    let rows = found.iter().flat_map(|at| {
-        [0, 1].map(|j| {
-            let (value, c) = (at.values[j], at.combined[j]);
-            let is_stated = j == 0 || at.is_declared;
-            let of = |text: String| if is_stated { text } else { "–".to_owned() };
-            vec![
-                number::fixed(at.period_s, 3),
-                NAMES[j].to_owned(),
-                if is_stated { number::short_form(value, c.standard) } else { NONE.to_owned() },
-                UNITS[j].to_owned(),
-                of(number::interval(c.interval(value))),
-                of(number::significant(c.type_a, 2)),
-                of(number::significant(c.type_b, 2)),
-                of(format!("{} and {}", number::plain(at.halves[0][j], 3), number::plain(at.halves[1][j], 3))),
-                of(number::fixed(at.correlation(), 2)),
-            ]
-        })
-    });
-    let table = TextTable {
-        caption: "Added mass and damping at each period of the wave; standard uncertainty in brackets. The halves are those of the window: where they differ, the start has not decayed or reflections are \
-                  back. The correlation is that of the two coefficients of a period."
-            .to_owned(),
-        head: ["period [s]", "coefficient", "value", "unit", "95 % interval", "type A", "type B", "from the halves", "correlation"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
+pub fn coefficients(found: &[AtPeriod]) -> Section {
+    let rows: Vec<(&AtPeriod, usize)> = found.iter().flat_map(|at| [(at, 0), (at, 1)]).collect();
+    let stated = |(at, j): &(&AtPeriod, usize)| {
+        (*j == 0 || at.is_declared).then(|| (at.values[*j], at.combined[*j], at.halves.map(|half| half[*j])))
     };
+    let caption = "Added mass and damping at each period of the wave; standard uncertainty in brackets. The halves are those of the window: where they differ, the start has not decayed or reflections are \
+                   back. The correlation is that of the two coefficients of a period.";
+    let t = TableBuilder::new("coefficients", caption, &rows);
+    let value =
+        |row| stated(row).map_or_else(|| NONE.to_owned(), |(value, c, _)| number::short_form(value, c.standard));
+    let halves = |[a, b]: [f64; 2]| format!("{} and {}", number::plain(a, 3), number::plain(b, 3));
+    let number = |row| stated(row).map(|(value, ..)| value);
+    let standard = |row| stated(row).map(|(_, c, _)| c.standard);
+    let table = t.build(vec![
+        t.number("period_s", "period [s]", |(at, _)| at.period_s).places(3),
+        t.text("coefficient", "coefficient", |(_, j)| NAMES[*j].to_owned()),
+        t.text("", "value", value),
+        t.uncertain(["value", "standard_uncertainty"], "", number, standard),
+        t.text("unit", "unit", |(_, j)| UNITS[*j].to_owned()),
+        t.interval("interval_95", "95 % interval", |row| stated(row).map(|(value, c, _)| c.interval(value))),
+        t.number("type_a", "type A", |row| stated(row).map(|(_, c, _)| c.type_a)).significant(2),
+        t.number("type_b", "type B", |row| stated(row).map(|(_, c, _)| c.type_b)).significant(2),
+        t.text("", "from the halves", |row| stated(row).map(|(.., of)| halves(of))),
+        t.numbers("from_halves", "", |row| stated(row).map(|(.., halves)| halves.to_vec())),
+        t.number("correlation", "correlation", |row| stated(row).map(|_| row.0.correlation())).places(2),
+    ]);
     let why = "B33 is not determined: B33 only with the declared window before reflections (window in [source.excited_response]).";
-    let paragraphs = if found.iter().all(|at| at.is_declared) { Vec::new() } else { vec![why.to_owned()] };
-    DocumentSection {
-        title: "Results".to_owned(),
-        paragraphs,
-        tables: vec![table],
-        charts: over_period(found).into_iter().collect(),
-    }
+    let said = found.iter().any(|at| !at.is_declared).then(|| why.to_owned());
+    let chart = over_period(found).map(Block::from);
+    Section::new("Results", [table.into(), Block::words(said)].into_iter().chain(chart))
 }
 
 /// Runs and fits.
 #[must_use]
-pub fn section(found: &[AtPeriod], runs: &[WaveRun<'_>]) -> DocumentSection {
+pub fn section(found: &[AtPeriod], runs: &[WaveRun<'_>]) -> Section {
     let paragraph = "Force of the held body and motion of the free one are fitted by harmonics of the wavemaker's own frequency, over whole cycles of the window, and divided by the wavemaker's motion, so that \
                      both runs stand on its clock and for one wave. Then (−ω²(m + A33) + iωB33 + C33) z = F.";
-    DocumentSection {
-        title: "Runs and fit".to_owned(),
-        paragraphs: vec![paragraph.to_owned()],
-        tables: vec![table(found, runs), budget(found)],
-        charts: std::iter::once(signals(found, runs)).chain(spectrum(found, runs)).collect(),
-    }
+    let blocks = [
+        Block::words([paragraph.to_owned()]),
+        table(found, runs).into(),
+        budget(found).into(),
+        signals(found, runs).into(),
+    ];
+    Section::new("Runs and fit", blocks.into_iter().chain(spectrum(found, runs).map(Block::from)))
 }
 
 /// A33 and B33 over the period; nothing to draw for one.
@@ -96,60 +95,45 @@ fn over_period(found: &[AtPeriod]) -> Option<Chart> {
     })
 }
 
-fn table(found: &[AtPeriod], runs: &[WaveRun<'_>]) -> TextTable {
-    let rows = found.iter().flat_map(AtPeriod::used).map(|used| {
-        let (run, response) = (&runs[used.run], &used.response);
-        let relative = (response.variance / response.transfer.norm_sqr()).sqrt();
-        vec![
-            run.id.to_owned(),
-            if run.is_held() { "held" } else { "free" }.to_owned(),
-            number::plain(used.wave.period_s(), 5),
-            number::plain(1e3 * used.wave.amplitude, 4),
-            number::plain(used.wave.start_s, 4),
-            response.cycles.to_string(),
-            format!("{} {}", number::significant(response.amplitude, 4), run.shows.unit()),
-            number::plain(response.transfer.im.atan2(response.transfer.re).to_degrees(), 4),
-            number::percent(relative),
-        ]
-    });
-    TextTable {
-        caption: "Each run as it was used: amplitude and phase of force or motion at the wave's frequency, the phase before the wavemaker's; the scatter is that of one component, from the lines beside the \
-                  wave's frequency."
-            .to_owned(),
-        head: [
-            "run",
-            "body",
-            "period found [s]",
-            "stroke [mm]",
-            "start [s]",
-            "cycles used",
-            "amplitude",
-            "phase [deg]",
-            "scatter",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    }
+fn table(found: &[AtPeriod], runs: &[WaveRun<'_>]) -> ResultTable {
+    let rows: Vec<(&WaveRun<'_>, &Wave, &Response)> =
+        found.iter().flat_map(AtPeriod::used).map(|used| (&runs[used.run], &used.wave, &used.response)).collect();
+    let caption = "Each run as it was used: amplitude and phase of force or motion at the wave's frequency, the phase before the wavemaker's; the scatter is that of one component, from the lines beside the \
+                   wave's frequency.";
+    let t = TableBuilder::new("runs", caption, &rows);
+    let amplitude = |(run, _, found): &(&WaveRun<'_>, _, &Response)| {
+        format!("{} {}", number::significant(found.amplitude, 4), run.shows.unit())
+    };
+    t.build(vec![
+        t.text("run", "run", |(run, ..)| run.id.to_owned()),
+        t.text("body", "body", |(run, ..)| if run.is_held() { "held" } else { "free" }.to_owned()),
+        t.number("period_s", "period found [s]", |(_, wave, _)| wave.period_s()).plain(5),
+        t.number("stroke_m", "stroke [mm]", |(_, wave, _)| wave.amplitude).plain(4),
+        t.number("start_s", "start [s]", |(_, wave, _)| wave.start_s).plain(4),
+        t.count("cycles", "cycles used", |(.., found)| found.cycles),
+        t.text("", "amplitude", amplitude),
+        t.number("amplitude", "", |(.., found)| found.amplitude),
+        t.text("unit", "", |(run, ..)| run.shows.unit().to_owned()),
+        t.number("phase_rad", "phase [deg]", |(.., found)| found.transfer.im.atan2(found.transfer.re)).plain(4),
+        t.number("scatter", "scatter", |(.., found)| (found.variance / found.transfer.norm_sqr()).sqrt()).percent(),
+    ])
 }
 
 /// What costs what, by period.
-fn budget(found: &[AtPeriod]) -> TextTable {
+fn budget(found: &[AtPeriod]) -> ResultTable {
     let rows = found.iter().flat_map(|at| {
-        let cells = |name: String, a: f64, b: f64| {
-            let damping = if at.is_declared { number::significant(b, 2) } else { "–".to_owned() };
-            vec![number::fixed(at.period_s, 3), name, number::significant(a, 2), damping]
-        };
-        let parts =
-            at.parts.iter().map(move |p| cells(format!("{} ({})", p.name, p.kind), p.standard(0), p.standard(1)));
-        let combined = cells("combined".to_owned(), at.combined[0].standard, at.combined[1].standard);
-        parts.chain([combined]).collect::<Vec<_>>()
+        let by_part = |p: &Part| (at, format!("{} ({})", p.name, p.kind), [p.standard(0), p.standard(1)]);
+        let combined = (at, "combined".to_owned(), at.combined.map(|c| c.standard));
+        at.parts.iter().map(by_part).chain([combined]).collect::<Vec<_>>()
     });
-    TextTable {
-        caption: "Standard uncertainties, by error.".to_owned(),
-        head: ["period [s]", "error (type)", "A33 [kg]", "B33 [N s/m]"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-    }
+    let rows: Vec<(&AtPeriod, String, [f64; 2])> = rows.collect();
+    let t = TableBuilder::new("budget", "Standard uncertainties, by error.", &rows);
+    t.build(vec![
+        t.number("period_s", "period [s]", |(at, ..)| at.period_s).places(3),
+        t.text("error", "error (type)", |(_, name, _)| name.clone()),
+        t.number("A33", "A33 [kg]", |(.., standard)| standard[0]).significant(2),
+        t.number("B33", "B33 [N s/m]", |(at, _, standard)| at.is_declared.then_some(standard[1])).significant(2),
+    ])
 }
 
 fn signals(found: &[AtPeriod], runs: &[WaveRun<'_>]) -> Chart {

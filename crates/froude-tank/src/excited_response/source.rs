@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use froude_fit::budget::Uncertain;
 use froude_identify::answer::Made;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
-use froude_records::block::summary;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::excited_response::ExcitedSpec;
 use froude_records::run::{Channel, Declared, EXCITED_RESPONSE, ImportedRun, Role};
@@ -77,8 +76,8 @@ impl Method for ExcitedResponse {
         };
         Ok(Found {
             results: found.iter().enumerate().map(made).collect(),
-            summary: Some(summary(page::coefficients(&found))),
-            blocks: vec![page::section(&found, &runs).into()],
+            summary: Some(page::coefficients(&found)),
+            blocks: vec![page::section(&found, &runs)],
             findings: distinct(said),
             ..Found::default()
         })

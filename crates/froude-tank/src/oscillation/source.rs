@@ -6,7 +6,6 @@ use froude_identify::answer::Made;
 use froude_identify::dataset::Dataset;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
 use froude_identify::source::laws;
-use froude_records::block::summary;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::oscillation::OscillationSpec;
@@ -115,8 +114,7 @@ fn identified(
     findings.extend(findings::of_runs(&runs, &motions, &setup, campaign));
     findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
     findings.extend(fits.iter().flat_map(|(_, fit)| findings::of_fit(fit, &runs, &motions, &setup)));
-    let blocks =
-        fits.get(chosen).map(|(_, fit)| page::section(fit, &runs, &motions, &setup).into()).into_iter().collect();
+    let blocks = fits.get(chosen).map(|(_, fit)| page::section(fit, &runs, &motions, &setup)).into_iter().collect();
     let estimate = |(i, (drag, fit)): (usize, &(Drag, _))| {
         let context = record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions };
         let mut estimate = record::estimate(fit, drag, &context, (i == chosen).then_some(fits.len()));
@@ -126,7 +124,7 @@ fn identified(
         Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
     };
     let results = fits.iter().enumerate().map(estimate).collect();
-    let summary = (!fits.is_empty()).then(|| summary(page::laws(&fits, chosen)));
+    let summary = (!fits.is_empty()).then(|| page::laws(&fits, chosen));
     Ok(Found { results, summary, blocks, findings: distinct(findings), ..Found::default() })
 }
 

@@ -3,7 +3,6 @@
 use froude_fit::budget::Uncertain;
 use froude_identify::answer::Made;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
-use froude_records::block::summary;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::rotation::RotationSpec;
 use froude_records::run::{Channel, Declared, ImportedRun, ROTATION, Role};
@@ -85,8 +84,8 @@ impl Method for Rotation {
         let made = Made { name: estimate.id.clone(), estimate, files };
         Ok(Found {
             results: vec![made.into()],
-            summary: Some(summary(page::results(&fit, &derived))),
-            blocks: vec![page::section(&fit, &runs, &motions, &setup).into()],
+            summary: Some(page::results(&fit, &derived)),
+            blocks: vec![page::section(&fit, &runs, &motions, &setup)],
             findings: distinct(findings),
             ..Found::default()
         })

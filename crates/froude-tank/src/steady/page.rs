@@ -1,10 +1,12 @@
 //! Steady tows on the page: each run as it was reduced, and the first of them with their windows.
 
+use froude_records::block::{Block, ResultColumn, ResultTable, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Series};
 use froude_records::run::ImportedRun;
 use froude_records::steady::SteadySpec;
 
+use super::point::Load;
 use super::row::Row;
 use crate::residual_spectrum::{self, Left};
 
@@ -13,7 +15,7 @@ const DRAWN: usize = 6;
 
 /// What was done to the runs.
 #[must_use]
-pub fn section(logs: &[ImportedRun], rows: &[Row], spec: &SteadySpec) -> DocumentSection {
+pub fn section(logs: &[ImportedRun], rows: &[Row], spec: &SteadySpec) -> Section {
     let paragraph = format!(
         "The steady window of a run is the longest stretch whose blocks of {} s have speeds within ± {} of the middle of their range, without the first {} s and, where \
          the log goes on, its last block. Means are tapered at both ends and count the correlation of their samples; the zero is the straight line between the means at rest before and after.",
@@ -21,53 +23,55 @@ pub fn section(logs: &[ImportedRun], rows: &[Row], spec: &SteadySpec) -> Documen
         number::percent(spec.tolerance),
         number::plain(spec.settle_s, 4)
     );
-    DocumentSection {
-        title: "Runs and windows".to_owned(),
-        paragraphs: vec![paragraph],
-        tables: vec![table(logs, rows)],
-        charts: std::iter::once(chart(logs, rows)).chain(spectra(logs, rows)).collect(),
-    }
+    let charts = std::iter::once(chart(logs, rows)).chain(spectra(logs, rows)).map(Block::from);
+    Section::new("Runs and windows", [Block::words([paragraph]), table(logs, rows).into()].into_iter().chain(charts))
 }
 
 fn log_of<'a>(logs: &'a [ImportedRun], row: &Row) -> Option<&'a ImportedRun> {
     logs.iter().find(|log| log.log.meta.id == row.run)
 }
 
-fn table(logs: &[ImportedRun], rows: &[Row]) -> TextTable {
-    let Some(Row { point: first, .. }) = rows.first() else { return TextTable::default() };
-    let head = ["run", "configuration", "angle [deg]", "window [s]", "speed [m/s]", "scatter of the speed [m/s]"];
-    let mut head: Vec<String> = head.map(str::to_owned).to_vec();
-    for load in &first.loads {
-        let unit = unit_of(&load.name);
-        head.push(format!("{} [{unit}]", load.name));
-        head.push(format!("correlation of {} [s]", load.name));
-        head.push(format!("zero of {} [{unit}]", load.name));
+fn table(logs: &[ImportedRun], rows: &[Row]) -> ResultTable {
+    let ends = |row: &Row| {
+        let (log, window) = (&log_of(logs, row)?.log, &row.point.window.steady);
+        Some([log.time_s[window.start], log.time_s[window.end - 1]])
+    };
+    let window = |[from, to]: [f64; 2]| format!("{} to {}", number::fixed(from, 2), number::fixed(to, 2));
+    let caption = "Each run as it was reduced; standard uncertainty from the scatter within the run in brackets.";
+    let t = TableBuilder::new("runs", caption, rows);
+    let mut columns = vec![
+        t.text("run", "run", |row| row.run.clone()),
+        t.text("configuration", "configuration", |row| row.configuration.clone()),
+        t.number("angle_rad", "angle [deg]", |row| row.angle_rad).plain(4),
+        t.text("", "window [s]", |row| ends(row).map(window)),
+        t.interval("window_s", "", ends),
+        t.number("speed_m_s", "speed [m/s]", |row| row.point.speed_m_s).plain(5),
+        t.number("speed_scatter_m_s", "scatter of the speed [m/s]", |row| row.point.speed_scatter_m_s).significant(2),
+    ];
+    for (k, load) in rows.first().map_or(&[] as &[_], |row| &row.point.loads).iter().enumerate() {
+        let (name, unit) = (&load.name, unit_of(&load.name));
+        let zero = [format!("{name}_zero_{}", key_of(unit)), format!("zero of {name} [{unit}]")];
+        let correlation = [format!("{name}_correlation_s"), format!("correlation of {name} [s]")];
+        let correlation_s = |row: &Row| row.point.loads.get(k).map(|load| load.read.correlation_s);
+        columns.extend([
+            load_column(&t, name, |row| row.point.loads.get(k)),
+            t.number(&correlation[0], &correlation[1], correlation_s).significant(2),
+            t.number(&zero[0], &zero[1], |row| row.point.loads.get(k).map(|load| load.zero)).plain(4),
+        ]);
     }
-    let cells = rows.iter().map(|row| {
-        let point = &row.point;
-        let at =
-            |sample: usize| log_of(logs, row).map_or_else(String::new, |log| number::fixed(log.log.time_s[sample], 2));
-        let mut out = vec![
-            row.run.clone(),
-            row.configuration.clone(),
-            number::plain(row.angle_rad.to_degrees(), 4),
-            format!("{} to {}", at(point.window.steady.start), at(point.window.steady.end - 1)),
-            number::plain(point.speed_m_s, 5),
-            number::significant(point.speed_scatter_m_s, 2),
-        ];
-        for load in &point.loads {
-            out.push(number::short_form(load.value, load.standard));
-            out.push(number::significant(load.read.correlation_s, 2));
-            out.push(number::plain(load.zero, 4));
-        }
-        out
-    });
-    TextTable {
-        caption: "Each run as it was reduced; standard uncertainty from the scatter within the run in brackets."
-            .to_owned(),
-        head,
-        rows: cells.collect(),
-    }
+    t.build(columns)
+}
+
+/// A load of each run, with its standard uncertainty.
+pub(crate) fn load_column<'r, R>(
+    t: &TableBuilder<'r, R>,
+    name: &str,
+    of: impl Fn(&'r R) -> Option<&'r Load>,
+) -> ResultColumn {
+    let unit = unit_of(name);
+    let keys = ["", "standard_"].map(|what| format!("{name}_{what}{}", key_of(unit)));
+    let (value, standard) = (|row| of(row).map(|load| load.value), |row| of(row).map(|load| load.standard));
+    t.uncertain([&keys[0], &keys[1]], &format!("{name} [{unit}]"), value, standard)
 }
 
 fn chart(logs: &[ImportedRun], rows: &[Row]) -> Chart {
@@ -114,7 +118,7 @@ fn chart(logs: &[ImportedRun], rows: &[Row]) -> Chart {
 /// What the mean leaves of each load in the windows.
 fn spectra(logs: &[ImportedRun], rows: &[Row]) -> Vec<Chart> {
     let loads = rows.first().map_or(&[] as &[_], |row| row.point.loads.as_slice());
-    let chart = |load: &super::point::Load| {
+    let chart = |load: &Load| {
         let left = rows.iter().filter_map(|row| {
             let (log, window) = (&log_of(logs, row)?.log, row.point.window.steady.clone());
             Some(Left::of(&log.time_s[window.clone()], log.channels.get(&load.name)?.values[window].to_vec()))
@@ -135,4 +139,9 @@ fn spectra(logs: &[ImportedRun], rows: &[Row]) -> Vec<Chart> {
 
 fn unit_of(load: &str) -> &'static str {
     if load.starts_with('m') { "N m" } else { "N" }
+}
+
+/// Of a unit, at the end of a key.
+fn key_of(unit: &str) -> String {
+    unit.to_lowercase().replace(' ', "_")
 }

@@ -100,7 +100,7 @@ impl Method for Steady {
             progress(&format!("fitting {model}"));
         })?;
         findings.append(&mut result.findings);
-        let blocks = vec![page::section(&logs, &reduced.rows, &spec).into()];
+        let blocks = vec![page::section(&logs, &reduced.rows, &spec)];
         Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
     }
 

@@ -1,12 +1,15 @@
 //! The weight-driven rig on the page: each run as it was reduced, and the first of them with their tracks.
 
+use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Series};
 use froude_records::run::ImportedRun;
 use froude_records::weight_tow::WeightTowSpec;
 
 use super::reduce::Reduced;
 use crate::residual_spectrum::{self, Left};
+use crate::steady::page::load_column;
+use crate::steady::point::Load;
 use crate::steady::row::Row;
 
 /// Runs that are drawn; more would be a page of the same.
@@ -20,7 +23,7 @@ pub fn section(
     logs: &[ImportedRun],
     positions: &[Vec<f64>],
     spec: &WeightTowSpec,
-) -> DocumentSection {
+) -> Section {
     let paragraph = format!(
         "The speed of a run is that of the last {} m of its way. Where no moving mass is declared, a run must be shown to change its speed by less than {} there, and the load cell gives its drag; else the drag along the rail is \
          what the weight, less the friction and the inertia of the moving mass, leaves for it, at the speed that the wagon has, if that is {} of its terminal speed or more.",
@@ -28,41 +31,32 @@ pub fn section(
         number::percent(spec.tolerance),
         number::percent(spec.reached)
     );
-    DocumentSection {
-        title: "Runs and tracks".to_owned(),
-        paragraphs: vec![paragraph],
-        tables: vec![table(rows, reduced)],
-        charts: std::iter::once(chart(rows, reduced, logs, positions)).chain(spectrum(rows, reduced, logs)).collect(),
-    }
+    let blocks = [Block::words([paragraph]), table(rows, reduced).into(), chart(rows, reduced, logs, positions).into()];
+    Section::new("Runs and tracks", blocks.into_iter().chain(spectrum(rows, reduced, logs).map(Block::from)))
 }
 
-fn table(rows: &[Row], reduced: &[Reduced]) -> TextTable {
-    let mut head: Vec<String> =
-        ["run", "configuration", "angle [deg]", "speed [m/s]", "change over the window [%]", "reached"]
-            .map(str::to_owned)
-            .to_vec();
-    for load in rows.first().map_or(&[] as &[_], |row| &row.point.loads) {
-        head.push(format!("{} [N]", load.name));
-    }
-    let cells = rows.iter().zip(reduced).map(|(row, found)| {
-        let mut out = vec![
-            row.run.clone(),
-            row.configuration.clone(),
-            number::plain(row.angle_rad.to_degrees(), 4),
-            number::short_form(found.track.speed_m_s, found.track.standard_m_s),
-            number::fixed(1e2 * found.track.change[0], 1),
-            found
-                .balance
-                .map_or_else(|| "steady".to_owned(), |b| number::percent(found.track.speed_m_s / b.terminal_m_s)),
-        ];
-        out.extend(row.point.loads.iter().map(|load| number::short_form(load.value, load.standard)));
-        out
-    });
-    TextTable {
-        caption: "Each run as it was reduced; in brackets the standard uncertainty by the errors of its track, or by the scatter within its window.".to_owned(),
-        head,
-        rows: cells.collect(),
-    }
+fn table(rows: &[Row], reduced: &[Reduced]) -> ResultTable {
+    let both: Vec<_> = rows.iter().zip(reduced).collect();
+    let caption = "Each run as it was reduced; in brackets the standard uncertainty by the errors of its track, or by the scatter within its window.";
+    let t = TableBuilder::new("runs", caption, &both);
+    let mut columns = vec![
+        t.text("run", "run", |(row, _)| row.run.clone()),
+        t.text("configuration", "configuration", |(row, _)| row.configuration.clone()),
+        t.number("angle_rad", "angle [deg]", |(row, _)| row.angle_rad).plain(4),
+        t.uncertain(
+            ["speed_m_s", "speed_standard_m_s"],
+            "speed [m/s]",
+            |(_, found)| found.track.speed_m_s,
+            |(_, found)| found.track.standard_m_s,
+        ),
+        t.number("change", "change over the window [%]", |(_, found)| found.track.change[0]).places(1),
+        t.text("", "reached", |(_, found)| found.reached().map_or_else(|| "steady".to_owned(), number::percent)),
+        t.number("reached", "", |(_, found)| found.reached()),
+    ];
+    let loads = rows.first().map_or(&[] as &[_], |row| &row.point.loads);
+    let column = |(k, load): (usize, &Load)| load_column(&t, &load.name, |(row, _)| row.point.loads.get(k));
+    columns.extend(loads.iter().enumerate().map(column));
+    t.build(columns)
 }
 
 fn chart(rows: &[Row], reduced: &[Reduced], logs: &[ImportedRun], positions: &[Vec<f64>]) -> Chart {

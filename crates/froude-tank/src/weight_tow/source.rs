@@ -107,7 +107,7 @@ impl Method for WeightTow {
             progress(&format!("fitting {model}"));
         })?;
         findings.append(&mut result.findings);
-        let blocks = vec![page::section(&rows, &reduced, &logs, &positions, &spec).into()];
+        let blocks = vec![page::section(&rows, &reduced, &logs, &positions, &spec)];
         Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
     }
 
