@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use froude_records::gait_file::parse_gait;
+use froude_swim::gait_file::parse_gait;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use froude_records::motor_file::parse_motor;
+use froude_swim::motor_file::parse_motor;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

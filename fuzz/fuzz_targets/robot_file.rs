@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use froude_records::robot::parse_robot;
+use froude_swim::robot_file::parse_robot;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

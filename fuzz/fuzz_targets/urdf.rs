@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use froude_records::robot::parse_urdf;
+use froude_swim::robot_file::parse_urdf;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| match parse_urdf(Path::new("robot.urdf"), text) {

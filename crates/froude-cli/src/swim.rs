@@ -4,10 +4,10 @@ mod sweep;
 
 use std::path::PathBuf;
 
-use froude::records::gait_file::angular_frequency;
 use froude::records::units::{Dimension, parse_quantity};
 use froude::report::write::write_folder;
 use froude::swim::gait::{Envelope, Gait};
+use froude::swim::gait_file::angular_frequency;
 use froude::swim::verb::{Drawing, Job, Moves, Pitching, Typed, swim as run};
 
 use crate::args::SwimArgs;

@@ -152,7 +152,12 @@ fn centre_of_gravity(s: &Section<'_>) -> Result<Option<[f64; 3]>, RecordError> {
     Ok(Some([length(x)?, length(y)?, length(z)?]))
 }
 
-pub(crate) fn need(s: &Section<'_>, key: &'static str) -> Result<f64, RecordError> {
+/// A length of a body, m: it must be there and within what a body can have.
+///
+/// # Errors
+///
+/// [`RecordError`] with its place where it is missing, something else, or of no body.
+pub fn need(s: &Section<'_>, key: &'static str) -> Result<f64, RecordError> {
     let length_m =
         s.positive(key, Dimension::LENGTH)?.ok_or_else(|| s.missing(key, "write it with its unit: \"60 mm\""))?;
     let [least, most] = LENGTHS_M;

@@ -9,9 +9,9 @@
 //! **Source.** USR eq. 4 and 8 for C_A.
 
 use froude_records::estimate::Estimate;
-use froude_records::robot::{AddedFile, FromRecord, ModuleFile, RobotFile, negative};
 
 use crate::robot::{RobotError, measure, selected};
+use crate::robot_file::{AddedFile, FromRecord, ModuleFile, RobotFile, negative};
 
 /// Law of a record with a matrix.
 const MATRIX: &str = "added_mass_6x6";

@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 
 use froude_hydro::{DragModel, Link as Section, Setting};
 use froude_records::estimate::{Covariance, Estimate, OWN, Range, Status, beside};
-use froude_records::robot::{AddedFile, AddedForm, DragForm, FromRecord, RobotFile};
 
 use crate::added::{Added, added_masses, c_a_of};
 use crate::chain::{AddedMass, Chain, Link};
 use crate::drag::{Cross, LinkDrag, Turning};
 use crate::planar::Inertia;
 use crate::robot::{Robot, RobotError, law, selected, setting};
+use crate::robot_file::{AddedFile, AddedForm, DragForm, FromRecord, RobotFile};
 use crate::shares::{Distribution, Torque, gains, shares};
 
 /// Up to which speed drag must resist where the record does not say at what it was fitted, m/s.

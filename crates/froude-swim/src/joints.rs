@@ -2,9 +2,8 @@
 //!
 //! **Units.** SI; angles in rad.
 
-use froude_records::robot::JointFile;
-
 use crate::drive::{Following, Motor};
+use crate::robot_file::JointFile;
 
 /// Limits of a joint, where they are declared.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -25,6 +25,8 @@
 //! | [`driven_period`]   | the same where servos drive the joints                               |
 //! | [`moving`]          | a swimmer under way, step by step                                    |
 //! | [`robot`]         | a chain from a robot file and the records that it names              |
+//! | [`robot_file`]    | a robot file (TOML) or a URDF with its sidecar, as it is written     |
+//! | [`gait_file`], [`motor_file`] | a gait and a motor (TOML), as they are written               |
 //! | [`swim`]          | what a gait comes to                                                 |
 //! | [`sweep`]         | many gaits, a row of numbers each                                    |
 //! | [`spatial`]       | the same in three dimensions, with weight and buoyancy               |
@@ -52,14 +54,17 @@ pub mod driven_period;
 pub mod engine;
 pub mod front;
 pub mod gait;
+pub mod gait_file;
 pub mod head;
 pub mod joints;
 mod losses;
+pub mod motor_file;
 pub mod moving;
 pub mod path;
 pub mod period;
 pub mod planar;
 pub mod robot;
+pub mod robot_file;
 pub mod seen;
 pub mod sensitivity;
 mod settled;

@@ -12,10 +12,10 @@ use froude_hydro::{Body, CrossTerm, DragModel, Link as Section, Setting};
 use froude_records::RecordError;
 use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::json::read_estimates;
-use froude_records::robot::{FromRecord, RobotFile};
 
 use crate::blueprint::Blueprint;
 use crate::chain::Chain;
+use crate::robot_file::{FromRecord, RobotFile};
 
 /// Why a robot does not swim.
 #[derive(Debug, thiserror::Error)]

@@ -21,14 +21,14 @@ use std::path::{Path, PathBuf};
 
 use froude_records::RecordError;
 use froude_records::block::Block;
-pub use froude_records::gait_file::PitchFile as Pitching;
 use froude_records::outcome::{Content, Head, Outcome, OutputFile};
-use froude_records::robot::{RobotFile, read_robot};
 use froude_records::table::Table;
 
 use crate::draws::DrawError;
+pub use crate::gait_file::PitchFile as Pitching;
 use crate::joints::Drives;
 use crate::robot::RobotError;
+use crate::robot_file::{RobotFile, read_robot};
 use crate::swim::SwimError;
 pub use look::look;
 pub use moves::{Moves, Typed};

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use froude_records::estimate::TypeA;
 use froude_records::json::{read_estimates, write_estimates};
-use froude_records::robot::{AddedFile, RobotFile, read_robot};
 use froude_swim::blueprint::Blueprint;
 use froude_swim::draws::Beyond;
 use froude_swim::gait::{Envelope, Gait};
 use froude_swim::joints::Drives;
 use froude_swim::robot::Robot;
+use froude_swim::robot_file::{AddedFile, RobotFile, read_robot};
 
 fn example() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/mamba-swim/robot.toml")

@@ -125,7 +125,7 @@ fn angle(text: &str) -> Result<f64, String> {
 
 fn frequency(text: &str) -> Result<f64, String> {
     let found = parse_quantity(text).map_err(|e| format!("cannot be read: {e}"))?;
-    froude::records::gait_file::angular_frequency(&found)
+    froude::swim::gait_file::angular_frequency(&found)
 }
 
 fn failure(text: &str, problem: String) -> Failure {

@@ -6,13 +6,13 @@
 //! **Units.** SI.
 
 use froude_hydro::similarity::GRAVITY_M_S2;
-use froude_records::robot::{JointAxis, ModuleFile, RobotFile};
 
 use super::chain::{Chain, Link};
 use super::drag::LinkDrag;
 use super::vector::{Axis, Inertia};
 use crate::added::added_masses;
 use crate::robot::{Robot, RobotError};
+use crate::robot_file::{JointAxis, ModuleFile, RobotFile};
 
 /// A body whose mass is written in one or two digits is neutral within this part of it at most.
 const NEUTRAL: f64 = 0.005;

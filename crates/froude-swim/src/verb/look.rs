@@ -9,13 +9,13 @@ use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_records::block::{Block, ResultTable, TableBuilder, facts};
 use froude_records::number::{percent, significant};
 use froude_records::outcome::Outcome;
-use froude_records::robot::{ModuleFile, RobotFile, read_robot};
 
 use super::VerbError;
 use super::told::NEUTRAL;
 use crate::blueprint::Blueprint;
 use crate::chain::Link;
 use crate::robot::Robot;
+use crate::robot_file::{ModuleFile, RobotFile, read_robot};
 use crate::spatial::robot::RIGHTS_ITSELF_M;
 
 /// Speed at which the force of the whole robot is stated, m/s.

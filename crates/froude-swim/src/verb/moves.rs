@@ -4,8 +4,6 @@ use std::path::{Path, PathBuf};
 
 use froude_records::RecordError;
 use froude_records::block::{ResultColumn, facts};
-use froude_records::gait_file::{GaitForm, PitchFile, read_gait};
-use froude_records::motor_file::read_motor;
 use froude_records::table::{Table, read_table};
 use froude_records::units::Dimension;
 
@@ -13,7 +11,9 @@ use super::VerbError;
 use crate::course::{Ramped, Recorded};
 use crate::drive::Motor;
 use crate::gait::{Course, Envelope, Gait, Shape};
+use crate::gait_file::{GaitForm, PitchFile, read_gait};
 use crate::joints::Drives;
+use crate::motor_file::read_motor;
 
 /// What is asked of the joints.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use froude_records::block::{Block, Section};
 use froude_records::outcome::Outcome;
-use froude_records::robot::{ModuleFile, RobotFile};
 
 use super::answer::{Figures, Repeats};
 use super::leaves::Repeating;
@@ -13,6 +12,7 @@ use super::uncertain::uncertain;
 use super::{Job, MOMENTS, VerbError, animation, columns, drives, figures};
 use crate::joints::Drives;
 use crate::robot::Robot;
+use crate::robot_file::{ModuleFile, RobotFile};
 use crate::swim::Swim;
 use crate::track::Tracked;
 use crate::trajectory::{Begin, Cut, Moment};

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use froude_records::estimate::DataFile;
 use froude_records::hash::sha256_of_file;
 use froude_records::results::spares;
-use froude_records::robot::{AddedFile, RobotFile, is_urdf, sidecar_of_urdf};
 
 use super::VerbError;
 use super::moves::Moves;
+use crate::robot_file::{AddedFile, RobotFile, is_urdf, sidecar_of_urdf};
 
 /// Files with what each was read as.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,6 @@ use froude_records::block::{Block, Section};
 use froude_records::estimate::DataFile;
 use froude_records::number::{percent, significant};
 use froude_records::outcome::Outcome;
-use froude_records::robot::RobotFile;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit, parse_unit};
 
@@ -17,6 +16,7 @@ use super::moves::{self, Asked, Moves, Wave};
 use super::{Job, MOMENTS, Pitching, VerbError, space_figures as figures};
 use crate::course::Ramped;
 use crate::gait::Course;
+use crate::robot_file::RobotFile;
 use crate::spatial::attitude::of_angles;
 use crate::spatial::gait::SpatialGait;
 use crate::spatial::path::State;

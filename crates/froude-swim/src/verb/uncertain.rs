@@ -4,7 +4,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use froude_records::block::{Block, ResultColumn, Section, TableBuilder, facts};
 use froude_records::number::{percent, significant};
-use froude_records::robot::RobotFile;
 use froude_records::text::counted;
 use rayon::prelude::*;
 
@@ -13,6 +12,7 @@ use super::{Job, VerbError};
 use crate::blueprint::Blueprint;
 use crate::draws::{Beyond, envelope_95};
 use crate::robot::Robot;
+use crate::robot_file::RobotFile;
 use crate::sensitivity::{Effect, Sensitivities, Sensitivity};
 
 /// How many draws, and the seed of their random numbers.

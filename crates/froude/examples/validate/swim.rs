@@ -7,11 +7,11 @@ use froude::hydro::drag::{CrossTerm, DragModel, Setting};
 use froude::hydro::{Body, Link};
 use froude::records::estimate::Estimate;
 use froude::records::json::read_estimates;
-use froude::records::robot::read_robot;
 use froude::swim::gait::{Envelope, Gait};
 use froude::swim::joints::Drives;
 use froude::swim::planar::Inertia;
 use froude::swim::robot::Robot;
+use froude::swim::robot_file::read_robot;
 use froude::swim::shares::{Distribution, SMOOTH_M_S, Torque, shares};
 use froude::swim::swim::Swim;
 

@@ -9,12 +9,12 @@ use std::path::Path;
 use froude::fit::coverage::{Count, z_limit};
 use froude::hydro::drag::DragModel;
 use froude::pipeline::{Job, identify};
-use froude::records::robot::{FromRecord, RobotFile, read_robot};
 use froude::records::write::write_atomically;
 use froude::swim::blueprint::Blueprint;
 use froude::swim::draws::interval_95;
 use froude::swim::gait::Envelope;
 use froude::swim::robot::Robot;
+use froude::swim::robot_file::{FromRecord, RobotFile, read_robot};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 

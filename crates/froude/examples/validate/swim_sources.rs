@@ -8,13 +8,13 @@ use froude::hydro::drag::DragModel;
 use froude::pipeline::{Job, identify};
 use froude::records::estimate::Estimate;
 use froude::records::page::{Chart, ChartPanel, Mark, Series};
-use froude::records::robot::{FromRecord, RobotFile, read_robot};
 use froude::records::write::write_atomically;
 use froude::report::chart;
 use froude::swim::blueprint::Blueprint;
 use froude::swim::draws::interval_95;
 use froude::swim::gait::{Envelope, Gait};
 use froude::swim::robot::Robot;
+use froude::swim::robot_file::{FromRecord, RobotFile, read_robot};
 use froude::swim::shares::Torque;
 use rayon::prelude::*;
 

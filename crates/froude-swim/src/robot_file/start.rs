@@ -1,8 +1,8 @@
 //! `[start]`: where a trajectory begins.
 
-use crate::error::RecordError;
-use crate::section::Section;
-use crate::units::Dimension;
+use froude_records::RecordError;
+use froude_records::section::Section;
+use froude_records::units::Dimension;
 
 use super::pair;
 

@@ -12,10 +12,12 @@
 
 use std::path::Path;
 
-use crate::error::{RecordError, read_bytes, utf8};
-use crate::robot::part;
-use crate::section::{Section, Source, found, parse};
-use crate::units::Dimension;
+use froude_records::RecordError;
+use froude_records::read;
+use froude_records::section::{Section, Source, found, parse};
+use froude_records::units::Dimension;
+
+use crate::robot_file::part;
 
 /// Largest motor file.
 const LIMIT: u64 = 1 << 20;
@@ -39,8 +41,7 @@ pub struct MotorFile {
 ///
 /// [`RecordError`] with line and column: not TOML, a key that is missing or unknown, a quantity of another kind, a curve that is none.
 pub fn read_motor(path: &Path) -> Result<MotorFile, RecordError> {
-    let bytes = read_bytes(path, LIMIT, "a motor")?;
-    parse_motor(path, utf8(path, &bytes)?)
+    parse_motor(path, &read::text(path, LIMIT, "a motor")?)
 }
 
 /// The same from text.

@@ -47,7 +47,7 @@
 //! turn_rate = "0 deg/s"
 //! ```
 //!
-//! What three dimensions need beside it stands in `robot/spatial.rs`, joints one by one in `robot/joints.rs`.
+//! What three dimensions need beside it stands in `robot_file/spatial.rs`, joints one by one in `robot_file/joints.rs`.
 //!
 //! Modules stand from head to tail. The words of the sections are those of a campaign.
 
@@ -62,13 +62,13 @@ mod start;
 mod urdf;
 
 use froude_hydro::Link;
-
-use crate::body::need;
-use crate::error::{Place, RecordError, read_bytes, utf8};
-use crate::plausible;
-use crate::section::{self, Section, Source, found};
-use crate::section_values::{count, one_of};
-use crate::units::Dimension;
+use froude_records::body::need;
+use froude_records::plausible;
+use froude_records::read;
+use froude_records::section::{self, Section, Source, found};
+use froude_records::section_values::{count, one_of};
+use froude_records::units::Dimension;
+use froude_records::{Place, RecordError};
 pub(crate) use joint::part;
 pub use joint::{FrictionFile, JointFile, ServoFile};
 pub use joints::JointAxis;
@@ -189,19 +189,18 @@ pub struct ModelFile {
 ///
 /// [`RecordError`] with line and column: not TOML, a key that is missing or unknown, a quantity of another kind, strips together with a torque, fewer than two modules.
 pub fn read_robot(path: &Path) -> Result<RobotFile, RecordError> {
-    let bytes = read_bytes(path, LIMIT, "a robot")?;
+    let text = read::text(path, LIMIT, "a robot")?;
     if !is_urdf(path) {
-        return parse_robot(path, utf8(path, &bytes)?);
+        return parse_robot(path, &text);
     }
-    let chain = parse_urdf(path, utf8(path, &bytes)?)?;
+    let chain = parse_urdf(path, &text)?;
     let sidecar = sidecar_of_urdf(path);
     if !sidecar.is_file() {
         let problem =
             format!("says nothing of the water: write {}, a robot file without what the URDF has", sidecar.display());
         return Err(RecordError::Syntax { place: Place::whole(path), problem });
     }
-    let bytes = read_bytes(&sidecar, LIMIT, "a robot")?;
-    parse(&sidecar, utf8(&sidecar, &bytes)?, Some(&chain))
+    parse(&sidecar, &read::text(&sidecar, LIMIT, "a robot")?, Some(&chain))
 }
 
 /// Whether a robot is described by a URDF.

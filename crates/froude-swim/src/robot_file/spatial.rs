@@ -16,14 +16,14 @@
 //! added_mass = { … }                 # its own, in place of that of [coefficients]
 //! ```
 
+use froude_records::RecordError;
+use froude_records::section::{Section, Source, found};
+use froude_records::section_values::one_of;
+use froude_records::units::Dimension;
 use toml::Spanned;
 use toml::de::DeValue;
 
 use super::{FromRecord, from_record};
-use crate::error::RecordError;
-use crate::section::{Section, Source, found};
-use crate::section_values::one_of;
-use crate::units::Dimension;
 
 /// kg m².
 const INERTIA: Dimension = Dimension::new(2, 1, 0);

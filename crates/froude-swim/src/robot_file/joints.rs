@@ -15,10 +15,11 @@
 //!
 //! TOML has either one table of a name or a list of them: `[joint]` and `[[joint]]` cannot stand in one file.
 
+use froude_records::RecordError;
+use froude_records::section::{Section, found};
+use froude_records::section_values::one_of;
+
 use super::joint::{JointFile, joint};
-use crate::error::RecordError;
-use crate::section::{Section, found};
-use crate::section_values::one_of;
 
 /// What a joint turns about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -27,19 +27,19 @@
 //!
 //! **Units.** SI, rad, as URDF has them. **Source.** wiki.ros.org/urdf/XML.
 
-use indexmap::IndexMap;
 use std::path::Path;
 
 use froude_hydro::Link;
+use froude_records::body::need;
+use froude_records::section::{Section, found};
+use froude_records::text::counted;
+use froude_records::units::{Dimension, is_plausible};
+use froude_records::{Place, RecordError};
+use indexmap::IndexMap;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::spatial::SpatialModule;
 use super::{JointFile, MOST_MODULES, ModuleFile};
-use crate::body::need;
-use crate::error::{Place, RecordError};
-use crate::section::{Section, found};
-use crate::text::counted;
-use crate::units::{Dimension, is_plausible};
 
 /// Most nodes of a document.
 const MOST_NODES: u32 = 200_000;

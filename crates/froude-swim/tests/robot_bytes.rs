@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use froude_records::robot::{parse_robot, parse_urdf};
+use froude_swim::robot_file::{parse_robot, parse_urdf};
 use proptest::prelude::*;
 use proptest::sample::Index;
 

@@ -1,8 +1,8 @@
 //! `[joint]`: what the joints of a robot allow, and what drives them.
 
-use crate::error::RecordError;
-use crate::section::{Section, found};
-use crate::units::Dimension;
+use froude_records::RecordError;
+use froude_records::section::{Section, found};
+use froude_records::units::Dimension;
 
 /// N m s: a moment over an angular speed.
 const DAMPING: Dimension = Dimension::new(2, 1, -1);

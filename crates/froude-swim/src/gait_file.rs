@@ -19,10 +19,11 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::error::{Place, RecordError, read_bytes, utf8};
-use crate::section::{Section, Source, found, parse};
-use crate::section_values::one_of;
-use crate::units::Dimension;
+use froude_records::read;
+use froude_records::section::{Section, Source, found, parse};
+use froude_records::section_values::one_of;
+use froude_records::units::Dimension;
+use froude_records::{Place, RecordError};
 
 /// Largest gait file.
 const LIMIT: u64 = 1 << 20;
@@ -81,8 +82,7 @@ pub struct PitchFile {
 ///
 /// [`RecordError`] with line and column: not TOML, a key that is missing or unknown, a quantity of another kind.
 pub fn read_gait(path: &Path) -> Result<GaitFile, RecordError> {
-    let bytes = read_bytes(path, LIMIT, "a gait")?;
-    parse_gait(path, utf8(path, &bytes)?)
+    parse_gait(path, &read::text(path, LIMIT, "a gait")?)
 }
 
 /// The same from text.
@@ -191,7 +191,7 @@ fn frequency(s: &Section<'_>) -> Result<Option<f64>, RecordError> {
 /// # Errors
 ///
 /// What is wrong with it, in words.
-pub fn angular_frequency(quantity: &crate::units::Quantity) -> Result<f64, String> {
+pub fn angular_frequency(quantity: &froude_records::units::Quantity) -> Result<f64, String> {
     let text = &quantity.unit.text;
     if quantity.unit.dimension != Dimension::ANGULAR_SPEED {
         return Err(format!("is {}", quantity.unit.dimension.describe()));
