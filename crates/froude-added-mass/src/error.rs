@@ -14,6 +14,7 @@ use froude_records::RecordError;
 use froude_records::added_mass_options::GivenOption;
 use froude_records::text::counted;
 
+use crate::files::FileError;
 use crate::frame::Direction;
 
 /// Why there is no added mass; each message says what to do.
@@ -219,6 +220,14 @@ pub enum AddedMassError {
         path: PathBuf,
     },
 
+    /// An added mass that its format cannot hold.
+    #[error("cannot write {}: {reason}; nothing was changed", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: FileError,
+    },
     /// A target of a repair of another format.
     #[error("{}: a repaired mesh is written as .obj or .stl", .path.display())]
     RepairFormat {

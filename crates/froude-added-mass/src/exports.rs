@@ -6,12 +6,12 @@ use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_identify::method::Export;
 use froude_panel::matrix::{AddedMass, congruent};
 use froude_panel::problem::Frame;
-use froude_records::added_mass_files::AddedMassFile;
 
 use super::frame::{Axes, Orientation};
 use super::options::Asked;
 use super::pressure::pressure;
 use crate::error::AddedMassError;
+use crate::files::AddedMassFile;
 use crate::outcome::{BodyOutcome, Case};
 
 /// The pressure on the body, and the files that were asked for.

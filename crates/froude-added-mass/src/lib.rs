@@ -13,6 +13,7 @@
 //! | [`limits`] | unbounded water, rigid lid, φ = 0: side by side, and which holds when |
 //! | [`repair`] | a corrected mesh, as a new file |
 //! | [`record`] | a matrix as an estimate |
+//! | [`files`] | WAMIT `.1`, NetCDF and CSV, for other programs |
 //! | [`page`] | what the report and the terminal say |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
@@ -21,6 +22,7 @@ mod cross_checks;
 mod error;
 mod exports;
 mod facets;
+pub mod files;
 pub mod frame;
 pub mod limits;
 pub mod links;

@@ -18,7 +18,6 @@ use froude_panel::matrix::AddedMass;
 use froude_panel::problem::{Frame, Problem, Solution};
 use froude_panel::refine::{Levels, RefineError, RefinedParts, Stop, refine_parts};
 use froude_panel::study::Size;
-use froude_records::added_mass_files::AddedMassFile;
 use froude_records::body::{Shape, read_body};
 use froude_records::estimate::{Coefficient, Estimate, Interval, Law, Measured, MethodUsed, ReferencePoint, Status};
 use froude_records::finding::{Finding, Severity};
@@ -34,6 +33,7 @@ use super::load::{is_body_file, load, of_a_mesh_only};
 use super::options::Asked;
 use super::record::{MOTIONS, diagonal_head, entry_name_of_parts, signs, unit};
 use crate::error::AddedMassError;
+use crate::files::AddedMassFile;
 use crate::options::Apart;
 use crate::water::Water;
 

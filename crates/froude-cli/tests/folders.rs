@@ -7,7 +7,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use froude::records::added_mass_files::read_wamit;
+use froude::methods::added_mass::files::read_wamit;
 use froude::records::hash::sha256_of_file;
 
 mod bench;

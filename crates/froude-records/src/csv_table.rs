@@ -344,7 +344,8 @@ fn write_rows(table: &Table, file: &mut dyn Write) -> std::io::Result<()> {
 }
 
 /// A text that no spreadsheet takes for a formula.
-pub(crate) fn guarded(cell: String) -> String {
+#[must_use]
+pub fn guarded(cell: String) -> String {
     if is_formula(&cell) { format!("'{cell}") } else { cell }
 }
 

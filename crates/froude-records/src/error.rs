@@ -462,14 +462,6 @@ pub enum RecordError {
         /// What is wrong with it.
         problem: String,
     },
-    /// An added mass that its format cannot hold.
-    #[error("cannot write {}: {reason}; nothing was changed", path.display())]
-    AddedMass {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: crate::added_mass_error::AddedMassError,
-    },
     /// Two estimates of one id.
     #[error("{place}: the id `{id}` appears twice; every estimate needs its own")]
     DuplicateId {

@@ -13,12 +13,9 @@
 //! | run (MCAP)      | [`run`]                                    |
 //! | estimate (JSON) | [`mod@estimate`], [`json`], [`schema`]     |
 //! | list of results (JSON) | [`manifest`]                            |
-//! | added mass (WAMIT `.1`, NetCDF, CSV) | [`added_mass_files`] |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod accelerated_tow;
-mod added_mass_error;
-pub mod added_mass_files;
 pub mod added_mass_options;
 mod assemble;
 pub mod block;

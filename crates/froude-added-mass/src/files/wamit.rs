@@ -7,9 +7,10 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use froude_records::{Place, RecordError, read};
+
 use super::AddedMassFile;
-use crate::added_mass_error::{AddedMassError, MOST_BODIES};
-use crate::error::{Place, RecordError, read_bytes, utf8};
+use super::error::{FileError, MOST_BODIES};
 
 /// The largest file that is read: a few hundred bodies.
 const LARGEST_BYTES: u64 = 512 << 20;
@@ -40,8 +41,8 @@ impl AddedMassFile<'_> {
     ///
     /// # Errors
     ///
-    /// See [`AddedMassError`].
-    pub fn wamit(&self) -> Result<String, AddedMassError> {
+    /// See [`FileError`].
+    pub fn wamit(&self) -> Result<String, FileError> {
         self.check()?;
         let mut text = String::new();
         for (limit, matrix) in self.limits() {
@@ -82,14 +83,14 @@ pub struct AddedMassLimits {
 pub fn read_wamit(path: &Path, density_kg_m3: f64, length_m: f64) -> Result<AddedMassLimits, RecordError> {
     for (what, value) in [("density", density_kg_m3), ("reference length", length_m)] {
         if !(value > 0.0 && value.is_finite()) {
-            let reason = AddedMassError::Scale { what, value }.to_string();
+            let reason = FileError::Scale { what, value }.to_string();
             return Err(RecordError::Read { path: path.to_owned(), reason });
         }
     }
-    let bytes = read_bytes(path, LARGEST_BYTES, "an added mass")?;
+    let text = read::text(path, LARGEST_BYTES, "an added mass")?;
     let mut elements: [Vec<(usize, usize, f64, usize)>; 2] = [Vec::new(), Vec::new()];
     let (mut largest, mut n_other_rows) = (0, 0);
-    for (index, line) in utf8(path, &bytes)?.lines().enumerate() {
+    for (index, line) in text.lines().enumerate() {
         let number = index + 1;
         let refuse = |problem: String| RecordError::Syntax { place: Place::line(path, number), problem };
         let cells: Vec<&str> = line.split_whitespace().collect();

@@ -4,7 +4,7 @@
 //! |------|----------------|---------|--------|
 //! | WAMIT `.1`         | text   | OpenFAST, BEMIO, BEMRosetta, OrcaFlex …    | [`AddedMassFile::wamit`], [`read_wamit`] |
 //! | NetCDF-3 classic   | binary | xarray, Capytaine's readers, BEMRosetta    | [`AddedMassFile::netcdf`] |
-//! | CSV                | text   | [`csv_table`](crate::csv_table), anything  | [`AddedMassFile::csv`] |
+//! | CSV                | text   | [`csv_table`](froude_records::csv_table), anything | [`AddedMassFile::csv`] |
 //!
 //! **Limits.** Without waves there are two: frequency zero, where the free surface is a rigid lid, and infinity, where it
 //! has φ = 0. Far below the surface both are the same; hand in the same matrix twice, for readers look for either.
@@ -18,16 +18,17 @@
 
 mod classic;
 mod csv;
+mod error;
 mod netcdf;
 mod wamit;
 
 use std::path::Path;
 
-use crate::added_mass_error::MOST_BODIES;
-use crate::error::RecordError;
-use crate::write::write_atomically;
+use froude_records::write::write_atomically;
 
-pub use crate::added_mass_error::AddedMassError;
+use crate::AddedMassError;
+pub use error::FileError;
+use error::MOST_BODIES;
 pub use wamit::{AddedMassLimits, read_wamit};
 
 /// Degrees of freedom of a body, in the order and with the names of wave programs.
@@ -55,24 +56,24 @@ impl<'a> AddedMassFile<'a> {
     ///
     /// # Errors
     ///
-    /// [`RecordError::AddedMass`] for content that cannot be written, [`RecordError::Write`] for a disk that does not take it.
-    pub fn write(&self, path: &Path) -> Result<(), RecordError> {
-        write_atomically(path, &self.bytes(path)?)
+    /// [`AddedMassError::File`] for content that cannot be written, [`AddedMassError::Record`] for a disk that does not take it.
+    pub fn write(&self, path: &Path) -> Result<(), AddedMassError> {
+        Ok(write_atomically(path, &self.bytes(path)?)?)
     }
 
     /// The bytes of the format that a file's name ends in.
     ///
     /// # Errors
     ///
-    /// [`RecordError::AddedMass`] for content that cannot be written.
-    pub fn bytes(&self, path: &Path) -> Result<Vec<u8>, RecordError> {
+    /// [`AddedMassError::File`] for content that cannot be written.
+    pub fn bytes(&self, path: &Path) -> Result<Vec<u8>, AddedMassError> {
         let content = match path.extension().and_then(|e| e.to_str()) {
             Some("1") => self.wamit().map(String::into_bytes),
             Some("csv") => self.csv().map(String::into_bytes),
             Some("nc") => self.netcdf(),
-            _ => Err(AddedMassError::Format),
+            _ => Err(FileError::Format),
         };
-        content.map_err(|reason| RecordError::AddedMass { path: path.to_owned(), reason })
+        content.map_err(|reason| AddedMassError::File { path: path.to_owned(), reason })
     }
 
     /// The limits that are there, zero first, with their names.
@@ -83,16 +84,16 @@ impl<'a> AddedMassFile<'a> {
     }
 
     /// Everything that no format can hold.
-    fn check(&self) -> Result<(), AddedMassError> {
+    fn check(&self) -> Result<(), FileError> {
         for (what, value) in
             [("density", self.density_kg_m3), ("gravity", self.gravity_m_s2), ("reference length", self.length_m)]
         {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(AddedMassError::Scale { what, value });
+                return Err(FileError::Scale { what, value });
             }
         }
         if !(1..=MOST_BODIES).contains(&self.bodies.len()) {
-            return Err(AddedMassError::BodyCount { count: self.bodies.len() });
+            return Err(FileError::BodyCount { count: self.bodies.len() });
         }
         let mut seen = std::collections::BTreeSet::new();
         for (index, name) in self.bodies.iter().enumerate() {
@@ -106,14 +107,14 @@ impl<'a> AddedMassFile<'a> {
             } else {
                 continue;
             };
-            return Err(AddedMassError::BodyName { body: index + 1, name: name.clone(), problem });
+            return Err(FileError::BodyName { body: index + 1, name: name.clone(), problem });
         }
         if self.limits().is_empty() {
-            return Err(AddedMassError::Empty);
+            return Err(FileError::Empty);
         }
         let expected = 6 * self.bodies.len();
         for (limit, matrix) in self.limits() {
-            let shape = |what, found| AddedMassError::Shape { limit, what, found, expected };
+            let shape = |what, found| FileError::Shape { limit, what, found, expected };
             if matrix.len() != expected {
                 return Err(shape("rows:".to_owned(), matrix.len()));
             }
@@ -122,7 +123,7 @@ impl<'a> AddedMassFile<'a> {
                     return Err(shape(format!("elements of row {}:", row + 1), elements.len()));
                 }
                 if let Some((column, &value)) = elements.iter().enumerate().find(|(_, a)| !a.is_finite()) {
-                    return Err(AddedMassError::NotFinite { limit, row: row + 1, column: column + 1, value });
+                    return Err(FileError::NotFinite { limit, row: row + 1, column: column + 1, value });
                 }
             }
         }

@@ -3,7 +3,7 @@
 //! Source: NetCDF Classic Format Specification (Unidata, NetCDF User's Guide, appendix B), `CDF-1`. Everything is big-endian
 //! and padded to 4 bytes; the header is followed by the variables in their order.
 
-use crate::added_mass_error::AddedMassError;
+use super::error::FileError;
 
 const DIMENSIONS: u32 = 0x0a;
 const VARIABLES: u32 = 0x0b;
@@ -42,11 +42,11 @@ pub struct Classic {
 }
 
 impl Classic {
-    /// The file's bytes; [`AddedMassError::BodyCount`] cannot come where the bodies have been counted before.
-    pub fn bytes(&self, n_bodies: usize) -> Result<Vec<u8>, AddedMassError> {
+    /// The file's bytes; [`FileError::BodyCount`] cannot come where the bodies have been counted before.
+    pub fn bytes(&self, n_bodies: usize) -> Result<Vec<u8>, FileError> {
         let size = |bytes: usize| {
             let offset = i32::try_from(bytes).ok().and_then(|b| u32::try_from(b).ok());
-            offset.ok_or(AddedMassError::BodyCount { count: n_bodies })
+            offset.ok_or(FileError::BodyCount { count: n_bodies })
         };
         // Offsets have a fixed width, so the header is as long with the right ones as without.
         let mut begins = vec![0; self.variables.len()];
@@ -68,11 +68,7 @@ impl Classic {
         Ok(bytes)
     }
 
-    fn header(
-        &self,
-        begins: &[u32],
-        size: &impl Fn(usize) -> Result<u32, AddedMassError>,
-    ) -> Result<Vec<u8>, AddedMassError> {
+    fn header(&self, begins: &[u32], size: &impl Fn(usize) -> Result<u32, FileError>) -> Result<Vec<u8>, FileError> {
         let mut bytes = b"CDF\x01".to_vec();
         word(&mut bytes, 0); // no records
         list(&mut bytes, DIMENSIONS, size(self.dimensions.len())?);
@@ -119,11 +115,7 @@ fn padded(bytes: &mut Vec<u8>, content: &[u8]) {
     bytes.resize(bytes.len() + content.len().next_multiple_of(4) - content.len(), 0);
 }
 
-fn text(
-    bytes: &mut Vec<u8>,
-    content: &str,
-    size: &impl Fn(usize) -> Result<u32, AddedMassError>,
-) -> Result<(), AddedMassError> {
+fn text(bytes: &mut Vec<u8>, content: &str, size: &impl Fn(usize) -> Result<u32, FileError>) -> Result<(), FileError> {
     word(bytes, size(content.len())?);
     padded(bytes, content.as_bytes());
     Ok(())
@@ -132,8 +124,8 @@ fn text(
 fn attributes(
     bytes: &mut Vec<u8>,
     attributes: &[(&'static str, String)],
-    size: &impl Fn(usize) -> Result<u32, AddedMassError>,
-) -> Result<(), AddedMassError> {
+    size: &impl Fn(usize) -> Result<u32, FileError>,
+) -> Result<(), FileError> {
     list(bytes, ATTRIBUTES, size(attributes.len())?);
     for (name, content) in attributes {
         text(bytes, name, size)?;

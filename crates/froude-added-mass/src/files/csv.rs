@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::AddedMassFile;
-use crate::added_mass_error::AddedMassError;
-use crate::csv_table::guarded;
+use froude_records::csv_table::guarded;
+
+use super::{AddedMassFile, FileError};
 
 impl AddedMassFile<'_> {
     /// A CSV table with the columns `frequency` (`zero` or `infinite`), `force_on`, `motion_of` (bodies) and `A11 [kg]` …
@@ -14,8 +14,8 @@ impl AddedMassFile<'_> {
     ///
     /// # Errors
     ///
-    /// See [`AddedMassError`].
-    pub fn csv(&self) -> Result<String, AddedMassError> {
+    /// See [`FileError`].
+    pub fn csv(&self) -> Result<String, FileError> {
         self.check()?;
         let mut text = "frequency,force_on,motion_of".to_owned();
         for i in 0..6 {

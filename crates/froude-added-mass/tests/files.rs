@@ -1,11 +1,11 @@
 //! Added mass in WAMIT's, NetCDF's and CSV's form: bit-equal files, read back, and by others' readers.
 //!
-//! `golden/added_mass/read_back.py` reads the same files with xarray and Capytaine. `FROUDE_BLESS=1` writes them anew.
+//! `golden/files/read_back.py` reads the same files with xarray and Capytaine. `FROUDE_BLESS=1` writes them anew.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::path::{Path, PathBuf};
 
-use froude_records::added_mass_files::{AddedMassError, AddedMassFile, read_wamit};
+use froude_added_mass::files::{AddedMassFile, FileError, read_wamit};
 use froude_records::csv_table::read_csv;
 use froude_records::units::Dimension;
 use netcdf3::FileReader;
@@ -33,7 +33,7 @@ fn file<'a>(bodies: &'a [String], zero: &'a [Vec<f64>], infinite: &'a [Vec<f64>]
 }
 
 fn golden(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/added_mass").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/files").join(name)
 }
 
 #[test]
@@ -182,7 +182,7 @@ fn what_no_format_can_hold_is_refused_and_the_old_file_stays() {
     assert_eq!(told(&AddedMassFile { bodies: &[], ..good }), "0 bodies; a file holds 1 to 999");
     assert!(matches!(
         AddedMassFile { bodies: &names(&["a", "a"]), ..good }.netcdf(),
-        Err(AddedMassError::BodyName { body: 2, problem: "appears twice", .. })
+        Err(FileError::BodyName { body: 2, problem: "appears twice", .. })
     ));
 
     let folder = tempfile::tempdir().unwrap();

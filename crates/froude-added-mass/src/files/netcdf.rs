@@ -6,8 +6,7 @@
 //! `body_name` is what older readers look for.
 
 use super::classic::{Classic, Values, Variable};
-use super::{AddedMassFile, DEGREES_OF_FREEDOM};
-use crate::added_mass_error::AddedMassError;
+use super::{AddedMassFile, DEGREES_OF_FREEDOM, FileError};
 
 /// Dimensions by their number.
 const OMEGA: u32 = 0;
@@ -23,8 +22,8 @@ impl AddedMassFile<'_> {
     ///
     /// # Errors
     ///
-    /// See [`AddedMassError`].
-    pub fn netcdf(&self) -> Result<Vec<u8>, AddedMassError> {
+    /// See [`FileError`].
+    pub fn netcdf(&self) -> Result<Vec<u8>, FileError> {
         self.check()?;
         let limits = self.limits();
         let at = |zero: f64, infinite: f64| {

@@ -1,6 +1,6 @@
 """Reads the files of this folder with xarray and Capytaine and compares them with each other.
 
-The files are those that `added_mass_files.rs` writes and compares bit by bit. Two bodies, elements that differ in
+The files are those that `tests/files.rs` writes and compares bit by bit. Two bodies, elements that differ in
 every place, so that a transposed or shifted matrix shows.
 
     pip install capytaine==3.0.0 scipy==1.17.1 netcdf4==1.7.5.1.post1 && python read_back.py

@@ -3,7 +3,7 @@
 /// Why an added mass cannot be put into a file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum AddedMassError {
+pub enum FileError {
     /// Neither limit is there.
     #[error("there is neither an added mass at zero nor one at infinite frequency; at least one is needed")]
     Empty,
@@ -61,4 +61,4 @@ pub enum AddedMassError {
 }
 
 /// Most bodies of a file: a file of NetCDF-3 is smaller than 2 GiB.
-pub(crate) const MOST_BODIES: usize = 999;
+pub(super) const MOST_BODIES: usize = 999;
