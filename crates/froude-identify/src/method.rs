@@ -59,6 +59,15 @@ pub trait Method: Sync {
     fn plan(&self, _: &Campaign, _: &Source) -> Result<Option<Prospect>, MethodError> {
         Ok(None)
     }
+
+    /// Reads the sections of a source that are the method's own ([`Source::section`]), used or not.
+    ///
+    /// # Errors
+    ///
+    /// The first mistake in them, with its place.
+    fn check(&self, _: &Source) -> Result<(), RecordError> {
+        Ok(())
+    }
 }
 
 /// Files that a method needs: those of any one of some roles.

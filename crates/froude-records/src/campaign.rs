@@ -11,19 +11,14 @@ use std::path::{Path, PathBuf};
 use froude_hydro::Link;
 use indexmap::IndexMap;
 
-use crate::accelerated_tow::{AcceleratedPlan, AcceleratedTowSpec};
 use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
 use crate::cfd::CfdSpec;
-use crate::decay::{DecayPlan, DecaySpec};
+use crate::document::Document;
 use crate::error::{Place, RecordError};
 use crate::estimate::ErrorKind;
-use crate::excited_response::{ExcitedPlan, ExcitedSpec};
-use crate::oscillation::{OscillationPlan, OscillationSpec};
-use crate::rotation::{RotationPlan, RotationSpec};
-use crate::steady::SteadySpec;
+use crate::section::Section;
 use crate::units::{Dimension, Unit};
-use crate::weight_tow::{WeightPlan, WeightTowSpec};
 
 pub use crate::body_axis::BodyAxis;
 pub use crate::campaign_file::{parse_campaign, read_campaign};
@@ -134,40 +129,33 @@ pub struct Source {
     pub uncertainty: Vec<BudgetEntry>,
     /// A fitted tare that is subtracted.
     pub tare: Option<Tare>,
-    /// What swings in its releases, for the methods of free decay.
-    pub decay: Option<DecaySpec>,
-    /// What a motor swings, for forced oscillation.
-    pub oscillation: Option<OscillationSpec>,
-    /// What a motor turns about its own centre.
-    pub rotation: Option<RotationSpec>,
-    /// How its steady tows are reduced.
-    pub steady: Option<SteadySpec>,
-    /// What waves excite, held and free.
-    pub excited: Option<ExcitedSpec>,
-    /// Its wagon, weight and camera.
-    pub weight_tow: Option<WeightTowSpec>,
-    /// Its body that speeds up.
-    pub accelerated_tow: Option<AcceleratedTowSpec>,
+    /// What its methods read of it themselves; `None` where no campaign names it.
+    pub own: Option<OwnSections>,
     /// How its flow is computed.
     pub cfd: Option<CfdSpec>,
     /// What is asked of its mesh.
     pub added_mass: Vec<GivenOption>,
-    /// What is to be run.
+    /// What is to be run, where no method has a form of its own for it.
     pub plan: Vec<PlanBlock>,
-    /// What is to be run of a forced oscillation.
-    pub oscillation_plan: Vec<OscillationPlan>,
-    /// What is to be run of a rotation.
-    pub rotation_plan: Vec<RotationPlan>,
-    /// What is to be run with weights.
-    pub weight_plan: Vec<WeightPlan>,
-    /// What is to be run of accelerated tows.
-    pub accelerated_plan: Vec<AcceleratedPlan>,
-    /// What is to be run in waves.
-    pub excited_plan: Vec<ExcitedPlan>,
-    /// What is to be released.
-    pub decay_plan: Vec<DecayPlan>,
     /// Where it stands in the campaign.
     pub place: Place,
+}
+
+/// The sections of a source that belong to its methods: each is read by the crate that uses it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnSections {
+    /// The campaign.
+    pub(crate) document: Document,
+    /// Which of its sources, from 0.
+    pub(crate) index: usize,
+    /// The method whose form the blocks of the plan have.
+    pub(crate) planned_by: Option<&'static str>,
+}
+
+impl OwnSections {
+    fn source(&self) -> Result<Option<Section<'_>>, RecordError> {
+        self.document.root().section_at("source", self.index)
+    }
 }
 
 /// A motion of a rigid body, in the order of a 6 × 6 matrix.
@@ -190,7 +178,8 @@ pub enum Motion {
 impl Motion {
     /// Each of them.
     pub const ALL: [Self; 6] = [Self::Surge, Self::Sway, Self::Heave, Self::Roll, Self::Pitch, Self::Yaw];
-    pub(crate) const NAMES: [&'static str; 6] = ["surge", "sway", "heave", "roll", "pitch", "yaw"];
+    /// Their names.
+    pub const NAMES: [&'static str; 6] = ["surge", "sway", "heave", "roll", "pitch", "yaw"];
 
     /// As written in a campaign.
     #[must_use]
@@ -646,17 +635,34 @@ impl Source {
     /// Whether it plans runs of its method, not rows of a table.
     #[must_use]
     pub fn plans_runs(&self) -> bool {
-        let is_runs = matches!(self.input, Input::Runs { .. });
-        let has_none = [
-            self.plan.is_empty(),
-            self.oscillation_plan.is_empty(),
-            self.rotation_plan.is_empty(),
-            self.excited_plan.is_empty(),
-            self.decay_plan.is_empty(),
-            self.weight_plan.is_empty(),
-            self.accelerated_plan.is_empty(),
-        ];
-        is_runs && has_none.contains(&false)
+        let has_own = self.own.as_ref().is_some_and(|own| own.planned_by.is_some());
+        matches!(self.input, Input::Runs { .. }) && (has_own || !self.plan.is_empty())
+    }
+
+    /// A section that belongs to a method, `[source.NAME]`.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is no table.
+    pub fn section(&self, name: &'static str) -> Result<Option<Section<'_>>, RecordError> {
+        let Some(own) = &self.own else { return Ok(None) };
+        own.source()?.map_or(Ok(None), |source| source.section(name))
+    }
+
+    /// Whether it has such a section.
+    #[must_use]
+    pub fn has_section(&self, name: &'static str) -> bool {
+        self.section(name).is_ok_and(|section| section.is_some())
+    }
+
+    /// The blocks of its plan, where they have the form of this method.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where they are no tables.
+    pub fn blocks(&self, method: &str) -> Result<Vec<Section<'_>>, RecordError> {
+        let Some(own) = self.own.as_ref().filter(|own| own.planned_by == Some(method)) else { return Ok(Vec::new()) };
+        own.source()?.map_or(Ok(Vec::new()), |source| source.sections("plan"))
     }
 
     /// A table or a log that fits are held against, and that none is fitted to.
@@ -683,20 +689,8 @@ impl Source {
             group: None,
             uncertainty: Vec::new(),
             tare: None,
-            decay: None,
-            oscillation: None,
-            rotation: None,
-            steady: None,
-            excited: None,
-            excited_plan: Vec::new(),
-            weight_tow: None,
-            weight_plan: Vec::new(),
-            accelerated_tow: None,
-            accelerated_plan: Vec::new(),
+            own: None,
             cfd: None,
-            decay_plan: Vec::new(),
-            oscillation_plan: Vec::new(),
-            rotation_plan: Vec::new(),
             added_mass: Vec::new(),
             plan: Vec::new(),
         }

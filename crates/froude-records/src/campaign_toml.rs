@@ -1,40 +1,34 @@
 //! The campaign's TOML, section by section. Names and defaults are the contract of the book's conventions page.
 
 use std::collections::BTreeSet;
-use std::f64::consts::TAU;
 use std::path::Path;
 
 use indexmap::IndexMap;
-use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::accelerated_tow::{accelerated_plan, accelerated_tow};
 use crate::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
 use crate::body::link;
 use crate::body_axis::BodyAxis;
 use crate::campaign::{
-    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, PlanBlock,
-    PriorRecord, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, StatedUnit, Tank, Tare,
-    Truth, UserModel,
+    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, OwnSections,
+    PlanBlock, PriorRecord, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, StatedUnit, Tank,
+    Tare, Truth, UserModel,
 };
 use crate::carriage_toml::carriage;
 use crate::cfd::cfd;
-use crate::decay::{decay, decay_plan};
+use crate::document::Document;
 use crate::error::RecordError;
 use crate::estimate::ErrorKind;
-use crate::excited_response::{excited, excited_plan};
 use crate::hash::short_key;
 use crate::keep::parse_keep;
-use crate::oscillation::{oscillation, oscillation_plan};
 use crate::plausible;
-use crate::rotation::{rotation, rotation_plan};
 use crate::run::{ACCELERATED_TOW, EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, ROTATION, STEADY, WEIGHT_TOW};
-use crate::section::{Section, Source as Text, found, parse as parse_toml};
-use crate::section_values::{Asks, at_most, count, one_of, plan_of, product, series};
-use crate::steady::steady;
+use crate::section::{Section, Value, found};
+use crate::section_values::{
+    Asks, MOST_RUNS, OF_RUNS, at_most, configurations, count, one_of, plan_of, product, series,
+};
 use crate::table::known_dimension;
 use crate::units::{Dimension, Unit};
-use crate::weight_tow::{weight_plan, weight_tow};
 
 /// Kinds of covariance that can be asked for.
 const COVARIANCES: [&str; 4] = ["classical", "HC3", "cluster", "serial"];
@@ -44,9 +38,8 @@ const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
 
 /// Reads a campaign from text.
 pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
-    let source = Text { path, text };
-    let document = parse_toml(source)?;
-    let root = Section::new(source, "", document.get_ref(), 0);
+    let document = Document::parse(path, text)?;
+    let root = document.root();
     root.schema("campaign")?;
     root.only(&[
         "schema", "name", "cite", "fluid", "body", "tank", "source", "identify", "simulate", "rig", "carriage",
@@ -62,7 +55,9 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
         fluid: root.section("fluid")?.map(|s| fluid(&s)).transpose()?.unwrap_or_default(),
         body: root.section("body")?.map(|s| body(&s)).transpose()?,
         tank: root.section("tank")?.map(|s| tank(&s)).transpose()?,
-        sources: root.sections("source")?.iter().map(read_source).collect::<Result<_, _>>()?,
+        sources: (root.sections("source")?.iter().enumerate())
+            .map(|(index, s)| read_source(s, &document, index))
+            .collect::<Result<_, _>>()?,
         identify: root.section("identify")?.map(|s| identify(&s)).transpose()?.unwrap_or_default(),
         simulate: root.section("simulate")?.map(|s| simulate(&s)).transpose()?,
         carriage: carriage(&root)?,
@@ -167,18 +162,18 @@ const SOURCE_KEYS: &[&str] = &[
     "uncertainty",
     "tare",
     "decay",
-    "forced_oscillation",
-    "rotation",
-    "steady",
-    "weight_tow",
-    "accelerated_tow",
+    FORCED_OSCILLATION,
+    ROTATION,
+    STEADY,
+    WEIGHT_TOW,
+    ACCELERATED_TOW,
     EXCITED_RESPONSE,
     "added_mass",
     "cfd",
     "plan",
 ];
 
-fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
+fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Source, RecordError> {
     s.only(SOURCE_KEYS)?;
     let name =
         s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"circulation tank\", for example"))?.to_owned();
@@ -269,11 +264,15 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
             return Err(s.wrong(method, value, problem));
         }
     }
+    for name in TANK_METHODS.map(|(name, _)| name).into_iter().chain(["decay"]) {
+        s.section(name)?;
+    }
     let blocks = s.sections("plan")?;
     // The blocks of a plan are of the first method that has a form of its own.
     let of_its_own = [FORCED_OSCILLATION, ROTATION, EXCITED_RESPONSE, WEIGHT_TOW, ACCELERATED_TOW];
     let planned = of_its_own.into_iter().find(|name| is_method(name)).or(is_decay.then_some(FREE_DECAY));
-    let blocks_of = |name: Option<&str>| if planned == name { blocks.as_slice() } else { &[] };
+    let planned_by = planned.filter(|_| !blocks.is_empty());
+    let rows = if planned_by.is_some() { &[] } else { blocks.as_slice() };
     let (of_rows, most_rows) = most_of(&input);
     Ok(Source {
         name,
@@ -288,50 +287,16 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         group: s.text("group")?.map(str::to_owned),
         uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,
         tare,
-        decay: s.section("decay")?.map(|s| decay(&s)).transpose()?,
         added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
-        decay_plan: plan_of(blocks_of(Some(FREE_DECAY)), OF_RUNS, MOST_RUNS, decay_plan, |p| {
-            let count = p.displacement.len() * p.repeats;
-            Asks { count, samples: count as f64 * (p.held_s + p.free_s) * p.rate_hz }
-        })?,
-        oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
-        rotation: s.section(ROTATION)?.map(|s| rotation(&s)).transpose()?,
-        rotation_plan: plan_of(blocks_of(Some(ROTATION)), OF_RUNS, MOST_RUNS, rotation_plan, |p| {
-            let count = p.amplitude_rad.len() * p.omega_rad_s.len() * p.repeats;
-            swings(count, &p.omega_rad_s, p.periods, p.still_s, p.rate_hz)
-        })?,
-        excited: s.section(EXCITED_RESPONSE)?.map(|s| excited(&s)).transpose()?,
-        excited_plan: plan_of(blocks_of(Some(EXCITED_RESPONSE)), OF_RUNS, MOST_RUNS, excited_plan, |p| {
-            let count = p.period_s.len() * (p.held + p.free);
-            let lasts_s = p.still_s + p.ramp_s + p.travel_s + p.lasts_s;
-            Asks { count, samples: count as f64 * lasts_s * p.rate_hz }
-        })?,
-        weight_tow: s.section(WEIGHT_TOW)?.map(|s| weight_tow(&s)).transpose()?,
-        weight_plan: plan_of(blocks_of(Some(WEIGHT_TOW)), OF_RUNS, MOST_RUNS, weight_plan, |p| Asks {
-            count: p.configurations.len() * p.weight_n.len() * p.angle_rad.len() * p.repeats,
-            samples: 0.0,
-        })?,
+        own: Some(OwnSections { document: document.clone(), index, planned_by }),
         cfd: s.section("cfd")?.map(|s| cfd(&s)).transpose()?,
-        accelerated_tow: s.section(ACCELERATED_TOW)?.map(|s| accelerated_tow(&s)).transpose()?,
-        accelerated_plan: plan_of(blocks_of(Some(ACCELERATED_TOW)), OF_RUNS, MOST_RUNS, accelerated_plan, |p| {
-            let count = p.configurations.len() * p.speed_m_s.len() * p.acceleration_m_s2.len() * p.repeats;
-            let fastest = p.speed_m_s.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-            let slowest = p.acceleration_m_s2.iter().fold(f64::INFINITY, |least, a| a.min(least));
-            let lasts_s = p.steady_s + 2.0 * p.still_s + 2.0 * fastest / slowest;
-            Asks { count, samples: count as f64 * lasts_s * p.rate_hz }
-        })?,
-        steady: s.section(STEADY)?.map(|s| steady(&s)).transpose()?,
         plan: plan_of(
-            blocks_of(None),
+            rows,
             of_rows,
             most_rows,
             |b| plan_block(b, &input),
             |p| Asks { count: product(&numbers(p)), samples: 0.0 },
         )?,
-        oscillation_plan: plan_of(blocks_of(Some(FORCED_OSCILLATION)), OF_RUNS, MOST_RUNS, oscillation_plan, |p| {
-            let lists = p.configurations.len() * p.amplitude_rad.len() * p.omega_rad_s.len() * p.flow_m_s.len();
-            swings(lists * p.repeats, &p.omega_rad_s, p.periods, p.still_s, p.rate_hz)
-        })?,
         place: INPUTS
             .into_iter()
             .find_map(|key| s.get(key))
@@ -429,13 +394,8 @@ fn plan_block(s: &Section<'_>, input: &Input) -> Result<PlanBlock, RecordError> 
     s.only(&["configurations", "speed", "angle", if is_computed { "pitch" } else { "repeats" }])?;
     let speed =
         s.get("speed").ok_or_else(|| s.missing("speed", "write \"0.1 m/s\", a list, or { start, stop, step }"))?;
-    // A body without links has no configuration to name.
-    let mut configurations = s.texts("configurations")?;
-    if configurations.is_empty() {
-        configurations.push(String::new());
-    }
     let out = PlanBlock {
-        configurations,
+        configurations: configurations(s)?,
         speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
         angle_rad: s.get("angle").map_or(Ok(vec![0.0]), |v| series(s, "angle", v, Dimension::ONE))?,
         pitch_rad: s.get("pitch").map_or(Ok(vec![0.0]), |v| series(s, "pitch", v, Dimension::ONE))?,
@@ -460,12 +420,6 @@ fn numbers(block: &PlanBlock) -> [(&'static str, usize); 5] {
 const MOST_OBSERVATIONS: usize = 1_000_000;
 /// Most computed cases of a source: each is a folder with a mesh's fields, and at two minutes they are two weeks of a processor.
 const MOST_CASES: usize = 10_000;
-/// Most planned runs of a source: at two minutes a run two weeks in the tank.
-const MOST_RUNS: usize = 10_000;
-
-/// Why so many, in the message.
-const OF_RUNS: [&str; 2] = ["runs", "two weeks in the tank"];
-
 /// What the plan of a source without a form of its own makes, why no more, and how many at most.
 fn most_of(input: &Input) -> ([&'static str; 2], usize) {
     match input {
@@ -475,14 +429,7 @@ fn most_of(input: &Input) -> ([&'static str; 2], usize) {
     }
 }
 
-/// Samples of a run of periods with still water before and behind it.
-fn swings(count: usize, omega_rad_s: &[f64], periods: f64, still_s: f64, rate_hz: f64) -> Asks {
-    // Every frequency stands in an equal part of the runs.
-    let mean_s = omega_rad_s.iter().map(|w| TAU * periods / w).sum::<f64>() / omega_rad_s.len().max(1) as f64;
-    Asks { count, samples: count as f64 * (mean_s + 2.0 * still_s) * rate_hz }
-}
-
-fn bound_kind(s: &Section<'_>, key: &str, value: &Spanned<DeValue<'_>>) -> Result<BoundKind, RecordError> {
+fn bound_kind(s: &Section<'_>, key: &str, value: &Value<'_>) -> Result<BoundKind, RecordError> {
     match value.get_ref().as_str() {
         Some("none" | "free") => Ok(BoundKind::None),
         Some("non-negative") => Ok(BoundKind::NonNegative),
@@ -509,11 +456,7 @@ fn bounds(s: &Section<'_>) -> Result<BoundsSpec, RecordError> {
 }
 
 /// A value of a coefficient: a plain number in SI, or a quantity in quotes, with its unit.
-fn coefficient_value<'a>(
-    s: &Section<'a>,
-    key: &str,
-    value: &'a Spanned<DeValue<'a>>,
-) -> Result<(f64, Option<Unit>), RecordError> {
+fn coefficient_value<'a>(s: &Section<'a>, key: &str, value: &'a Value<'a>) -> Result<(f64, Option<Unit>), RecordError> {
     if value.get_ref().is_str() {
         s.as_quantity(key, value).map(|q| (q.value_si, Some(q.unit)))
     } else {

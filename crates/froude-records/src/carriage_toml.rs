@@ -8,8 +8,8 @@ use crate::carriage::{
     LimitsSpec, Order, PulseTrain, RigKind, RigSpec, TwinTruth, WarmUp,
 };
 use crate::error::RecordError;
-use crate::run::sidecar::{AMPLIFIER, TORQUE_CONSTANT, declared};
-use crate::run::{Axis, AxisConstants, Declared};
+use crate::run::sidecar::{AMPLIFIER, TORQUE_CONSTANT};
+use crate::run::{Axis, AxisConstants, Declared, positive_declared};
 use crate::section::{Section, found};
 use crate::section_values::{at_most, count, one_of, series};
 use crate::units::Dimension;
@@ -19,7 +19,7 @@ const VOLT_SECOND: Dimension = Dimension { m: 2, kg: 1, s: -2, k: 0, a: -1 };
 /// V/s, of the integral gain.
 const VOLT_PER_SECOND: Dimension = Dimension { m: 2, kg: 1, s: -4, k: 0, a: -1 };
 /// kg m².
-pub(crate) const INERTIA: Dimension = Dimension::new(2, 1, 0);
+const INERTIA: Dimension = Dimension::new(2, 1, 0);
 /// N m s.
 const VISCOUS: Dimension = Dimension::new(2, 1, -1);
 /// N s²/m² = kg/m.
@@ -135,7 +135,7 @@ fn axis(s: &Section<'_>) -> Result<AxisSpec, RecordError> {
         following_error_m: s.positive("following_error_limit", Dimension::LENGTH)?,
     };
     let constant = |key, dimension, advice: &str| {
-        let constant = positive_constant(s, key, dimension)?;
+        let constant = positive_declared(s, key, dimension)?;
         constant.ok_or_else(|| {
             s.missing(key, &format!("write {key} = {{ value = \"{advice}\", standard = \"1 %\" }}, for example"))
         })
@@ -167,30 +167,16 @@ fn axis(s: &Section<'_>) -> Result<AxisSpec, RecordError> {
         travel_m: travel(s)?,
         limits,
         constants,
-        inertia_kg_m2: positive_constant(s, "inertia", INERTIA)?,
-        viscous_n_m_s_rad: positive_constant(s, "viscous_friction", VISCOUS)?,
-        coulomb_n_m: positive_constant(s, "coulomb_friction", Dimension::MOMENT)?,
+        inertia_kg_m2: positive_declared(s, "inertia", INERTIA)?,
+        viscous_n_m_s_rad: positive_declared(s, "viscous_friction", VISCOUS)?,
+        coulomb_n_m: positive_declared(s, "coulomb_friction", Dimension::MOMENT)?,
         gains: gains(&controller)?,
         place: s.place(),
     })
 }
 
-/// A declared constant that is larger than zero.
-pub(crate) fn positive_constant(
-    s: &Section<'_>,
-    key: &'static str,
-    dimension: Dimension,
-) -> Result<Option<Declared>, RecordError> {
-    match (declared(s, key, dimension)?, s.get(key)) {
-        (Some(constant), Some(value)) if constant.value <= 0.0 => {
-            Err(s.wrong(key, value, format!("is {} in SI; it must be larger than zero", constant.value)))
-        }
-        (constant, _) => Ok(constant),
-    }
-}
-
 fn efficiency(s: &Section<'_>, key: &'static str) -> Result<Option<Declared>, RecordError> {
-    match (positive_constant(s, key, Dimension::ONE)?, s.get(key)) {
+    match (positive_declared(s, key, Dimension::ONE)?, s.get(key)) {
         (Some(efficiency), Some(value)) if efficiency.value > 1.0 => {
             Err(s.wrong(key, value, format!("is {}; an efficiency is at most 1, or 100 %", efficiency.value)))
         }
@@ -325,7 +311,7 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
         is_ballasted: s.flag("ballasted")?.unwrap_or(false),
         stop_at_relative_half_width: fraction(s, "stop_when", "the relative half-width of D_d's 95 % interval")?,
         expected_drag_n_s2_m2: s.positive("expected_drag", DRAG)?,
-        strut_drag_n_s2_m2: positive_constant(s, "strut_drag", DRAG)?,
+        strut_drag_n_s2_m2: positive_declared(s, "strut_drag", DRAG)?,
         place: s.place(),
     })
 }
@@ -422,7 +408,7 @@ fn calibration(s: &Section<'_>) -> Result<Calibration, RecordError> {
     Ok(Calibration {
         weights_n: positive_series(s, "weights", value, Dimension::FORCE)?,
         weight_standard_n: s.positive("standard", Dimension::FORCE)?.unwrap_or(0.0),
-        pulley_loss: positive_constant(s, "pulley_loss", Dimension::ONE)?,
+        pulley_loss: positive_declared(s, "pulley_loss", Dimension::ONE)?,
         speed_m_s: s
             .positive("speed", Dimension::SPEED)?
             .ok_or_else(|| s.missing("speed", "write how fast they are lifted, \"0.1 m/s\", for example"))?,

@@ -15,7 +15,6 @@
 //! | list of results (JSON) | [`manifest`]                            |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-pub mod accelerated_tow;
 pub mod added_mass_options;
 mod assemble;
 pub mod block;
@@ -31,10 +30,9 @@ mod checksum;
 pub mod chunks;
 pub mod comparison;
 pub mod csv_table;
-pub mod decay;
+mod document;
 mod error;
 pub mod estimate;
-pub mod excited_response;
 pub mod fast_csv;
 pub mod finding;
 pub mod folder;
@@ -46,7 +44,6 @@ pub mod manifest;
 pub mod memory;
 pub mod nearest;
 pub mod number;
-pub mod oscillation;
 pub mod outcome;
 pub mod output;
 pub mod page;
@@ -57,20 +54,17 @@ mod prior_record;
 mod raw_column;
 pub mod read;
 pub mod results;
-pub mod rotation;
 pub mod run;
 pub mod scale;
 pub mod schema;
 pub mod section;
 pub mod section_values;
 pub mod sidecar;
-pub mod steady;
 pub mod table;
 mod table_file;
 pub mod text;
 pub mod unfinished;
 pub mod units;
-pub mod weight_tow;
 pub mod write;
 
 pub use error::{Place, Position, RecordError};

@@ -13,6 +13,9 @@ use crate::plausible::{self, unit_for};
 use crate::table::usual_unit_for;
 use crate::units::{Dimension, LARGEST_SI, Quantity, is_plausible, parse_quantity};
 
+/// A value with where it stands.
+pub type Value<'a> = Spanned<DeValue<'a>>;
+
 /// Longest text of a key, in bytes: a formula has some hundreds, a citation fewer.
 const LONGEST_TEXT: usize = 10_000;
 
@@ -88,17 +91,17 @@ impl<'a> Section<'a> {
     }
 
     /// The value of a key, which is then known.
-    pub fn get(&self, key: &'static str) -> Option<&'a Spanned<DeValue<'a>>> {
+    pub fn get(&self, key: &'static str) -> Option<&'a Value<'a>> {
         self.asked.borrow_mut().insert(key);
         self.raw(key)
     }
 
-    fn raw(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+    fn raw(&self, key: &str) -> Option<&'a Value<'a>> {
         self.table.iter().find(|(k, _)| k.get_ref().as_ref() == key).map(|(_, v)| v)
     }
 
     /// All keys in the order written, with the offset of the key and the value.
-    pub fn entries(&self) -> impl Iterator<Item = (&'a str, usize, &'a Spanned<DeValue<'a>>)> {
+    pub fn entries(&self) -> impl Iterator<Item = (&'a str, usize, &'a Value<'a>)> {
         let mut entries: Vec<_> = self.table.iter().map(|(k, v)| (k.get_ref().as_ref(), k.span().start, v)).collect();
         // The table is sorted by key; people mean the order that they wrote.
         entries.sort_by_key(|(_, start, _)| *start);
@@ -106,13 +109,13 @@ impl<'a> Section<'a> {
     }
 
     /// Entries whose keys were not asked for by name.
-    pub fn others(&self) -> Vec<(&'a str, usize, &'a Spanned<DeValue<'a>>)> {
+    pub fn others(&self) -> Vec<(&'a str, usize, &'a Value<'a>)> {
         let asked = self.asked.borrow();
         self.entries().filter(|(k, ..)| !asked.contains(k)).collect()
     }
 
     /// The message about a value: what was found, and what was expected.
-    pub fn wrong(&self, key: &str, value: &Spanned<DeValue<'_>>, problem: impl Into<String>) -> RecordError {
+    pub fn wrong(&self, key: &str, value: &Value<'_>, problem: impl Into<String>) -> RecordError {
         RecordError::Value {
             place: self.source.place(value.span().start),
             key: key.to_owned(),
@@ -166,7 +169,7 @@ impl<'a> Section<'a> {
     /// # Errors
     ///
     /// [`RecordError::Value`] with its place where it is something else.
-    pub fn as_text(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<&'a str, RecordError> {
+    pub fn as_text(&self, key: &str, value: &'a Value<'a>) -> Result<&'a str, RecordError> {
         match value.get_ref().as_str() {
             Some(text) if text.len() > LONGEST_TEXT => Err(self.wrong(
                 key,
@@ -207,7 +210,7 @@ impl<'a> Section<'a> {
     /// # Errors
     ///
     /// [`RecordError::Value`] with its place where it is something else.
-    pub fn as_number(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Result<f64, RecordError> {
+    pub fn as_number(&self, key: &str, value: &Value<'_>) -> Result<f64, RecordError> {
         let text = match value.get_ref() {
             DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
             DeValue::Float(f) => f.as_str(),
@@ -278,7 +281,7 @@ impl<'a> Section<'a> {
     /// # Errors
     ///
     /// [`RecordError::Value`] with its place where it is something else.
-    pub fn as_quantity(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<Quantity, RecordError> {
+    pub fn as_quantity(&self, key: &str, value: &'a Value<'a>) -> Result<Quantity, RecordError> {
         self.quantity_like(key, value, None)
     }
 
@@ -292,7 +295,7 @@ impl<'a> Section<'a> {
     pub fn quantity_like(
         &self,
         key: &str,
-        value: &'a Spanned<DeValue<'a>>,
+        value: &'a Value<'a>,
         like: Option<(&str, Dimension)>,
     ) -> Result<Quantity, RecordError> {
         let usual = like.map(|(name, dimension)| (dimension, usual_unit_for(name, dimension)));
@@ -326,7 +329,7 @@ impl<'a> Section<'a> {
     pub fn as_written(
         &self,
         key: &str,
-        value: &'a Spanned<DeValue<'a>>,
+        value: &'a Value<'a>,
         name: &str,
         dimension: Dimension,
     ) -> Result<Quantity, RecordError> {
@@ -346,12 +349,7 @@ impl<'a> Section<'a> {
     /// # Errors
     ///
     /// [`RecordError::Value`] with its place where it is something else.
-    pub fn as_quantity_of(
-        &self,
-        key: &str,
-        value: &'a Spanned<DeValue<'a>>,
-        dimension: Dimension,
-    ) -> Result<f64, RecordError> {
+    pub fn as_quantity_of(&self, key: &str, value: &'a Value<'a>, dimension: Dimension) -> Result<f64, RecordError> {
         self.as_written(key, value, key, dimension).map(|quantity| quantity.value_si)
     }
 
@@ -371,8 +369,7 @@ impl<'a> Section<'a> {
     /// [`RecordError::Value`] with its place where it is something else.
     pub fn placed_texts(&self, key: &'static str) -> Result<Vec<(String, Place)>, RecordError> {
         let Some(value) = self.get(key) else { return Ok(Vec::new()) };
-        let placed =
-            |v: &'a Spanned<DeValue<'a>>| Ok((self.as_text(key, v)?.to_owned(), self.source.place(v.span().start)));
+        let placed = |v: &'a Value<'a>| Ok((self.as_text(key, v)?.to_owned(), self.source.place(v.span().start)));
         if value.get_ref().is_str() {
             return Ok(vec![placed(value)?]);
         }
@@ -396,7 +393,7 @@ impl<'a> Section<'a> {
     /// # Errors
     ///
     /// [`RecordError::Value`] with its place where it is something else.
-    pub fn as_section(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<Section<'a>, RecordError> {
+    pub fn as_section(&self, key: &str, value: &'a Value<'a>) -> Result<Section<'a>, RecordError> {
         let Some(table) = value.get_ref().as_table() else {
             return Err(self.wrong(key, value, format!("is {}; expected a table", found(value))));
         };
@@ -414,13 +411,21 @@ impl<'a> Section<'a> {
         let Some(list) = value.get_ref().as_array() else {
             return Err(self.wrong(key, value, format!("is {}; expected tables, written [[{key}]]", found(value))));
         };
-        let mut sections = Vec::with_capacity(list.len());
-        for value in list {
-            let mut section = self.as_section(key, value)?;
-            section.is_listed = true;
-            sections.push(section);
-        }
-        Ok(sections)
+        list.iter().map(|value| self.as_listed(key, value)).collect()
+    }
+
+    /// One table of an array, counted from 0; `None` where the array is shorter, or is none.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else.
+    pub fn section_at(&self, key: &'static str, index: usize) -> Result<Option<Section<'a>>, RecordError> {
+        let list = self.get(key).and_then(|value| value.get_ref().as_array());
+        list.and_then(|list| list.get(index)).map(|value| self.as_listed(key, value)).transpose()
+    }
+
+    fn as_listed(&self, key: &str, value: &'a Value<'a>) -> Result<Section<'a>, RecordError> {
+        Ok(Section { is_listed: true, ..self.as_section(key, value)? })
     }
 
     /// Refuses keys that nobody asked for.
@@ -477,7 +482,7 @@ impl<'a> Section<'a> {
 
 /// A value in a message: texts in quotes, others by their kind.
 #[must_use]
-pub fn found(value: &Spanned<DeValue<'_>>) -> String {
+pub fn found(value: &Value<'_>) -> String {
     match value.get_ref() {
         DeValue::String(s) => format!("{:?}", s.chars().take(80).collect::<String>()),
         DeValue::Integer(i) => i.as_str().to_owned(),

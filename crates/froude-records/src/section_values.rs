@@ -1,11 +1,8 @@
 //! Values of a section: counts, words of a list, series.
 
-use toml::Spanned;
-use toml::de::DeValue;
-
 use crate::error::RecordError;
 use crate::nearest::suggestion;
-use crate::section::Section;
+use crate::section::{Section, Value};
 use crate::units::Dimension;
 
 /// Most values of one range of a plan: a million runs is a slip of the step.
@@ -74,6 +71,22 @@ pub fn product(numbers: &[(&str, usize)]) -> usize {
     numbers.iter().fold(1_usize, |product, (_, n)| product.saturating_mul(*n))
 }
 
+/// Most planned runs of a source: at two minutes a run two weeks in the tank.
+pub const MOST_RUNS: usize = 10_000;
+
+/// What they are, and why so many, in the message of [`plan_of`].
+pub const OF_RUNS: [&str; 2] = ["runs", "two weeks in the tank"];
+
+/// `configurations` of a block; one empty text where the body has only one and none to name.
+///
+/// # Errors
+///
+/// [`RecordError::Value`] with its place where it is something else.
+pub fn configurations(s: &Section<'_>) -> Result<Vec<String>, RecordError> {
+    let named = s.texts("configurations")?;
+    Ok(if named.is_empty() { vec![String::new()] } else { named })
+}
+
 /// What one block of a plan asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Asks {
@@ -129,7 +142,7 @@ pub const MOST_SAMPLES: f64 = 1e7;
 pub fn series<'a>(
     s: &Section<'a>,
     key: &'static str,
-    value: &'a Spanned<DeValue<'a>>,
+    value: &'a Value<'a>,
     dimension: Dimension,
 ) -> Result<Vec<f64>, RecordError> {
     if let Some(list) = value.get_ref().as_array() {

@@ -7,7 +7,6 @@
 //!
 //! Not here: waves, a wake that comes back, a carriage whose speed ripples.
 
-use froude_records::steady::Tow;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
@@ -18,6 +17,19 @@ use crate::noise::OrnsteinUhlenbeck;
 pub const WAKE_S: f64 = 0.2;
 /// Body and added water below the cell, kg: what the cell shows of the ramps.
 pub const INERTIA_KG: f64 = 3.0;
+
+/// One tow: still, up to speed, steady, to rest, still.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tow {
+    /// At rest before and after, s.
+    pub still_s: f64,
+    /// Up to speed and to rest, m/s².
+    pub acceleration_m_s2: f64,
+    /// At constant speed, s.
+    pub steady_s: f64,
+    /// Samples a second.
+    pub rate_hz: f64,
+}
 
 /// How one channel is read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

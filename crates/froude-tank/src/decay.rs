@@ -15,6 +15,7 @@
 //! | [`motion`]       | the motion itself, with its derivatives                          | Hairer et al. 1993           |
 //! | [`fit`]          | coefficients, scatter, what M and C do to them                   | Efron & Stein 1981, GUM      |
 //! | [`record`]        | estimate, rows and line for the page                             | –                            |
+//! | [`section`]      | what a campaign declares and plans                               | –                            |
 //! | [`simulate`]     | releases as a rig would log them                                 | –                            |
 //! | [`releases`]     | those that a campaign plans, on the twin of its rig              | –                            |
 //! | [`forecast`]     | the interval to expect of each coefficient                       | Ljung 1999, GUM              |
@@ -37,6 +38,7 @@ pub mod record;
 mod reduced;
 pub mod releases;
 pub mod run;
+pub mod section;
 pub mod simulate;
 pub mod source;
 mod swings;

@@ -12,6 +12,7 @@
 //!
 //! | module            | what                                                    | source                       |
 //! |-------------------|---------------------------------------------------------|------------------------------|
+//! | [`section`]       | what a campaign declares and plans                      | –                            |
 //! | [`setup`]         | runs, and what is declared                              | –                            |
 //! | [`wave`]          | the wavemaker: start, stop, frequency, phase            | IEEE Std 1057                |
 //! | [`response`]      | one signal per motion of the wavemaker, with its scatter | Priestley (1981), 6.1        |
@@ -35,6 +36,7 @@ pub mod page;
 pub mod plan;
 pub mod record;
 pub mod response;
+pub mod section;
 pub mod setup;
 pub mod simulate;
 pub mod source;

@@ -7,6 +7,7 @@ pub mod accelerated_tow;
 mod between_runs;
 pub mod conditioning;
 pub mod decay;
+pub mod declared;
 pub mod excited_response;
 mod fluid;
 pub mod joint;

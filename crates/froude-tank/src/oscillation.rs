@@ -14,6 +14,7 @@
 //!
 //! | module        | what                                                        | source                                |
 //! |---------------|-------------------------------------------------------------|---------------------------------------|
+//! | [`section`]   | what a campaign declares and plans                          | –                                     |
 //! | [`setup`]     | runs, and what is declared                                  | USR, Table 4                          |
 //! | [`crate::motion`] | harmonics of the angle, cycles                              | IEEE Std 1057                         |
 //! | [`froude_hydro::swing`] | velocity and acceleration of the body through the water | USR eq. 5 and 19 (consistent form) |
@@ -39,6 +40,7 @@ pub mod forecast;
 pub mod page;
 pub mod plan;
 pub mod record;
+pub mod section;
 pub mod setup;
 pub mod simulate;
 pub mod source;

@@ -12,6 +12,7 @@
 //!
 //! | module           | what                                                       | source                     |
 //! |------------------|------------------------------------------------------------|----------------------------|
+//! | [`section`]      | what a campaign declares and plans                         | –                          |
 //! | [`setup`]        | runs, and what is declared                                 | USR eq. 7                  |
 //! | [`mod@fit`]      | the equation above and its unknowns                        | USR eq. 7                  |
 //! | [`mod@derive`]   | C_A, C_M, C_f and C_D from the λs, and the law behind λ₃   | USR eq. 8, strip theory    |
@@ -31,6 +32,7 @@ pub mod forecast;
 pub mod page;
 pub mod plan;
 pub mod record;
+pub mod section;
 pub mod setup;
 pub mod simulate;
 pub mod source;

@@ -13,6 +13,7 @@
 //! | [`mod@window`]   | the steady window and the still parts          | –                                         |
 //! | [`mod@point`] | means and zeros of one run                     | Sokal 1997; ITTC 7.5-02-02-02             |
 //! | [`row`]      | observations as the rows of a table            | –                                         |
+//! | [`section`]  | what a campaign declares and plans             | –                                         |
 //! | [`tare`]     | rig without body, subtracted                   | JCGM 100:2008 (GUM), 5.2                  |
 //! | [`walls`]    | blockage and clearance at the angle of a run   | USR eq. 14; ITTC 7.5-02-02-01             |
 //! | [`simulate`] | the runs that a campaign would give            | –                                         |
@@ -25,6 +26,7 @@ pub mod page;
 pub mod plan;
 pub mod point;
 pub mod row;
+pub mod section;
 pub mod simulate;
 pub mod source;
 pub mod tare;

@@ -11,6 +11,7 @@
 //! |-----------------|-------------------------------------------------|---------------------------|
 //! | [`track`]       | pixels to metres, the moving part, its last part | –                        |
 //! | [`mod@balance`] | the drag of a wagon that still accelerates      | USR eq. 16, Newton        |
+//! | [`section`]     | what a campaign declares and plans              | –                         |
 //! | [`reduce`]      | the observation of a run                        | –                         |
 //! | [`simulate`]    | the runs that a campaign would give             | –                         |
 //! | [`mod@plan`]    | run matrix, what is reached, intervals          | Fisher 1922               |
@@ -22,6 +23,7 @@ pub mod error;
 pub mod page;
 pub mod plan;
 pub mod reduce;
+pub mod section;
 pub mod simulate;
 pub mod source;
 pub mod track;

@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use froude_records::run::Declared;
-use froude_records::weight_tow::WeightTowSpec;
 use froude_rig::weight_tow::{WeightRig, pull};
 use froude_tank::weight_tow::reduce::{WeightRun, reduce};
+use froude_tank::weight_tow::section::WeightTowSpec;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;

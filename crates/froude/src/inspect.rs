@@ -38,6 +38,7 @@ pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error>
 
 fn of_campaign(path: &Path) -> Result<Inspection, Error> {
     let (campaign, mut found) = campaign(path)?;
+    method::check_sections(&campaign)?;
     for (source, facts) in campaign.sources.iter().zip(&mut found.sources) {
         match &source.input {
             Input::Mesh(path) => drop(Asked::read(path, &source.added_mass)?),

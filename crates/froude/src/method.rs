@@ -1,5 +1,7 @@
 //! The list of all methods, and the one that a source asks for.
 
+use std::path::Path;
+
 use froude_added_mass::source::AddedMass;
 use froude_carriage::axis::source::Servo;
 use froude_carriage::drag::calibration::source::KnownWeights;
@@ -8,7 +10,7 @@ use froude_carriage::tuning::source::{Resonance, Tuning};
 use froude_identify::IdentifyError;
 use froude_identify::method::Method;
 use froude_identify::table::Table;
-use froude_records::campaign::{Input, Source};
+use froude_records::campaign::{self, Campaign, Input, Source};
 use froude_records::nearest::meant;
 use froude_records::run::is_servo_log;
 
@@ -19,6 +21,29 @@ use froude_cfd::verb::Computed;
 
 /// A method with the names that it is asked for.
 pub(crate) type Asked = (&'static dyn Method, Vec<&'static str>);
+
+/// Reads a campaign, and every section in it that belongs to a method, used or not.
+///
+/// # Errors
+///
+/// Whatever the readers find.
+pub fn read_campaign(path: &Path) -> Result<Campaign, Error> {
+    let campaign = campaign::read_campaign(path)?;
+    check_sections(&campaign)?;
+    Ok(campaign)
+}
+
+/// Reads the sections of a campaign that belong to methods.
+///
+/// # Errors
+///
+/// The first mistake in them, with its place.
+pub fn check_sections(campaign: &Campaign) -> Result<(), Error> {
+    for source in &campaign.sources {
+        METHODS.iter().try_for_each(|method| method.check(source))?;
+    }
+    Ok(())
+}
 
 /// The methods of a source, each with the names that it is asked for; `purpose` is what is asked of a source that names none.
 ///

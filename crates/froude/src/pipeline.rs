@@ -20,7 +20,7 @@ use froude_identify::reduce::reduce;
 use froude_identify::unexplained::unexplained;
 use froude_identify::{IdentifyError, asked, observations, origins};
 use froude_records::block::{Block, Section};
-use froude_records::campaign::{self, Campaign, Source, read_campaign};
+use froude_records::campaign::{self, Campaign, Source};
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
@@ -35,6 +35,7 @@ use indexmap::IndexMap;
 
 use crate::{Error, method, results};
 
+pub use crate::method::{check_sections, read_campaign};
 pub use crate::pipeline::job::default_out;
 pub use crate::pipeline::job::{Identified, Input, Job, Purpose};
 

@@ -5,7 +5,6 @@ use std::path::Path;
 use froude_identify::method::Prospect;
 use froude_identify::simulate::tables::SimulateError;
 use froude_records::block::{Section, facts};
-use froude_records::campaign::read_campaign;
 use froude_records::outcome::Outcome;
 
 use crate::{Error, method};
@@ -16,7 +15,7 @@ use crate::{Error, method};
 ///
 /// See [`Error`]: a campaign that plans no runs, or does not declare what they need.
 pub fn plan(path: &Path) -> Result<Outcome, Error> {
-    let campaign = read_campaign(path)?;
+    let campaign = method::read_campaign(path)?;
     let mut out = Vec::new();
     for source in campaign.sources.iter().filter(|source| source.plans_runs()) {
         for (method, _) in method::of(source, None)? {

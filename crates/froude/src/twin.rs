@@ -9,7 +9,7 @@ use froude_identify::method::MethodError;
 use froude_identify::simulate::tables::{self, SimulateError};
 use froude_records::RecordError;
 use froude_records::block::{Block, TableBuilder};
-use froude_records::campaign::{Campaign, Input, Source, read_campaign};
+use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::folder::UnfinishedFolder;
 use froude_records::outcome::Outcome;
 use froude_records::output;
@@ -35,7 +35,7 @@ struct Written {
 ///
 /// See [`Error`]: a campaign without plan or without `[simulate]`; places outside of the campaign's folder; a folder with other files in it.
 pub fn simulate(path: &Path, replace: bool) -> Result<Outcome, Error> {
-    let campaign = read_campaign(path)?;
+    let campaign = method::read_campaign(path)?;
     let mut folders = Vec::new();
     for source in campaign.sources.iter().filter(|source| source.plans_runs()) {
         let target = inside(&campaign, source)?;

@@ -14,6 +14,7 @@ use froude_records::hash::sha256_of_bytes;
 use froude_records::outcome::{Exit, Outcome};
 use froude_records::output::inside;
 use froude_records::read;
+use froude_records::run::FORCED_OSCILLATION;
 use froude_records::text::counted;
 use froude_records::write::write_atomically;
 
@@ -168,7 +169,10 @@ fn check_logs(runs: &Path, all: &[Job]) -> Result<(), VerbError> {
 /// The only computed source that is a forced oscillation and says how its flow is computed, or the one of a name.
 fn chosen<'a>(sources: &'a [Source], name: Option<&str>) -> Result<&'a Source, String> {
     let is_it = |s: &&Source| {
-        s.kind == SourceKind::Cfd && s.oscillation.is_some() && s.cfd.is_some() && matches!(s.input, Input::Runs { .. })
+        s.kind == SourceKind::Cfd
+            && s.has_section(FORCED_OSCILLATION)
+            && s.cfd.is_some()
+            && matches!(s.input, Input::Runs { .. })
     };
     let found: Vec<&Source> = sources.iter().filter(is_it).filter(|s| name.is_none_or(|name| s.name == name)).collect();
     match found[..] {

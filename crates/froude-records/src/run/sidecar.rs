@@ -10,8 +10,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use indexmap::IndexMap;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
 use crate::body_axis::BodyAxis;
 use crate::checksum;
@@ -26,7 +25,7 @@ use crate::run::meta::{
     RunStatus, TOW,
 };
 use crate::run::sensor::Sensor;
-use crate::section::{Section, Source, parse};
+use crate::section::{Section, Source, Value, parse};
 use crate::section_values::{count, one_of};
 use crate::units::{Dimension, parse_unit};
 use crate::write::write_atomically;
@@ -453,19 +452,41 @@ fn axis_constants(s: &Section<'_>) -> Result<AxisConstants, RecordError> {
 }
 
 /// A constant: `"0.35 A/V"`, taken as exact, or `{ value = "0.35 A/V", standard = "1 %" }`; per cent are of the value.
-pub(crate) fn declared(
+///
+/// # Errors
+///
+/// [`RecordError::Value`] with its place where it is something else.
+pub fn declared(s: &Section<'_>, key: &'static str, dimension: Dimension) -> Result<Option<Declared>, RecordError> {
+    s.get(key).map(|value| declared_value(s, key, value, dimension)).transpose()
+}
+
+/// The same, larger than zero.
+///
+/// # Errors
+///
+/// [`RecordError::Value`] with its place where it is something else.
+pub fn positive_declared(
     s: &Section<'_>,
     key: &'static str,
     dimension: Dimension,
 ) -> Result<Option<Declared>, RecordError> {
-    s.get(key).map(|value| declared_value(s, key, value, dimension)).transpose()
+    match (declared(s, key, dimension)?, s.get(key)) {
+        (Some(constant), Some(value)) if constant.value <= 0.0 => {
+            Err(s.wrong(key, value, format!("is {} in SI; it must be larger than zero", constant.value)))
+        }
+        (constant, _) => Ok(constant),
+    }
 }
 
-/// The same of a key that a person chose.
-pub(crate) fn declared_value<'a>(
+/// The same as [`declared`] of a key that a person chose.
+///
+/// # Errors
+///
+/// [`RecordError::Value`] with its place where it is something else.
+pub fn declared_value<'a>(
     s: &Section<'a>,
     key: &str,
-    value: &'a Spanned<DeValue<'a>>,
+    value: &'a Value<'a>,
     dimension: Dimension,
 ) -> Result<Declared, RecordError> {
     if value.get_ref().as_table().is_none() {

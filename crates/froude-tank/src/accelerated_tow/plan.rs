@@ -20,6 +20,7 @@ use froude_records::text::counted;
 use super::law::names;
 use super::reduce::{Setup, reduce};
 use super::rows::{Rows, row_errors, sample_s, window};
+use super::section;
 use super::simulate::senses;
 use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
 use super::source::{declared, no_mass, setup_of};
@@ -256,9 +257,10 @@ fn exactly(setup: &Setup) -> Setup {
 ///
 /// What the campaign does not declare, and what the plan does not determine.
 pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
-    let setup = setup_of(campaign, source, declared(source)?, &configurations(source))?;
+    let (spec, blocks) = (declared(source)?, section::plan(source)?);
+    let setup = setup_of(campaign, source, &spec, &configurations(&blocks))?;
     let truth = Truths::of(campaign, source, &setup)?;
-    let planned = planned(source, &setup);
+    let planned = planned(&blocks, &setup);
     let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     let found = forecast(&planned, &setup, &truth, sensors, source)?;
     let duration_s: f64 = planned.iter().map(|run| run.profile.duration_s()).sum();

@@ -18,6 +18,7 @@ use rand_pcg::Pcg64Mcg;
 use super::law::{Channels, data, names, with_acceleration};
 use super::reduce::{Mounted, Setup};
 use super::rows::{TowRun, Way};
+use super::section::{self, AcceleratedPlan};
 use super::source::{declared, no_mass, setup_of};
 use crate::sensors::{Senses, seed_and_sensors};
 
@@ -70,15 +71,15 @@ impl Simulated {
 
 /// The planned configurations, in order of first appearance.
 #[must_use]
-pub fn configurations(source: &Source) -> Vec<String> {
-    distinct(&source.accelerated_plan.iter().flat_map(|block| block.configurations.clone()).collect::<Vec<_>>())
+pub fn configurations(blocks: &[AcceleratedPlan]) -> Vec<String> {
+    distinct(&blocks.iter().flat_map(|block| block.configurations.clone()).collect::<Vec<_>>())
 }
 
-/// The run matrix of a source.
+/// The run matrix of a plan.
 #[must_use]
-pub fn planned(source: &Source, setup: &Setup) -> Vec<Planned> {
+pub fn planned(blocks: &[AcceleratedPlan], setup: &Setup) -> Vec<Planned> {
     let mut out = Vec::new();
-    for block in &source.accelerated_plan {
+    for block in blocks {
         for configuration in &block.configurations {
             let body = setup.bodies.iter().position(|b| b.name == *configuration).unwrap_or(0);
             for &speed_m_s in &block.speed_m_s {
@@ -235,10 +236,10 @@ pub fn simulated(
 ///
 /// What the campaign does not declare.
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
-    let spec = declared(source)?;
-    let setup = setup_of(campaign, source, spec, &configurations(source))?;
+    let (spec, blocks) = (declared(source)?, section::plan(source)?);
+    let setup = setup_of(campaign, source, &spec, &configurations(&blocks))?;
     let truth = Truths::of(campaign, source, &setup)?;
-    let planned = planned(source, &setup);
+    let planned = planned(&blocks, &setup);
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let mut out = Vec::new();
     for run in simulated(&planned, &setup, &truth, sensors, seed).ok_or_else(|| no_mass(source, &setup))? {

@@ -5,7 +5,7 @@ use froude_identify::reduce::Observations;
 use froude_identify::regression::Scatter;
 use froude_identify::seam::Choice;
 use froude_identify::source::{Asked, identify_laws};
-use froude_records::accelerated_tow::AcceleratedTowSpec;
+use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::Derived;
 use froude_records::finding::{Finding, Severity};
@@ -16,8 +16,10 @@ use froude_records::units::Dimension;
 use super::law::{asked, names};
 use super::reduce::{Body, Mounted, Reduced, Setup, reduce};
 use super::rows::{Rows, TowRun, Way, root_mean_square};
-use super::{lag, page, plan, simulate};
+use super::section::AcceleratedTowSpec;
+use super::{lag, page, plan, section, simulate};
 use crate::between_runs::FEWEST_RUNS;
+use crate::declared::{check, needed};
 use crate::logs::{self, Logs};
 use crate::reference;
 
@@ -66,7 +68,7 @@ impl Method for AcceleratedTow {
             "time, position or speed, and force",
             progress,
         )?;
-        let mut setup = setup_of(campaign, source, spec, &logs::configurations(&logs))?;
+        let mut setup = setup_of(campaign, source, &spec, &logs::configurations(&logs))?;
         let late = |log: &ImportedRun| {
             let of = ["position", "y/position", "speed"].map(|motion| logs::stamps_standard_s(log, [motion, "force"]));
             of.into_iter().fold(0.0, f64::max)
@@ -121,7 +123,7 @@ impl Method for AcceleratedTow {
         let best = result.recommendation.as_ref().map_or(0, |r| r.index);
         let added = result.estimates.get(best).and_then(|e| e.coefficients.get(&names(&setup.axis)[3]));
         let relative = added.and_then(|c| Some((c.standard_uncertainty? / c.value?).abs())).unwrap_or(f64::INFINITY);
-        findings.extend(of_runs(&reduced, &setup, spec, relative));
+        findings.extend(of_runs(&reduced, &setup, &spec, relative));
         findings.extend(result.models.get(best).and_then(|model| lag::finding(campaign, &reduced, &setup, model)));
         let blocks = vec![page::section(&logs, &reduced, &setup, result.models.get(best))];
         Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
@@ -133,6 +135,10 @@ impl Method for AcceleratedTow {
 
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
+    }
+
+    fn check(&self, source: &Source) -> Result<(), RecordError> {
+        check(source, ACCELERATED_TOW, section::accelerated_tow, section::plan)
     }
 }
 
@@ -169,12 +175,10 @@ fn refer(estimate: &mut froude_records::estimate::Estimate, campaign: &Campaign,
 ///
 /// # Errors
 ///
-/// It is not there.
-pub fn declared(source: &Source) -> Result<&AcceleratedTowSpec, MethodError> {
-    source.accelerated_tow.as_ref().ok_or_else(|| {
-        let what = "nothing is declared of the body that speeds up: write [source.accelerated_tow] with axis and mass";
-        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
-    })
+/// It is not there, or cannot be read.
+pub fn declared(source: &Source) -> Result<AcceleratedTowSpec, MethodError> {
+    let what = "nothing is declared of the body that speeds up: write [source.accelerated_tow] with axis and mass";
+    needed(source, ACCELERATED_TOW, section::accelerated_tow, what)
 }
 
 pub(super) fn no_mass(source: &Source, setup: &Setup) -> MethodError {

@@ -11,6 +11,7 @@ use super::record::LAW;
 use super::releases::senses;
 use super::releases::{Planned, planned, truth_of};
 use super::run::DecaySetup;
+use super::section::DecayPlan;
 use crate::plan::{self, minutes};
 use crate::sensors::seed_and_sensors;
 
@@ -19,9 +20,14 @@ use crate::sensors::seed_and_sensors;
 /// # Errors
 ///
 /// What the campaign does not declare, releases with too few peaks, coefficients that they do not determine.
-pub fn prospect(campaign: &Campaign, source: &Source, setup: &DecaySetup) -> Result<Prospect, MethodError> {
+pub fn prospect(
+    campaign: &Campaign,
+    source: &Source,
+    blocks: &[DecayPlan],
+    setup: &DecaySetup,
+) -> Result<Prospect, MethodError> {
     let truth = truth_of(campaign, setup.axis)?;
-    let planned = planned(source);
+    let planned = planned(blocks);
     let (_, sensors) = seed_and_sensors(campaign, &senses(setup.axis))?;
     let found = forecast(&planned, setup, truth, sensors).map_err(MethodError::refused)?;
     let duration_s = planned.iter().map(duration_s).sum();

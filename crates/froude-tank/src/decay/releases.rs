@@ -3,7 +3,7 @@
 //! Inertia and restoring force are drawn once for the campaign, about what is declared. Each release has a zero of its own.
 
 use froude_identify::method::{Export, MethodError};
-use froude_records::campaign::{Campaign, Motion, SensorSpec, Source, Truth};
+use froude_records::campaign::{Campaign, Motion, SensorSpec, Truth};
 use froude_records::run::{FREE_DECAY, Role};
 use froude_rig::decay::{DecayRig, DecaySensor, Release};
 use rand::{RngExt, SeedableRng};
@@ -12,6 +12,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::record::LAW;
 use super::run::{DecaySetup, Restoring};
+use super::section::DecayPlan;
 use super::simulate::Logged;
 use crate::sensors::{Senses, seed_and_sensors};
 
@@ -31,11 +32,11 @@ pub struct Planned {
     pub rate_hz: f64,
 }
 
-/// The run matrix of a source.
+/// The run matrix of a plan.
 #[must_use]
-pub fn planned(source: &Source) -> Vec<Planned> {
+pub fn planned(blocks: &[DecayPlan]) -> Vec<Planned> {
     let mut out = Vec::new();
-    for block in &source.decay_plan {
+    for block in blocks {
         for &displacement in &block.displacement {
             for _ in 0..block.repeats {
                 out.push(Planned {
@@ -142,14 +143,14 @@ pub fn simulated(
     planned.iter().enumerate().map(one).collect()
 }
 
-/// The files of all planned releases of a source: a log and its sidecar each.
+/// The files of all planned releases: a log and its sidecar each.
 ///
 /// # Errors
 ///
 /// What the campaign does not declare.
-pub fn files(campaign: &Campaign, source: &Source, setup: &DecaySetup) -> Result<Vec<Export>, MethodError> {
+pub fn files(campaign: &Campaign, blocks: &[DecayPlan], setup: &DecaySetup) -> Result<Vec<Export>, MethodError> {
     let truth = truth_of(campaign, setup.axis)?;
-    let planned = planned(source);
+    let planned = planned(blocks);
     let (seed, sensors) = seed_and_sensors(campaign, &senses(setup.axis))?;
     let mut out = Vec::new();
     for (run, log) in planned.iter().zip(simulated(&planned, setup, truth, sensors, seed)) {

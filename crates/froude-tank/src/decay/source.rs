@@ -3,16 +3,18 @@
 use std::path::Path;
 
 use crate::conditioning::{condition, of_one_rig};
-use crate::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, Restoring, RunSummary};
+use crate::decay::section::{self, DecayPlan};
+use crate::decay::{DecayFit, DecayRun, DecaySetup, Method as DecayMethod, RunSummary};
 use crate::decay::{envelope, output_error, plan, record, releases};
+use crate::declared::{check, needed};
 use crate::logs;
 use crate::long_logs::Reading;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
 use froude_identify::runs::{recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
+use froude_records::RecordError;
 use froude_records::block::{Section, TableBuilder};
 use froude_records::campaign::{Campaign, Motion, Source};
-use froude_records::decay::{DecaySpec, DeclaredRestoring};
 use froude_records::finding::{Finding, Severity};
 use froude_records::page::{Chart, ChartPanel, Mark, Series};
 use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role};
@@ -104,11 +106,17 @@ impl Method for FreeDecay {
     }
 
     fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
-        releases::files(campaign, source, &planning(source)?).map(Some)
+        let (setup, blocks) = planning(source)?;
+        releases::files(campaign, &blocks, &setup).map(Some)
     }
 
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
-        plan::prospect(campaign, source, &planning(source)?).map(Some)
+        let (setup, blocks) = planning(source)?;
+        plan::prospect(campaign, source, &blocks, &setup).map(Some)
+    }
+
+    fn check(&self, source: &Source) -> Result<(), RecordError> {
+        check(source, "decay", section::decay, section::plan)
     }
 }
 
@@ -116,43 +124,23 @@ impl Method for FreeDecay {
 ///
 /// # Errors
 ///
-/// It is not there.
+/// It is not there, or cannot be read.
 pub fn declared(source: &Source) -> Result<DecaySetup, MethodError> {
-    source.decay.as_ref().map(setup_of).ok_or_else(|| {
-        let what = "nothing is declared of the body that oscillates: write [source.decay] with axis = \"heave\", inertia and stiffness, each as { value = \
-                    \"12 kg\", standard = \"0.5 %\" }";
-        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
-    })
+    let what = "nothing is declared of the body that oscillates: write [source.decay] with axis = \"heave\", inertia and stiffness, each as { value = \
+                \"12 kg\", standard = \"0.5 %\" }";
+    needed(source, "decay", section::decay, what)
 }
 
-/// The same where its plan has displacements of its axis.
-fn planning(source: &Source) -> Result<DecaySetup, MethodError> {
-    let setup = declared(source)?;
+/// The same with its plan, which has displacements of its axis.
+fn planning(source: &Source) -> Result<(DecaySetup, Vec<DecayPlan>), MethodError> {
+    let (setup, blocks) = (declared(source)?, section::plan(source)?);
     let is_angle = setup.axis.is_rotation();
     let [needed, found] = if is_angle { ["angle", "displacement"] } else { ["displacement", "angle"] };
-    if source.decay_plan.iter().any(|block| block.is_angle != is_angle) {
+    if blocks.iter().any(|block| block.is_angle != is_angle) {
         let what = format!("[[source.plan]] states {found}, but the axis is {}: write {needed}", setup.axis.name());
         return Err(MethodError::Undeclared { place: source.place.to_string(), what });
     }
-    Ok(setup)
-}
-
-fn setup_of(spec: &DecaySpec) -> DecaySetup {
-    let uncertain =
-        |d: froude_records::run::Declared| froude_fit::budget::Uncertain::new(d.value, d.standard_uncertainty);
-    let window = DecayWindow {
-        free_from_s: spec.free_from_s,
-        skip_half_cycles: spec.skip_half_cycles,
-        noise: spec.noise,
-        ..DecayWindow::default()
-    };
-    let restoring = match spec.restoring {
-        DeclaredRestoring::Stiffness(c) => Restoring::Spring(uncertain(c)),
-        DeclaredRestoring::Buoyancy { force_n, radius_m } => {
-            Restoring::Buoyancy { force_n: uncertain(force_n), radius_m: uncertain(radius_m) }
-        }
-    };
-    DecaySetup { axis: spec.axis, inertia: uncertain(spec.inertia), restoring, window }
+    Ok((setup, blocks))
 }
 
 /// Releases whose motion is drawn; more would be a page of the same.

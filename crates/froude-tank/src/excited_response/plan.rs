@@ -16,6 +16,7 @@ use froude_rig::steady::Reading;
 use super::coefficients::{NAMES, UNITS, budget, errors, scatter};
 use super::error::ExcitedError;
 use super::response::{DOF, FEWEST_CYCLES};
+use super::section;
 use super::setup::{Setup, Shows};
 use super::simulate::senses;
 use super::simulate::{Planned, SENSORS, planned, reading, truth};
@@ -129,7 +130,7 @@ fn colour(reading: Reading, omega_rad_s: f64, rate_hz: f64) -> f64 {
 /// What the campaign does not declare: the window before reflections among it.
 pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
     let setup = setup_of(source)?;
-    let planned = planned(source, &setup, truth(campaign)?);
+    let planned = planned(&section::plan(source)?, &setup, truth(campaign)?);
     let window_s = setup.window_s.ok_or_else(|| {
         let what = "a plan in waves needs the window that the tank allows: write window = { from = \"14 s\", to = \"20 s\" } in [source.excited_response], from where the wave is at the body until its \
                     reflection is back";

@@ -15,6 +15,7 @@ use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
 use super::coefficients::NAMES;
+use super::section::{self, ExcitedPlan};
 use super::setup::{Setup, Shows, WaveRun};
 use super::source::setup_of;
 use crate::sensors::{Senses, seed_and_sensors};
@@ -60,11 +61,11 @@ impl Simulated {
     }
 }
 
-/// The run matrix of a source, at true coefficients A33 and B33.
+/// The run matrix of a plan, at true coefficients A33 and B33.
 #[must_use]
-pub fn planned(source: &Source, setup: &Setup, [added_kg, damping_n_s_m]: [f64; 2]) -> Vec<Planned> {
+pub fn planned(blocks: &[ExcitedPlan], setup: &Setup, [added_kg, damping_n_s_m]: [f64; 2]) -> Vec<Planned> {
     let mut out = Vec::new();
-    for block in &source.excited_plan {
+    for block in blocks {
         for &period_s in &block.period_s {
             let rig = WaveRig {
                 mass_kg: setup.mass_kg.value,
@@ -176,7 +177,7 @@ pub fn simulated(planned: &[Planned], setup: &Setup, sensors: &[SensorSpec], see
 /// What the campaign does not declare.
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
     let setup = setup_of(source)?;
-    let planned = planned(source, &setup, truth(campaign)?);
+    let planned = planned(&section::plan(source)?, &setup, truth(campaign)?);
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let mut out = Vec::new();
     for run in simulated(&planned, &setup, sensors, seed) {

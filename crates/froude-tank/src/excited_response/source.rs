@@ -2,16 +2,16 @@
 
 use std::borrow::Cow;
 
-use froude_fit::budget::Uncertain;
 use froude_identify::answer::Made;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
-use froude_records::excited_response::ExcitedSpec;
-use froude_records::run::{Channel, Declared, EXCITED_RESPONSE, ImportedRun, Role};
+use froude_records::run::{Channel, EXCITED_RESPONSE, ImportedRun, Role};
 use froude_records::units::Dimension;
 
 use super::setup::{Setup, Shows, WaveRun};
-use super::{findings, fit, page, plan, record, simulate};
+use super::{findings, fit, page, plan, record, section, simulate};
+use crate::declared::{check, needed};
 use crate::logs::{self, Logs, distinct};
 
 /// Force of the held body over the motion of the free one.
@@ -90,25 +90,20 @@ impl Method for ExcitedResponse {
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
     }
+
+    fn check(&self, source: &Source) -> Result<(), RecordError> {
+        check(source, EXCITED_RESPONSE, section::excited, section::plan)
+    }
 }
 
 /// Everything that the source declares.
 ///
 /// # Errors
 ///
-/// No `[source.excited_response]`; a budget entry of a quantity that this method does not have.
+/// No `[source.excited_response]`, or one that cannot be read; a budget entry of a quantity that this method does not have.
 pub fn setup_of(source: &Source) -> Result<Setup, MethodError> {
-    let spec: &ExcitedSpec = source.excited.as_ref().ok_or_else(|| {
-        let what = "nothing is declared of the body in waves: write [source.excited_response] with axis = \"heave\", mass, restoring, and the window before reflections";
-        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
-    })?;
-    let uncertain = |d: Declared| Uncertain::new(d.value, d.standard_uncertainty);
-    let mut out = Setup {
-        delay_s: uncertain(spec.delay_s),
-        window_s: spec.window_s,
-        harmonics: spec.harmonics,
-        ..Setup::new(uncertain(spec.mass_kg), uncertain(spec.restoring_n_m))
-    };
+    let what = "nothing is declared of the body in waves: write [source.excited_response] with axis = \"heave\", mass, restoring, and the window before reflections";
+    let mut out = needed(source, EXCITED_RESPONSE, section::excited, what)?;
     for entry in &source.uncertainty {
         logs::is_of_all_runs(entry)?;
         let refuse = |what: String| MethodError::Undeclared { place: entry.place.to_string(), what };

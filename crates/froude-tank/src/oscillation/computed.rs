@@ -8,6 +8,7 @@ use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, Source};
 use froude_rig::oscillation::OscillationTrace;
 
+use super::section;
 use super::setup::Setup;
 use super::simulate::{Planned, configurations, log, planned, sidecar};
 use super::source::{declared, setup_of};
@@ -19,14 +20,15 @@ use froude_hydro::swing::{Medium, Pivot};
 ///
 /// What the campaign does not declare; a body that turns its heading; no run in water; a run twice; too few periods for the cycles that are asked for.
 pub fn asked(campaign: &Campaign, source: &Source) -> Result<(Setup, Vec<Planned>), MethodError> {
-    let setup = setup_of(campaign, source, declared(source)?, &configurations(source))?;
+    let blocks = section::plan(source)?;
+    let setup = setup_of(campaign, source, &declared(source)?, &configurations(&blocks))?;
     let undeclared = |what: &str| MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() };
     if setup.pivot != Pivot::Stream {
         return Err(undeclared(
             "an upright pivot turns the body's heading, which is not computed; write pivot = \"stream\", a swing across the stream",
         ));
     }
-    let mut runs = planned(source, &setup);
+    let mut runs = planned(&blocks, &setup);
     runs.retain(|run| run.swing.medium == Medium::Water);
     for run in &mut runs {
         let (name, swing) = (&setup.bodies[run.body].name, &run.swing);

@@ -10,6 +10,7 @@ use froude_records::text::counted;
 
 use super::forces::Drag;
 use super::forecast::forecast;
+use super::section;
 use super::setup::Setup;
 use super::simulate::senses;
 use super::simulate::{Planned, Truths, configurations, planned};
@@ -23,10 +24,10 @@ use crate::sensors::seed_and_sensors;
 ///
 /// What the campaign does not declare, runs too short for their cycles, coefficients that the plan does not determine.
 pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
-    let spec = declared(source)?;
-    let setup = setup_of(campaign, source, spec, &configurations(source))?;
+    let (spec, blocks) = (declared(source)?, section::plan(source)?);
+    let setup = setup_of(campaign, source, &spec, &configurations(&blocks))?;
     let truth = Truths::of(campaign, source, &setup)?;
-    let planned = planned(source, &setup);
+    let planned = planned(&blocks, &setup);
     let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     // Another law than the true one is off by what it lacks, which no linearisation forecasts.
     let drag = Drag::new(truth.law.clone()).map_err(MethodError::refused)?;

@@ -16,6 +16,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::fit::{ADDED, BUOYANCY, DELAY};
 use super::forces::{Drag, LOAD};
+use super::section::{self, OscillationPlan};
 use super::setup::{OscillationRun, Setup};
 use super::source::{declared, drags, setup_of};
 use crate::sensors::{Senses, seed_and_sensors};
@@ -73,31 +74,32 @@ impl Simulated {
 
 /// Names of the planned configurations, in order of first appearance.
 #[must_use]
-pub fn configurations(source: &Source) -> Vec<String> {
-    distinct(&source.oscillation_plan.iter().flat_map(|block| block.configurations.clone()).collect::<Vec<_>>())
+pub fn configurations(blocks: &[OscillationPlan]) -> Vec<String> {
+    distinct(&blocks.iter().flat_map(|block| block.configurations.clone()).collect::<Vec<_>>())
 }
 
-/// The run matrix of a source.
+/// The run matrix of a plan.
 #[must_use]
-pub fn planned(source: &Source, setup: &Setup) -> Vec<Planned> {
+pub fn planned(blocks: &[OscillationPlan], setup: &Setup) -> Vec<Planned> {
     let mut out = Vec::new();
-    for block in &source.oscillation_plan {
+    for block in blocks {
+        let swings = &block.swings;
         for configuration in &block.configurations {
             let body = setup.bodies.iter().position(|b| b.name == *configuration).unwrap_or(0);
             for &flow_m_s in &block.flow_m_s {
-                for &amplitude_rad in &block.amplitude_rad {
-                    for &omega_rad_s in &block.omega_rad_s {
-                        for _ in 0..block.repeats {
+                for &amplitude_rad in &swings.amplitude_rad {
+                    for &omega_rad_s in &swings.omega_rad_s {
+                        for _ in 0..swings.repeats {
                             let swing = Swing {
                                 medium: if block.in_air { Medium::Air } else { Medium::Water },
                                 amplitude_rad,
                                 omega_rad_s,
                                 flow_m_s,
-                                still_s: block.still_s,
-                                periods: block.periods,
+                                still_s: swings.still_s,
+                                periods: swings.periods,
                             };
                             let id = format!("{:03}", out.len() + 1);
-                            out.push(Planned { id, body, swing, rate_hz: block.rate_hz, of_drag: 1.0 });
+                            out.push(Planned { id, body, swing, rate_hz: swings.rate_hz, of_drag: 1.0 });
                         }
                     }
                 }
@@ -257,10 +259,10 @@ pub fn simulated(
 ///
 /// What the campaign does not declare.
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
-    let spec = declared(source)?;
-    let setup = setup_of(campaign, source, spec, &configurations(source))?;
+    let (spec, blocks) = (declared(source)?, section::plan(source)?);
+    let setup = setup_of(campaign, source, &spec, &configurations(&blocks))?;
     let truth = Truths::of(campaign, source, &setup)?;
-    let planned = planned(source, &setup);
+    let planned = planned(&blocks, &setup);
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let mut out = Vec::new();
     for run in simulated(&planned, &setup, &truth, sensors, seed) {

@@ -1,24 +1,25 @@
 //! Forced oscillation as a source of a campaign: a folder of logs, one run each, with a sidecar that states what it is.
 
-use froude_fit::budget::Uncertain;
 use froude_hydro::swing::Medium;
 use froude_identify::answer::Made;
 use froude_identify::dataset::Dataset;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
 use froude_identify::source::laws;
+use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
-use froude_records::oscillation::OscillationSpec;
-use froude_records::run::{Channel, Declared, FORCED_OSCILLATION, ImportedRun, Role};
+use froude_records::run::{Channel, FORCED_OSCILLATION, ImportedRun, Role};
 use froude_records::table::links_of_configuration;
 use froude_records::units::Dimension;
 
 use super::forces::{Drag, LOAD};
+use super::section::OscillationSpec;
 use super::setup::{Body, OscillationRun, Setup, motions_without};
-use super::{findings, fit, page, plan, record, simulate};
+use super::{findings, fit, page, plan, record, section, simulate};
+use crate::declared::{check, needed, uncertain};
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs::{self, LENGTHS, Lengths};
-use crate::motion::{Cycles, Sampled};
+use crate::motion::Sampled;
 use crate::reference;
 
 /// The joint fit in time.
@@ -66,6 +67,10 @@ impl Method for ForcedOscillation {
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
     }
+
+    fn check(&self, source: &Source) -> Result<(), RecordError> {
+        check(source, FORCED_OSCILLATION, section::oscillation, section::plan)
+    }
 }
 
 /// Reads, fits, chooses; logs beyond `lengths` are averaged.
@@ -79,7 +84,7 @@ fn identified(
     progress("reading the runs");
     let Logs { runs: logs, mut files, mut findings } =
         logs::read_averaging(source.input.path(), FORCED_OSCILLATION, &ROLES, CHANNELS, lengths, progress)?;
-    let mut setup = setup_of(campaign, source, spec, &logs::configurations(&logs))?;
+    let mut setup = setup_of(campaign, source, &spec, &logs::configurations(&logs))?;
     let clocks_s = logs.iter().map(|log| logs::stamps_standard_s(log, ["angle", "force"])).fold(0.0, f64::max);
     if let Some(delay) = &mut setup.delay_s {
         // One that is found needs no word of the clocks; of one that is declared their error is an error too.
@@ -128,21 +133,15 @@ fn identified(
     Ok(Found { results, summary, blocks, findings: distinct(findings), ..Found::default() })
 }
 
-fn uncertain(declared: Declared) -> Uncertain {
-    Uncertain::new(declared.value, declared.standard_uncertainty)
-}
-
 /// `[source.forced_oscillation]`.
 ///
 /// # Errors
 ///
-/// It is not there.
-pub fn declared(source: &Source) -> Result<&OscillationSpec, MethodError> {
-    source.oscillation.as_ref().ok_or_else(|| {
-        let what =
-            "nothing is declared of the body that swings: write [source.forced_oscillation] with pivot, radius and mass";
-        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
-    })
+/// It is not there, or cannot be read.
+pub fn declared(source: &Source) -> Result<OscillationSpec, MethodError> {
+    let what =
+        "nothing is declared of the body that swings: write [source.forced_oscillation] with pivot, radius and mass";
+    needed(source, FORCED_OSCILLATION, section::oscillation, what)
 }
 
 /// Everything that the campaign declares, for the configurations that there are.
@@ -176,7 +175,7 @@ pub fn setup_of(
     let mut out = Setup {
         pivot: spec.pivot,
         delay_s: spec.delay_s.map(uncertain),
-        cycles: Cycles { skip: spec.skip, used: spec.used, fewest: spec.fewest },
+        cycles: spec.cycles,
         harmonics: spec.harmonics,
         ..Setup::new(uncertain(spec.radius_m), density, bodies)
     };

@@ -11,10 +11,11 @@ use froude_rig::rotation::Mounted;
 use super::findings::one_rate;
 use super::fit::LAMBDAS;
 use super::forecast::{Forecast, forecast};
+use super::section;
 use super::setup::Setup;
 use super::simulate::senses;
 use super::simulate::{Planned, Truths, planned};
-use super::source::{declared, setup_of};
+use super::source::setup_of;
 use crate::plan::{self, minutes};
 use crate::sensors::seed_and_sensors;
 
@@ -24,9 +25,9 @@ use crate::sensors::seed_and_sensors;
 ///
 /// What the campaign does not declare, runs too short for their cycles, coefficients that the plan does not determine.
 pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
-    let setup = setup_of(campaign, source, declared(source)?)?;
-    let truth = Truths::of(campaign, source, &setup)?;
-    let planned = planned(source);
+    let (setup, blocks) = (setup_of(campaign, source)?, section::plan(source)?);
+    let truth = Truths::of(campaign, &blocks, &setup)?;
+    let planned = planned(&blocks);
     let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     let found = forecast(&planned, &setup, &truth, sensors, &campaign.identify).map_err(MethodError::refused)?;
     let duration_s = planned.iter().map(duration_s).sum();

@@ -14,8 +14,9 @@ use rand_pcg::Pcg64Mcg;
 
 use super::error::RotationError;
 use super::fit::{INERTIA, LAMBDAS, RESTORING, RESTORING_IN_AIR, TARES};
+use super::section::{self, RotationPlan};
 use super::setup::{RotationRun, Setup};
-use super::source::{declared, setup_of};
+use super::source::setup_of;
 use crate::joint::DELAY;
 use crate::sensors::{Senses, seed_and_sensors};
 
@@ -81,22 +82,23 @@ fn role(mounted: Mounted) -> Role {
     }
 }
 
-/// The run matrix of a source.
+/// The run matrix of a plan.
 #[must_use]
-pub fn planned(source: &Source) -> Vec<Planned> {
+pub fn planned(blocks: &[RotationPlan]) -> Vec<Planned> {
     let mut out = Vec::new();
-    for block in &source.rotation_plan {
-        for &amplitude_rad in &block.amplitude_rad {
-            for &omega_rad_s in &block.omega_rad_s {
-                for _ in 0..block.repeats {
+    for block in blocks {
+        let swings = &block.swings;
+        for &amplitude_rad in &swings.amplitude_rad {
+            for &omega_rad_s in &swings.omega_rad_s {
+                for _ in 0..swings.repeats {
                     let turn = Turn {
                         mounted: mounted(block.role),
                         amplitude_rad,
                         omega_rad_s,
-                        still_s: block.still_s,
-                        periods: block.periods,
+                        still_s: swings.still_s,
+                        periods: swings.periods,
                     };
-                    out.push(Planned { id: format!("{:03}", out.len() + 1), turn, rate_hz: block.rate_hz });
+                    out.push(Planned { id: format!("{:03}", out.len() + 1), turn, rate_hz: swings.rate_hz });
                 }
             }
         }
@@ -127,7 +129,7 @@ impl Truths {
     /// # Errors
     ///
     /// No `[simulate]`, a record instead of coefficients, a coefficient that is not stated.
-    pub fn of(campaign: &Campaign, source: &Source, setup: &Setup) -> Result<Self, MethodError> {
+    pub fn of(campaign: &Campaign, blocks: &[RotationPlan], setup: &Setup) -> Result<Self, MethodError> {
         let undeclared = |place: String, what: String| MethodError::Undeclared { place, what };
         let place = campaign.path.display().to_string();
         let values = match campaign.simulate.as_ref().map(|s| &s.truth) {
@@ -153,7 +155,7 @@ impl Truths {
             let what = || format!("{name} is missing; the truth needs it");
             values.get(name).copied().ok_or_else(|| undeclared("[simulate.coefficients]".to_owned(), what()))
         };
-        let plans = |role: Role| source.rotation_plan.iter().any(|block| block.role == role);
+        let plans = |role: Role| blocks.iter().any(|block| block.role == role);
         let three = |names: [&str; 3]| -> Result<Lambdas, MethodError> {
             Ok([need(names[0])?, need(names[1])?, need(names[2])?])
         };
@@ -240,11 +242,11 @@ pub fn simulated(
 ///
 /// What the campaign does not declare.
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
-    let setup = setup_of(campaign, source, declared(source)?)?;
-    let truth = Truths::of(campaign, source, &setup)?;
+    let (setup, blocks) = (setup_of(campaign, source)?, section::plan(source)?);
+    let truth = Truths::of(campaign, &blocks, &setup)?;
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let mut out = Vec::new();
-    for run in simulated(&planned(source), &setup, &truth, sensors, seed) {
+    for run in simulated(&planned(&blocks), &setup, &truth, sensors, seed) {
         out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });
         out.push(Export { name: format!("{}.toml", run.planned.id), content: sidecar(&run).into_bytes() });
     }

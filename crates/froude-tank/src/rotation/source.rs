@@ -3,19 +3,20 @@
 use froude_fit::budget::Uncertain;
 use froude_identify::answer::Made;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
-use froude_records::rotation::RotationSpec;
-use froude_records::run::{Channel, Declared, ImportedRun, ROTATION, Role};
+use froude_records::run::{Channel, ImportedRun, ROTATION, Role};
 use froude_records::units::Dimension;
 
 use super::derive::derived;
 use super::setup::{RotationRun, Setup, motions_without};
 use super::simulate::mounted;
-use super::{findings, fit, page, plan, record, simulate};
+use super::{findings, fit, page, plan, record, section, simulate};
+use crate::declared::{check, needed};
 use crate::fluid::density_kg_m3;
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs;
-use crate::motion::{Cycles, Sampled};
+use crate::motion::Sampled;
 
 /// The joint fit in time.
 pub struct Rotation;
@@ -49,13 +50,12 @@ impl Method for Rotation {
         _: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let spec = declared(source)?;
+        let mut setup = setup_of(campaign, source)?;
         progress("reading the runs");
         let roles = [Role::Test, Role::DryAir, Role::Tare];
         let Logs { runs: logs, mut files, mut findings } =
             logs::read(source.input.path(), ROTATION, &roles, "time, angle and torque", progress)?;
         one_body(&logs)?;
-        let mut setup = setup_of(campaign, source, spec)?;
         let clocks_s = logs.iter().map(|log| logs::stamps_standard_s(log, ["angle", "torque"])).fold(0.0, f64::max);
         if let Some(delay) = &mut setup.delay_s {
             // One that is found needs no word of the clocks; of one that is declared their error is an error too.
@@ -98,6 +98,10 @@ impl Method for Rotation {
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
     }
+
+    fn check(&self, source: &Source) -> Result<(), RecordError> {
+        check(source, ROTATION, section::rotation, section::plan)
+    }
 }
 
 /// Runs of one body: λs of two are no numbers of one.
@@ -119,43 +123,18 @@ fn one_body(logs: &[ImportedRun]) -> Result<(), MethodError> {
     }
 }
 
-fn uncertain(declared: Declared) -> Uncertain {
-    Uncertain::new(declared.value, declared.standard_uncertainty)
-}
-
-/// `[source.rotation]`.
-///
-/// # Errors
-///
-/// It is not there.
-pub fn declared(source: &Source) -> Result<&RotationSpec, MethodError> {
-    source.rotation.as_ref().ok_or_else(|| {
-        let what = "nothing is declared of the body that turns: write [source.rotation] with axis and inertia";
-        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
-    })
-}
-
 /// Everything that the campaign declares.
 ///
 /// # Errors
 ///
-/// A budget entry of a quantity that this method does not have, or that is no part of it.
-pub fn setup_of(campaign: &Campaign, source: &Source, spec: &RotationSpec) -> Result<Setup, MethodError> {
+/// No `[source.rotation]`, or one that cannot be read; a budget entry of a quantity that this method does not have, or that is no part of it.
+pub fn setup_of(campaign: &Campaign, source: &Source) -> Result<Setup, MethodError> {
+    let what = "nothing is declared of the body that turns: write [source.rotation] with axis and inertia";
+    let mut out = needed(source, ROTATION, section::rotation, what)?;
     let density = density_kg_m3(&campaign.fluid)
         .map_err(|what| MethodError::Undeclared { place: source.place.to_string(), what })?;
-    let mut out = Setup {
-        axis: spec.axis,
-        inertia_kg_m2: spec.inertia_kg_m2.map(uncertain),
-        tare_inertia_kg_m2: spec.tare_inertia_kg_m2.map(uncertain),
-        restoring_n_m: spec.restoring_n_m.map(uncertain),
-        delay_s: spec.delay_s.map(uncertain),
-        angle_relative: 0.0,
-        torque_relative: 0.0,
-        cycles: Cycles { skip: spec.skip, used: spec.used, fewest: spec.fewest },
-        harmonics: spec.harmonics,
-        density_kg_m3: density.map(|value| Uncertain::new(value, 0.0)),
-        link: campaign.body.as_ref().and_then(|b| b.link),
-    };
+    out.density_kg_m3 = density.map(|value| Uncertain::new(value, 0.0));
+    out.link = campaign.body.as_ref().and_then(|b| b.link);
     for entry in &source.uncertainty {
         logs::is_of_all_runs(entry)?;
         let refuse = |what: String| Err(MethodError::Undeclared { place: entry.place.to_string(), what });

@@ -4,10 +4,10 @@ use froude_records::block::{Block, ResultColumn, ResultTable, Section, TableBuil
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark, Series};
 use froude_records::run::ImportedRun;
-use froude_records::steady::SteadySpec;
 
 use super::point::Load;
 use super::row::Row;
+use super::section::SteadySpec;
 use crate::residual_spectrum::{self, Left};
 
 /// Runs that are drawn; more would be a page of the same.

@@ -16,6 +16,7 @@ use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
 use froude_records::text::counted;
 
+use super::section::{self, SteadySpec};
 use super::simulate::senses;
 use super::simulate::{Plan, Simulated, loads_at, plan_of, simulated};
 use super::window::window;
@@ -32,14 +33,13 @@ const TAPER_COST: f64 = 0.6875 / 0.5625;
 const STEP: f64 = 1e-3;
 
 /// Lengths of the steady window and of a part at rest, s, of each planned run.
-fn windows(plan: &Plan, source: &Source) -> Result<Vec<[f64; 2]>, MethodError> {
-    let spec = source.steady.unwrap_or_default();
+fn windows(plan: &Plan, spec: &SteadySpec) -> Result<Vec<[f64; 2]>, MethodError> {
     let parts_s = |run: &Simulated| {
         let run = run.view();
-        window(run.id, run.time_s, run.motion, &spec)
+        window(run.id, run.time_s, run.motion, spec)
             .map(|w| [w.steady.len(), w.before.len()].map(|n| n as f64 / spec.tow.rate_hz))
     };
-    let exact = simulated(plan, source, &[], &[], 0);
+    let exact = simulated(plan, spec.tow, &[], &[], 0);
     exact.iter().map(parts_s).collect::<Result<_, _>>().map_err(MethodError::refused)
 }
 
@@ -60,8 +60,9 @@ pub struct PlannedError {
 ///
 /// Runs without a window, coefficients that the plan does not determine.
 pub fn expected(plan: &Plan, source: &Source, sensors: &[SensorSpec]) -> Result<Vec<Expected>, MethodError> {
-    let windows_s = windows(plan, source)?;
-    let step_s = 1.0 / source.steady.unwrap_or_default().tow.rate_hz;
+    let spec = section::declared(source)?;
+    let windows_s = windows(plan, &spec)?;
+    let step_s = 1.0 / spec.tow.rate_hz;
     let own = |r: usize, i: usize| variance(sensors, &plan.law.responses[r], windows_s[i], step_s);
     let (errors, rows) = declared(plan, &source.uncertainty)?;
     linearised(plan, &|r, i| own(r, i) + rows[r][i], &errors, false)
@@ -192,10 +193,10 @@ fn direction(plan: &Plan, entry: &BudgetEntry, r: usize, truth: &[f64]) -> Optio
 ///
 /// What the campaign does not declare, runs without a window, coefficients that the plan does not determine.
 pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
-    let spec = source.steady.unwrap_or_default();
+    let spec = section::declared(source)?;
     let plan = plan_of(campaign, source)?;
     let (_, sensors) = seed_and_sensors(campaign, &senses(&plan))?;
-    let windows_s = windows(&plan, source)?;
+    let windows_s = windows(&plan, &spec)?;
     let expected = expected(&plan, source, sensors)?;
     let speed = |i: &usize| plan.data.values("speed").map_or(0.0, |v| v[*i].abs());
     let duration = |i: &usize| 2.0 * (spec.tow.still_s + speed(i) / spec.tow.acceleration_m_s2) + spec.tow.steady_s;

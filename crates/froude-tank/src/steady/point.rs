@@ -6,9 +6,9 @@
 use std::ops::Range;
 
 use froude_fit::series::{Mean, mean, tapered};
-use froude_records::steady::SteadySpec;
 
 use super::error::SteadyError;
+use super::section::SteadySpec;
 use super::window::{Motion, Told, Window, window_told};
 
 /// A sensor that stands at its largest or smallest reading in this part of a window is clipped …

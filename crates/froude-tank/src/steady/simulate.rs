@@ -12,12 +12,13 @@ use froude_identify::simulate::{planned, truth};
 use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
 use froude_records::run::STEADY;
 use froude_records::units::Dimension;
-use froude_rig::steady::{Reading, TowTrace, tow};
+use froude_rig::steady::{Reading, Tow, TowTrace, tow as towed};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
 use super::point::Run;
+use super::section;
 use super::window::Motion;
 use crate::sensors::{Senses, seed_and_sensors};
 
@@ -96,16 +97,9 @@ pub fn loads_at(plan: &Plan, row: usize, speed_m_s: f64, angle_rad: f64) -> Vec<
 
 /// The logs of all planned runs; the same seed gives the same logs.
 #[must_use]
-pub fn simulated(
-    plan: &Plan,
-    source: &Source,
-    sensors: &[SensorSpec],
-    budget: &[BudgetEntry],
-    seed: u64,
-) -> Vec<Simulated> {
+pub fn simulated(plan: &Plan, tow: Tow, sensors: &[SensorSpec], budget: &[BudgetEntry], seed: u64) -> Vec<Simulated> {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let mut draw = || -> f64 { rng.sample(StandardNormal) };
-    let spec = source.steady.unwrap_or_default();
     let value = |name: &str, row: usize| plan.data.values(name).map_or(0.0, |v| v[row]);
     // One error of the campaign for each entry; those of runs are drawn as they come.
     let common: Vec<f64> = budget.iter().map(|_| draw()).collect();
@@ -159,7 +153,7 @@ pub fn simulated(
             configuration: plan.data.configuration[row].clone(),
             angle_rad: angle,
             loads: plan.law.responses.clone(),
-            trace: tow(spec.tow, speed, &readings, &loads, seed),
+            trace: towed(tow, speed, &readings, &loads, seed),
         });
     }
     out
@@ -179,7 +173,7 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let plan = plan_of(campaign, source)?;
     let (seed, sensors) = seed_and_sensors(campaign, &senses(&plan))?;
     let mut out = Vec::new();
-    for run in simulated(&plan, source, sensors, &source.uncertainty, seed) {
+    for run in simulated(&plan, section::declared(source)?.tow, sensors, &source.uncertainty, seed) {
         out.push(Export { name: format!("{}.csv", run.id), content: log(&run).into_bytes() });
         out.push(Export { name: format!("{}.toml", run.id), content: sidecar(&run).into_bytes() });
     }

@@ -4,18 +4,19 @@ use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
+use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::marks::SegmentKind;
 use froude_records::run::step::Step;
 use froude_records::run::{ImportedRun, Role, STEADY};
-use froude_records::steady::SteadySpec;
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::error::SteadyError;
 use super::point::{Point, Run, Zero, point_told};
 use super::row::{Row, table};
+use super::section::{self, SteadySpec};
 use super::tare::{self, Tare};
 use super::walls::Walls;
 use super::window::{Motion, Told};
@@ -68,7 +69,7 @@ impl Method for Steady {
         _: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let spec = source.steady.unwrap_or_default();
+        let spec = section::declared(source)?;
         progress("reading the runs");
         let Logs { runs: logs, mut files, mut findings } = logs::read(
             source.input.path(),
@@ -110,6 +111,10 @@ impl Method for Steady {
 
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
+    }
+
+    fn check(&self, source: &Source) -> Result<(), RecordError> {
+        section::declared(source).map(drop)
     }
 }
 

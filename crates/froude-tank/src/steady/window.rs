@@ -8,9 +8,9 @@
 use std::ops::Range;
 
 use froude_records::run::marks::{Mark, Segment, SegmentKind};
-use froude_records::steady::SteadySpec;
 
 use super::error::SteadyError;
+use super::section::SteadySpec;
 use crate::conditioning::stretches::{in_words, longest_free, rows, touching};
 
 /// What moves more slowly than this part of the largest speed is at rest.

@@ -4,9 +4,9 @@ use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark, Series};
 use froude_records::run::ImportedRun;
-use froude_records::weight_tow::WeightTowSpec;
 
 use super::reduce::Reduced;
+use super::section::WeightTowSpec;
 use crate::residual_spectrum::{self, Left};
 use crate::steady::page::load_column;
 use crate::steady::point::Load;

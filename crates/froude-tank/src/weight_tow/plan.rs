@@ -10,9 +10,9 @@ use froude_records::number;
 use froude_records::run::Declared;
 use froude_records::text::counted;
 use froude_records::units::Dimension;
-use froude_records::weight_tow::WeightTowSpec;
 
 use super::reduce::{ERRORS, Reduced, reduce};
+use super::section::{self, WeightTowSpec};
 use super::simulate::senses;
 use super::simulate::{Simulated, Weights, declared, simulated, weights_of};
 use crate::plan::{Expected, prospect as of_plan};
@@ -122,7 +122,7 @@ pub fn expected(
 /// What the campaign does not declare, runs that give no observation, coefficients that the plan does not determine.
 pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
     let spec = declared(source)?;
-    let weights = weights_of(campaign, source)?;
+    let weights = weights_of(campaign, source, &spec, section::plan(source)?)?;
     let (_, sensors) = seed_and_sensors(campaign, &senses(&weights))?;
     let (runs, reduced) = exact(&weights, &spec, sensors)?;
     let expected = expected(&weights, source, &spec, &reduced, (sensors, campaign.identify.errors_in_variables))?;

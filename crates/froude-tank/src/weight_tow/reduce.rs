@@ -5,14 +5,14 @@
 //! and 0.1 m/s some 3 mN, and is used only where no mass is declared and the run is shown to be steady.
 
 use froude_records::run::Declared;
-use froude_records::steady::SteadySpec;
-use froude_records::weight_tow::WeightTowSpec;
 use froude_rig::weight_tow::G_M_S2;
 
 use super::balance::{Balance, Pull, balance};
 use super::error::WeightTowError;
+use super::section::WeightTowSpec;
 use super::track::{Track, track};
 use crate::steady::point::{Load, Point, Run, observed};
+use crate::steady::section::SteadySpec;
 use crate::steady::window::{Motion, Window};
 
 /// One run: positions in metres, and loads of the water on the body along its axes; there may be none.

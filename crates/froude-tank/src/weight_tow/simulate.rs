@@ -8,7 +8,6 @@ use froude_identify::simulate::{planned, truth};
 use froude_records::campaign::{BudgetEntry, Campaign, PlanBlock, SensorSpec, Shared, Source};
 use froude_records::run::WEIGHT_TOW;
 use froude_records::units::Dimension;
-use froude_records::weight_tow::{Lens, WeightTowSpec};
 use froude_rig::steady::Reading;
 use froude_rig::weight_tow::{WeightRig, pull};
 use rand::{RngExt, SeedableRng};
@@ -16,7 +15,9 @@ use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
 use super::reduce::WeightRun;
+use super::section::{self, Lens, WeightTowSpec};
 use super::track::metres;
+use crate::declared::needed;
 use crate::sensors::{Senses, seed_and_sensors};
 use crate::steady::simulate::{Plan, loads_at};
 
@@ -84,12 +85,10 @@ impl Simulated {
 ///
 /// # Errors
 ///
-/// It is not there.
+/// It is not there, or cannot be read.
 pub fn declared(source: &Source) -> Result<WeightTowSpec, MethodError> {
-    source.weight_tow.ok_or_else(|| MethodError::Undeclared {
-        place: source.place.to_string(),
-        what: "nothing is declared of wagon and camera: write [source.weight_tow] with scale (the size of a pixel), moving_mass and friction".to_owned(),
-    })
+    let what = "nothing is declared of wagon and camera: write [source.weight_tow] with scale (the size of a pixel), moving_mass and friction";
+    needed(source, WEIGHT_TOW, section::weight_tow, what)
 }
 
 /// Drag along the rail of a run at a speed, N.
@@ -99,23 +98,19 @@ fn drag_n(plan: &Plan, row: usize, speed_m_s: f64, angle_rad: f64) -> f64 {
     -(of("f_x") * angle_rad.cos() - of("f_y") * angle_rad.sin())
 }
 
-/// The runs of a source's plan, each at the speed where the drag along the rail is what pulls.
+/// The runs of a plan ([`section::plan`]), each at the speed where the drag along the rail is what pulls.
 ///
 /// # Errors
 ///
 /// What the campaign does not declare; a weight that friction holds.
-pub fn weights_of(campaign: &Campaign, source: &Source) -> Result<Weights, MethodError> {
-    let spec = declared(source)?;
+pub fn weights_of(
+    campaign: &Campaign,
+    source: &Source,
+    spec: &WeightTowSpec,
+    blocks: Vec<PlanBlock>,
+) -> Result<Weights, MethodError> {
     // The weight stands where the speed of a table's plan does, until the balance is found.
-    let block = |b: &froude_records::weight_tow::WeightPlan| PlanBlock {
-        configurations: b.configurations.clone(),
-        speed_m_s: b.weight_n.clone(),
-        angle_rad: b.angle_rad.clone(),
-        pitch_rad: vec![0.0],
-        repeats: b.repeats,
-    };
-    let mut own = source.clone();
-    own.plan = source.weight_plan.iter().map(block).collect();
+    let own = Source { plan: blocks, ..source.clone() };
     let mut alone = campaign.clone();
     alone.sources = vec![own.clone()];
     let mut data = planned(&alone, &own)?;
@@ -271,7 +266,7 @@ pub(super) fn senses(weights: &Weights) -> [Senses<'_>; 2] {
 /// What the campaign does not declare.
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
     let spec = declared(source)?;
-    let weights = weights_of(campaign, source)?;
+    let weights = weights_of(campaign, source, &spec, section::plan(source)?)?;
     let (seed, sensors) = seed_and_sensors(campaign, &senses(&weights))?;
     let mut out = Vec::new();
     for run in simulated(&weights, &spec, sensors, &source.uncertainty, seed) {

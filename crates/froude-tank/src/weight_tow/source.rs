@@ -5,19 +5,21 @@ use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
+use froude_records::RecordError;
 use froude_records::campaign::{BudgetEntry, Campaign, Shared, Source};
 use froude_records::estimate::ErrorKind;
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::step::Step;
 use froude_records::run::{ImportedRun, Role, WEIGHT_TOW};
 use froude_records::units::Dimension;
-use froude_records::weight_tow::WeightTowSpec;
 
 use super::error::WeightTowError;
 use super::reduce::{ERRORS, Reduced, WeightRun, reduce};
+use super::section::WeightTowSpec;
 use super::track::metres;
-use super::{page, plan, simulate};
+use super::{page, plan, section, simulate};
 use crate::conditioning::stretches::{in_words, touching};
+use crate::declared::check;
 use crate::logs::{self, Logs};
 use crate::steady::row::{Row, table};
 
@@ -117,6 +119,10 @@ impl Method for WeightTow {
 
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
+    }
+
+    fn check(&self, source: &Source) -> Result<(), RecordError> {
+        check(source, WEIGHT_TOW, section::weight_tow, section::plan)
     }
 }
 

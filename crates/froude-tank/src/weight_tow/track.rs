@@ -8,9 +8,9 @@
 use std::ops::Range;
 
 use froude_fit::autocorrelation::integrated_time;
-use froude_records::weight_tow::Lens;
 
 use super::error::WeightTowError;
+use super::section::Lens;
 
 /// The wagon moves from this part of its way …
 const FROM: f64 = 0.01;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use froude::fit::coverage::Count;
 use froude::methods::tank::excited_response::plan::forecast;
+use froude::methods::tank::excited_response::section::plan;
 use froude::methods::tank::excited_response::simulate::{Simulated, planned, simulated, truth};
 use froude::methods::tank::excited_response::source::setup_of;
 use froude::methods::tank::excited_response::{AtPeriod, WaveRun, fit};
@@ -152,7 +153,7 @@ fn coverage(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dy
     let source = &campaign.sources[0];
     let setup = setup_of(source)?;
     let truths = truth(&campaign)?;
-    let planned = planned(source, &setup, truths);
+    let planned = planned(&plan(source)?, &setup, truths);
     let window_s = setup.window_s.ok_or("no window")?;
     let declared = campaign.simulate.as_ref().map_or(&[][..], |s| &s.sensors);
     for (words, factor) in [("0.3 N and 0.02 m/s²", 1.0), ("ten times that", 10.0)] {

@@ -8,8 +8,9 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+use froude::methods::tank::oscillation::section::plan;
 use froude::methods::tank::oscillation::simulate::{Truths, configurations, planned, simulated};
-use froude::methods::tank::oscillation::source::setup_of;
+use froude::methods::tank::oscillation::source::{declared as declared_of, setup_of};
 use froude::pipeline::{Job, identify};
 use froude::records::campaign::read_campaign;
 use froude::records::table::{Column, ColumnData, Table, prepare_table};
@@ -98,11 +99,11 @@ fn log(root: &Path, folder: &Path, periods: usize) -> Result<usize, Box<dyn Erro
     std::fs::write(&path, text)?;
     let campaign = read_campaign(&path)?;
     let source = campaign.sources.first().ok_or("no source")?;
-    let spec = source.oscillation.as_ref().ok_or("no [source.forced_oscillation]")?;
-    let setup = setup_of(&campaign, source, spec, &configurations(source))?;
+    let (spec, blocks) = (declared_of(source)?, plan(source)?);
+    let setup = setup_of(&campaign, source, &spec, &configurations(&blocks))?;
     let truth = Truths::of(&campaign, source, &setup)?;
     let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
-    let trace = simulated(&planned(source, &setup), &setup, &truth, sensors, seed).remove(0).trace;
+    let trace = simulated(&planned(&blocks, &setup), &setup, &truth, sensors, seed).remove(0).trace;
     let rows = trace.time_s.len();
     // A strain of the rod, two accelerations, a voltage and a temperature, with steps as of a 16-bit converter.
     let beside = |size: f64, offset: f64, k: f64| -> Vec<f64> {

@@ -8,8 +8,9 @@ use froude::fit::budget::Uncertain;
 use froude::fit::coverage::Count;
 use froude::hydro::swing::{Kinematics, Medium, Pivot};
 use froude::methods::tank::oscillation::forecast::{Forecast, forecast};
+use froude::methods::tank::oscillation::section::plan;
 use froude::methods::tank::oscillation::simulate::{Planned, Truths, configurations, planned, simulated};
-use froude::methods::tank::oscillation::source::{drags, setup_of};
+use froude::methods::tank::oscillation::source::{declared, drags, setup_of};
 use froude::methods::tank::oscillation::{
     Cycles, Drag, OscillationError, OscillationFit, OscillationRun, Setup, fit, motions,
 };
@@ -37,10 +38,10 @@ impl Case {
     fn read(root: &Path) -> Result<Self, Box<dyn Error>> {
         let campaign = read_campaign(&root.join("examples/mamba-oscillation/campaign.toml"))?;
         let source = campaign.sources[0].clone();
-        let spec = source.oscillation.clone().ok_or("no [source.forced_oscillation]")?;
-        let setup = setup_of(&campaign, &source, &spec, &configurations(&source))?;
+        let blocks = plan(&source)?;
+        let setup = setup_of(&campaign, &source, &declared(&source)?, &configurations(&blocks))?;
         let truth = Truths::of(&campaign, &source, &setup)?;
-        let planned = planned(&source, &setup);
+        let planned = planned(&blocks, &setup);
         let f4 = drags(&campaign, &source, &setup)?.pop().ok_or("no drag law")?;
         Ok(Self { campaign, source, setup, truth, planned, f4 })
     }

@@ -9,6 +9,7 @@ use froude::hydro::link_parameters::{LinkCoefficients, LinkParameters, YawDrag, 
 use froude::methods::tank::rotation::derive::C_F_DIFFERENCE;
 use froude::methods::tank::rotation::fit::LAMBDAS;
 use froude::methods::tank::rotation::forecast::{Forecast, forecast, true_value};
+use froude::methods::tank::rotation::section::plan;
 use froude::methods::tank::rotation::simulate::{Planned, Simulated, Truths, planned, simulated};
 use froude::methods::tank::rotation::source::setup_of;
 use froude::methods::tank::rotation::{Derived, RotationError, RotationFit, RotationRun, Setup, derived, fit, motions};
@@ -33,11 +34,10 @@ impl Case {
     fn read(root: &Path) -> Result<Self, Box<dyn Error>> {
         let campaign = read_campaign(&root.join("examples/mamba-rotation/campaign.toml"))?;
         let source = &campaign.sources[0];
-        let spec = source.rotation.ok_or("no [source.rotation]")?;
-        let setup = setup_of(&campaign, source, &spec)?;
-        let truth = Truths::of(&campaign, source, &setup)?;
+        let (setup, blocks) = (setup_of(&campaign, source)?, plan(source)?);
+        let truth = Truths::of(&campaign, &blocks, &setup)?;
         let sensors = campaign.simulate.as_ref().map_or_else(Vec::new, |s| s.sensors.clone());
-        Ok(Self { setup, truth, planned: planned(source), sensors })
+        Ok(Self { setup, truth, planned: planned(&blocks), sensors })
     }
 
     fn forecast(&self, setup: &Setup, sensors: &[SensorSpec]) -> Result<Forecast, RotationError> {

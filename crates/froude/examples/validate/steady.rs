@@ -8,6 +8,7 @@ use froude::identify::reduce::reduce_table;
 use froude::identify::source::identify_observations;
 use froude::methods::tank::steady::plan::{Expected, expected};
 use froude::methods::tank::steady::row::{Row, table};
+use froude::methods::tank::steady::section::declared;
 use froude::methods::tank::steady::simulate::{Plan, plan_of, simulated};
 use froude::methods::tank::steady::{SteadyError, point};
 use froude::records::campaign::{Campaign, SensorSpec, Source, read_campaign};
@@ -63,8 +64,8 @@ fn one(
     sensors: &[SensorSpec],
     seed: u64,
 ) -> Result<(Fitted, Codes), Box<dyn Error + Send + Sync>> {
-    let spec = source.steady.unwrap_or_default();
-    let logged = simulated(plan, source, sensors, &source.uncertainty, 1 + seed);
+    let spec = declared(source)?;
+    let logged = simulated(plan, spec.tow, sensors, &source.uncertainty, 1 + seed);
     let rows = logged.iter().map(|run| {
         Ok(Row {
             run: run.id.clone(),

@@ -17,12 +17,12 @@ use froude::methods::tank::steady::row::{Row, table};
 use froude::methods::tank::steady::simulate::{Plan, loads_at};
 use froude::methods::tank::weight_tow::plan::{exact, expected};
 use froude::methods::tank::weight_tow::reduce::{Reduced, reduce};
-use froude::methods::tank::weight_tow::simulate::{Weights, simulated, weights_of};
+use froude::methods::tank::weight_tow::section::{WeightTowSpec, plan};
+use froude::methods::tank::weight_tow::simulate::{Weights, declared, simulated, weights_of};
 use froude::methods::tank::weight_tow::source::{shared, with_track};
-use froude::records::campaign::{Campaign, SensorSpec, Source, read_campaign};
+use froude::records::campaign::{Campaign, PlanBlock, SensorSpec, Source, read_campaign};
 use froude::records::run::Declared;
 use froude::records::units::Dimension;
-use froude::records::weight_tow::WeightTowSpec;
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
@@ -41,12 +41,12 @@ struct Case {
 }
 
 impl Case {
-    fn read(root: &Path, edit: impl Fn(&mut Campaign)) -> Result<Self, Box<dyn Error>> {
-        let mut campaign = read_campaign(&root.join("examples/mamba-weights/campaign.toml"))?;
-        edit(&mut campaign);
+    fn read(root: &Path, edit: impl Fn(&mut WeightTowSpec, &mut Vec<PlanBlock>)) -> Result<Self, Box<dyn Error>> {
+        let campaign = read_campaign(&root.join("examples/mamba-weights/campaign.toml"))?;
         let source = campaign.sources[0].clone();
-        let spec = source.weight_tow.ok_or("no [source.weight_tow]")?;
-        let weights = weights_of(&campaign, &source)?;
+        let (mut spec, mut blocks) = (declared(&source)?, plan(&source)?);
+        edit(&mut spec, &mut blocks);
+        let weights = weights_of(&campaign, &source, &spec, blocks)?;
         Ok(Self { campaign, source, spec, weights })
     }
 
@@ -93,7 +93,7 @@ impl Case {
 }
 
 pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn Error>> {
-    let case = Case::read(root, |_| {})?;
+    let case = Case::read(root, |_, _| {})?;
     for (words, factor) in [("5 mN and half a pixel", 1.0), ("50 mN and half a pixel", 10.0)] {
         let louder = |s: &SensorSpec| SensorSpec {
             noise: s.noise.map(|n| if s.quantity == "mark" { n } else { factor * n }),
@@ -190,16 +190,13 @@ const LOAD_N: f64 = 1e-3;
 impl Errors {
     fn read(root: &Path) -> Result<Self, Box<dyn Error>> {
         // Weights that drive H1LT at 0.1, 0.2 and 0.3 m/s along the rail at 0 deg, without friction.
-        let any = Case::read(root, |_| {})?;
+        let any = Case::read(root, |_, _| {})?;
         let ahead = |u: f64| -> f64 { -loads_at(&any.weights.plan, 0, u, 0.0)[0] };
         let weight_n = [0.1, 0.2, 0.3].map(ahead).to_vec();
-        let case = Case::read(root, |c| {
-            let source = &mut c.sources[0];
-            if let Some(spec) = &mut source.weight_tow {
-                spec.friction_n = Declared::exact(0.0);
-            }
-            source.weight_plan[0].configurations = vec!["H1LT".to_owned()];
-            source.weight_plan[0].weight_n.clone_from(&weight_n);
+        let case = Case::read(root, |spec, blocks| {
+            spec.friction_n = Declared::exact(0.0);
+            blocks[0].configurations = vec!["H1LT".to_owned()];
+            blocks[0].speed_m_s.clone_from(&weight_n);
         })?;
         let plan = &case.weights.plan;
         let mut data = plan.data.clone();

@@ -5,11 +5,23 @@ use std::path::Path;
 use froude_carriage::live::Live;
 use froude_records::carriage::plan::PlannedRun;
 use froude_rig::campaign::drive::drive as drive_until;
-pub use froude_rig::campaign::prepare::{DriveJob, Prepared, prepare, prepare_with};
+use froude_rig::campaign::prepare::prepare as prepared;
+pub use froude_rig::campaign::prepare::{DriveJob, Prepared, prepare_with};
 use froude_rig::campaign::runner::{Driven, Operator, Progress};
 use froude_rig::campaign::stop::StopSwitch;
 
-use crate::Error;
+use crate::{Error, method};
+
+/// Reads a campaign whole and checks every run of it. Nothing moves, nothing is written.
+///
+/// # Errors
+///
+/// As [`froude_rig::campaign::prepare::prepare`], and a mistake in the section of a method.
+pub fn prepare(job: &DriveJob) -> Result<Prepared, Error> {
+    let prepared = prepared(job)?;
+    method::check_sections(prepared.campaign())?;
+    Ok(prepared)
+}
 
 /// Drives what passed its pre-flight until enough is known of D_d; goes on where an earlier drive into the same folder stopped.
 ///

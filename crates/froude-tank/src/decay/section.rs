@@ -18,51 +18,18 @@
 
 use std::f64::consts::PI;
 
-use crate::campaign::Motion;
-use crate::carriage_toml::{INERTIA, positive_constant};
-use crate::error::RecordError;
-use crate::run::Declared;
-use crate::section::{Section, found};
-use crate::section_values::{at_most, count, one_of, series};
-use crate::units::Dimension;
+use froude_records::RecordError;
+use froude_records::campaign::{Motion, Source};
+use froude_records::run::{FREE_DECAY, positive_declared};
+use froude_records::section::{Section, found};
+use froude_records::section_values::{Asks, MOST_RUNS, at_most, count, one_of, series};
+use froude_records::units::Dimension;
 
-/// N/m.
-const STIFFNESS: Dimension = Dimension::new(0, 1, -2);
-/// Most releases that one block of a plan makes.
-const MOST_RUNS: usize = 10_000;
+use super::run::{DecaySetup, DecayWindow, Restoring};
+use crate::declared::{INERTIA, STIFFNESS, runs_of, uncertain};
+
 /// Most samples of a planned release.
 const MOST_SAMPLES: f64 = 1e7;
-
-/// A body that is displaced and let go.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DecaySpec {
-    /// What it does.
-    pub axis: Motion,
-    /// Dry inertia of all that moves, kg or kg m².
-    pub inertia: Declared,
-    /// What drives it back.
-    pub restoring: DeclaredRestoring,
-    /// Standard deviation of a sample's noise, m or rad, where it is declared.
-    pub noise: Option<f64>,
-    /// The time from which it is free, s of each log; from its first passage through rest where it is not declared.
-    pub free_from_s: Option<f64>,
-    /// Half cycles left out after that.
-    pub skip_half_cycles: usize,
-}
-
-/// What drives a displaced body back.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum DeclaredRestoring {
-    /// Springs or hydrostatics of stiffness C, N/m or N m/rad: C q.
-    Stiffness(Declared),
-    /// A force that keeps its direction, at a radius from the axis of a rotation: B r sin q.
-    Buoyancy {
-        /// B: buoyancy less weight, N.
-        force_n: Declared,
-        /// r, m.
-        radius_m: Declared,
-    },
-}
 
 /// One block of planned releases.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,36 +51,37 @@ pub struct DecayPlan {
 }
 
 /// Reads `[source.decay]`.
-pub(crate) fn decay(s: &Section<'_>) -> Result<DecaySpec, RecordError> {
+pub(super) fn decay(s: &Section<'_>) -> Result<DecaySetup, RecordError> {
     s.only(&["axis", "inertia", "stiffness", "buoyancy", "radius", "noise", "free_from", "skip_half_cycles"])?;
     let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
         .ok_or_else(|| s.missing("axis", "state its motion: axis = \"heave\", for example"))?;
-    let inertia = if axis.is_rotation() { INERTIA } else { Dimension::MASS };
-    let like = if axis.is_rotation() { "0.4 kg m^2" } else { "12 kg" };
-    let missing = |key: &str, like: &str| {
-        s.missing(key, &format!("write {key} = {{ value = \"{like}\", standard = \"0.5 %\" }}"))
-    };
-    let noise = if axis.is_rotation() {
-        s.positive("noise", Dimension::ANGLE)?
+    let (inertia, like, position) = if axis.is_rotation() {
+        (INERTIA, "0.4 kg m^2", Dimension::ANGLE)
     } else {
-        s.positive("noise", Dimension::LENGTH)?
+        (Dimension::MASS, "12 kg", Dimension::LENGTH)
     };
-    Ok(DecaySpec {
+    let noise = s.positive("noise", position)?;
+    let missing = || s.missing("inertia", &format!("write inertia = {{ value = \"{like}\", standard = \"0.5 %\" }}"));
+    Ok(DecaySetup {
         axis,
-        inertia: positive_constant(s, "inertia", inertia)?.ok_or_else(|| missing("inertia", like))?,
+        inertia: uncertain(positive_declared(s, "inertia", inertia)?.ok_or_else(missing)?),
         restoring: restoring(s, axis)?,
-        noise,
-        free_from_s: s.quantity("free_from", Dimension::TIME)?,
-        skip_half_cycles: s.integer("skip_half_cycles")?.map_or(0, |n| n as usize),
+        window: DecayWindow {
+            noise,
+            free_from_s: s.quantity("free_from", Dimension::TIME)?,
+            skip_half_cycles: s.integer("skip_half_cycles")?.map_or(0, |n| n as usize),
+            ..DecayWindow::default()
+        },
     })
 }
 
-fn restoring(s: &Section<'_>, axis: Motion) -> Result<DeclaredRestoring, RecordError> {
+fn restoring(s: &Section<'_>, axis: Motion) -> Result<Restoring, RecordError> {
     let (dimension, like) = if axis.is_rotation() { (Dimension::MOMENT, "12 N m") } else { (STIFFNESS, "180 N/m") };
     let instead =
         if axis.is_rotation() { "; or, of a buoyancy that acts at a radius, buoyancy and radius" } else { "" };
-    let missing = |key: &str, like: &str, more: &str| {
-        s.missing(key, &format!("write {key} = {{ value = \"{like}\", standard = \"0.5 %\" }}{more}"))
+    let need = |key: &'static str, dimension, like: &str, more: &str| {
+        let missing = || s.missing(key, &format!("write {key} = {{ value = \"{like}\", standard = \"0.5 %\" }}{more}"));
+        positive_declared(s, key, dimension)?.map(uncertain).ok_or_else(missing)
     };
     let Some(buoyancy) = s.get("buoyancy") else {
         if let Some(radius) = s.get("radius") {
@@ -123,8 +91,7 @@ fn restoring(s: &Section<'_>, axis: Motion) -> Result<DeclaredRestoring, RecordE
                 "is that of a buoyancy, which is not declared: write buoyancy = \"3.0 N\"",
             ));
         }
-        let stiffness = positive_constant(s, "stiffness", dimension)?;
-        return Ok(DeclaredRestoring::Stiffness(stiffness.ok_or_else(|| missing("stiffness", like, instead))?));
+        return Ok(Restoring::Spring(need("stiffness", dimension, like, instead)?));
     };
     if !axis.is_rotation() {
         return Err(s.wrong(
@@ -140,17 +107,26 @@ fn restoring(s: &Section<'_>, axis: Motion) -> Result<DeclaredRestoring, RecordE
             "stands beside buoyancy: what drives the body back is one or the other",
         ));
     }
-    let need = |key: &'static str, dimension, like: &str| {
-        positive_constant(s, key, dimension)?.ok_or_else(|| missing(key, like, ""))
-    };
-    Ok(DeclaredRestoring::Buoyancy {
-        force_n: need("buoyancy", Dimension::FORCE, "3.0 N")?,
-        radius_m: need("radius", Dimension::LENGTH, "476 mm")?,
+    Ok(Restoring::Buoyancy {
+        force_n: need("buoyancy", Dimension::FORCE, "3.0 N", "")?,
+        radius_m: need("radius", Dimension::LENGTH, "476 mm", "")?,
+    })
+}
+
+/// The releases that a source plans.
+///
+/// # Errors
+///
+/// [`RecordError`] with its place.
+pub fn plan(source: &Source) -> Result<Vec<DecayPlan>, RecordError> {
+    runs_of(source, FREE_DECAY, block, |p| {
+        let count = p.displacement.len() * p.repeats;
+        Asks { count, samples: count as f64 * (p.held_s + p.free_s) * p.rate_hz }
     })
 }
 
 /// Reads a `[[source.plan]]` of releases.
-pub(crate) fn decay_plan(s: &Section<'_>) -> Result<DecayPlan, RecordError> {
+fn block(s: &Section<'_>) -> Result<DecayPlan, RecordError> {
     s.only(&["configuration", "angle", "displacement", "repeats", "held", "duration", "rate"])?;
     let (key, value, dimension) = match (s.get("angle"), s.get("displacement")) {
         (Some(value), None) => ("angle", value, Dimension::ANGLE),

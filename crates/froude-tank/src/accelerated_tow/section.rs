@@ -14,17 +14,14 @@
 //! steady       = "4 s"
 //! ```
 
-use crate::body_axis::BodyAxis;
-use crate::error::RecordError;
-use crate::oscillation::{ByConfiguration, by_configuration};
-use crate::run::Declared;
-use crate::run::sidecar::declared;
-use crate::section::Section;
-use crate::section_values::{at_most, count, one_of, series};
-use crate::units::Dimension;
+use froude_records::RecordError;
+use froude_records::campaign::{BodyAxis, Source};
+use froude_records::run::{ACCELERATED_TOW, Declared, declared};
+use froude_records::section::Section;
+use froude_records::section_values::{Asks, MOST_RUNS, at_most, configurations, count, one_of, series};
+use froude_records::units::Dimension;
 
-/// Most runs that one block of a plan makes.
-const MOST_RUNS: usize = 10_000;
+use crate::declared::{ByConfiguration, runs_of};
 
 /// What is declared of an accelerated tow.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +58,7 @@ pub struct AcceleratedPlan {
 }
 
 /// Reads `[source.accelerated_tow]`.
-pub(crate) fn accelerated_tow(s: &Section<'_>) -> Result<AcceleratedTowSpec, RecordError> {
+pub(super) fn accelerated_tow(s: &Section<'_>) -> Result<AcceleratedTowSpec, RecordError> {
     s.only(&["axis", "mass", "delay", "window"])?;
     let axis = one_of(s, "axis", &["x", "y"], &[BodyAxis::X, BodyAxis::Y])?.ok_or_else(|| {
         s.missing(
@@ -69,7 +66,7 @@ pub(crate) fn accelerated_tow(s: &Section<'_>) -> Result<AcceleratedTowSpec, Rec
             "state which axis of the body lies along the travel: \"x\" (forward) or \"y\" (to starboard); drag and added mass are those along it",
         )
     })?;
-    let mass_kg = by_configuration(s, "mass", Dimension::MASS)?.unwrap_or_default();
+    let mass_kg = ByConfiguration::read(s, "mass", Dimension::MASS)?;
     let wrong = mass_kg.all.iter().chain(mass_kg.named.values()).find(|m| m.value <= 0.0);
     if let (Some(mass), Some(value)) = (wrong, s.get("mass")) {
         return Err(s.wrong("mass", value, format!("is {} kg; a mass is larger than zero", mass.value)));
@@ -82,18 +79,29 @@ pub(crate) fn accelerated_tow(s: &Section<'_>) -> Result<AcceleratedTowSpec, Rec
     })
 }
 
+/// The runs that a source plans.
+///
+/// # Errors
+///
+/// [`RecordError`] with its place.
+pub fn plan(source: &Source) -> Result<Vec<AcceleratedPlan>, RecordError> {
+    runs_of(source, ACCELERATED_TOW, block, |p| {
+        let count = p.configurations.len() * p.speed_m_s.len() * p.acceleration_m_s2.len() * p.repeats;
+        let fastest = p.speed_m_s.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        let slowest = p.acceleration_m_s2.iter().fold(f64::INFINITY, |least, a| a.min(least));
+        let lasts_s = p.steady_s + 2.0 * p.still_s + 2.0 * fastest / slowest;
+        Asks { count, samples: count as f64 * lasts_s * p.rate_hz }
+    })
+}
+
 /// Reads a `[[source.plan]]` of accelerations.
-pub(crate) fn accelerated_plan(s: &Section<'_>) -> Result<AcceleratedPlan, RecordError> {
+fn block(s: &Section<'_>) -> Result<AcceleratedPlan, RecordError> {
     s.only(&["configurations", "medium", "speed", "acceleration", "steady", "still", "rate", "repeats"])?;
     let need = |key: &'static str, example: &str| s.get(key).ok_or_else(|| s.missing(key, example));
     let speed = need("speed", "write \"0.3 m/s\", a list, or { start, stop, step }")?;
     let acceleration = need("acceleration", "write \"0.2 m/s^2\", a list, or { start, stop, step }")?;
-    let mut configurations = s.texts("configurations")?;
-    if configurations.is_empty() {
-        configurations.push(String::new());
-    }
     let out = AcceleratedPlan {
-        configurations,
+        configurations: configurations(s)?,
         speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
         acceleration_m_s2: series(s, "acceleration", acceleration, Dimension::ACCELERATION)?,
         steady_s: s.positive("steady", Dimension::TIME)?.unwrap_or(4.0),

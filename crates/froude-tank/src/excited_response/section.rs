@@ -17,37 +17,18 @@
 //! free   = 2
 //! ```
 
-use crate::campaign::Motion;
-use crate::error::RecordError;
-use crate::run::Declared;
-use crate::run::sidecar::declared;
-use crate::section::Section;
-use crate::section_values::{at_most, count, one_of, series};
-use crate::units::Dimension;
+use froude_records::RecordError;
+use froude_records::campaign::{Motion, Source};
+use froude_records::run::{Declared, EXCITED_RESPONSE, declared};
+use froude_records::section::Section;
+use froude_records::section_values::{Asks, MOST_RUNS, at_most, count, one_of, series};
+use froude_records::units::Dimension;
 
-/// N/m.
-const STIFFNESS: Dimension = Dimension::new(0, 1, -2);
-/// Most runs that one block of a plan makes.
-const MOST_RUNS: usize = 10_000;
+use super::setup::Setup;
+use crate::declared::{STIFFNESS, above_zero, runs_of, uncertain};
+
 /// Most harmonics of a fit.
 const MOST_HARMONICS: u64 = 20;
-
-/// What is declared of the body and of its runs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ExcitedSpec {
-    /// What the free body does.
-    pub axis: Motion,
-    /// All that moves, kg.
-    pub mass_kg: Declared,
-    /// C33, N/m.
-    pub restoring_n_m: Declared,
-    /// Delay of the force behind the motion, s.
-    pub delay_s: Declared,
-    /// From and to, s after the start of the wavemaker; `None` where nobody has said when reflections come back.
-    pub window_s: Option<[f64; 2]>,
-    /// Harmonics of every fit.
-    pub harmonics: usize,
-}
 
 /// One block of planned runs: at every period so many with the body held, and so many with it free.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,8 +55,8 @@ pub struct ExcitedPlan {
     pub rate_hz: f64,
 }
 
-/// Reads `[source.excited_response]`.
-pub(crate) fn excited(s: &Section<'_>) -> Result<ExcitedSpec, RecordError> {
+/// Reads `[source.excited_response]`; the errors of the budget are not in it.
+pub(super) fn excited(s: &Section<'_>) -> Result<Setup, RecordError> {
     s.only(&["axis", "mass", "restoring", "delay", "window", "harmonics"])?;
     let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
         .ok_or_else(|| s.missing("axis", "state what the free body does: axis = \"heave\""))?;
@@ -84,12 +65,8 @@ pub(crate) fn excited(s: &Section<'_>) -> Result<ExcitedSpec, RecordError> {
                        added masses off the diagonal, which one equation does not hold; write axis = \"heave\"";
         return Err(s.wrong("axis", value, problem));
     }
-    let positive = |key: &'static str, dimension, like: &str| -> Result<Declared, RecordError> {
-        let found = declared(s, key, dimension)?.ok_or_else(|| s.missing(key, like))?;
-        match s.get(key) {
-            Some(value) if found.value <= 0.0 => Err(s.wrong(key, value, "must be larger than zero")),
-            _ => Ok(found),
-        }
+    let positive = |key: &'static str, dimension, like: &str| {
+        above_zero(s, key, dimension)?.map(uncertain).ok_or_else(|| s.missing(key, like))
     };
     let window = s.section("window")?.map(|w| -> Result<[f64; 2], RecordError> {
         w.only(&["from", "to"])?;
@@ -109,26 +86,39 @@ pub(crate) fn excited(s: &Section<'_>) -> Result<ExcitedSpec, RecordError> {
             _ => Ok([from, to]),
         }
     });
-    Ok(ExcitedSpec {
-        axis,
-        mass_kg: positive(
-            "mass",
-            Dimension::MASS,
-            "write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves",
-        )?,
-        restoring_n_m: positive(
-            "restoring",
-            STIFFNESS,
-            "write restoring = { value = \"2300 N/m\", standard = \"0.5 %\" }: C33 = rho g times the water plane, and springs",
-        )?,
-        delay_s: declared(s, "delay", Dimension::TIME)?.unwrap_or(Declared::exact(0.0)),
+    let mass_kg = positive(
+        "mass",
+        Dimension::MASS,
+        "write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves",
+    )?;
+    let restoring_n_m = positive(
+        "restoring",
+        STIFFNESS,
+        "write restoring = { value = \"2300 N/m\", standard = \"0.5 %\" }: C33 = rho g times the water plane, and springs",
+    )?;
+    Ok(Setup {
+        delay_s: uncertain(declared(s, "delay", Dimension::TIME)?.unwrap_or(Declared::exact(0.0))),
         window_s: window.transpose()?,
         harmonics: count(s, "harmonics", MOST_HARMONICS)?.unwrap_or(3),
+        ..Setup::new(mass_kg, restoring_n_m)
+    })
+}
+
+/// The runs that a source plans.
+///
+/// # Errors
+///
+/// [`RecordError`] with its place.
+pub fn plan(source: &Source) -> Result<Vec<ExcitedPlan>, RecordError> {
+    runs_of(source, EXCITED_RESPONSE, block, |p| {
+        let count = p.period_s.len() * (p.held + p.free);
+        let lasts_s = p.still_s + p.ramp_s + p.travel_s + p.lasts_s;
+        Asks { count, samples: count as f64 * lasts_s * p.rate_hz }
     })
 }
 
 /// Reads a `[[source.plan]]` of waves.
-pub(crate) fn excited_plan(s: &Section<'_>) -> Result<ExcitedPlan, RecordError> {
+fn block(s: &Section<'_>) -> Result<ExcitedPlan, RecordError> {
     s.only(&["period", "stroke", "force", "held", "free", "still", "ramp", "travel", "lasts", "rate"])?;
     let period =
         s.get("period").ok_or_else(|| s.missing("period", "write \"1.2 s\", a list, or { start, stop, step }"))?;

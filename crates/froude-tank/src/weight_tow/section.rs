@@ -17,15 +17,14 @@
 //! angle  = { start = "3 deg", stop = "39 deg", step = "3 deg" }
 //! ```
 
-use crate::error::RecordError;
-use crate::run::Declared;
-use crate::run::sidecar::declared;
-use crate::section::Section;
-use crate::section_values::{at_most, count, series};
-use crate::units::Dimension;
+use froude_records::RecordError;
+use froude_records::campaign::{PlanBlock, Source};
+use froude_records::run::{Declared, WEIGHT_TOW, declared};
+use froude_records::section::Section;
+use froude_records::section_values::{Asks, MOST_RUNS, at_most, configurations, count, series};
+use froude_records::units::Dimension;
 
-/// Most runs that one block of a plan makes.
-const MOST_RUNS: usize = 10_000;
+use crate::declared::{above_zero, runs_of};
 
 /// What is declared of rig and camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,21 +60,8 @@ pub struct Lens {
     pub radial: f64,
 }
 
-/// One block of planned runs: every weight at every angle for every configuration.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WeightPlan {
-    /// Configurations; one empty text where the body has only one.
-    pub configurations: Vec<String>,
-    /// Weights, N.
-    pub weight_n: Vec<f64>,
-    /// Angles of attack.
-    pub angle_rad: Vec<f64>,
-    /// How often each is run.
-    pub repeats: usize,
-}
-
 /// Reads `[source.weight_tow]`.
-pub(crate) fn weight_tow(s: &Section<'_>) -> Result<WeightTowSpec, RecordError> {
+pub(super) fn weight_tow(s: &Section<'_>) -> Result<WeightTowSpec, RecordError> {
     s.only(&["scale", "lens", "moving_mass", "friction", "window", "tolerance", "reached", "tow"])?;
     let lens = s.section("lens")?.map(|l| -> Result<Lens, RecordError> {
         l.only(&["centre", "radial"])?;
@@ -85,13 +71,6 @@ pub(crate) fn weight_tow(s: &Section<'_>) -> Result<WeightTowSpec, RecordError> 
             radial: need("radial", "write radial = -2.0e-8, in 1/pixel²")?,
         })
     });
-    let positive = |key: &'static str, dimension| -> Result<Option<Declared>, RecordError> {
-        let found = declared(s, key, dimension)?;
-        match (found, s.get(key)) {
-            (Some(number), Some(value)) if number.value <= 0.0 => Err(s.wrong(key, value, "must be larger than zero")),
-            _ => Ok(found),
-        }
-    };
     let friction = declared(s, "friction", Dimension::FORCE)?;
     if let (Some(number), Some(value)) = (friction.filter(|f| f.value < 0.0), s.get("friction")) {
         return Err(s.wrong("friction", value, format!("is {} N; friction is not negative", number.value)));
@@ -104,9 +83,9 @@ pub(crate) fn weight_tow(s: &Section<'_>) -> Result<WeightTowSpec, RecordError> 
         Ok(tow.as_ref().map(|t| t.positive(key, dimension)).transpose()?.flatten().unwrap_or(usual))
     };
     Ok(WeightTowSpec {
-        scale_m: positive("scale", Dimension::LENGTH)?,
+        scale_m: above_zero(s, "scale", Dimension::LENGTH)?,
         lens: lens.transpose()?,
-        moving_mass_kg: positive("moving_mass", Dimension::MASS)?,
+        moving_mass_kg: above_zero(s, "moving_mass", Dimension::MASS)?,
         friction_n: friction.unwrap_or(Declared::exact(0.0)),
         window_m: s.positive("window", Dimension::LENGTH)?.unwrap_or(0.2),
         tolerance: s.positive("tolerance", Dimension::ONE)?.unwrap_or(0.02),
@@ -117,27 +96,36 @@ pub(crate) fn weight_tow(s: &Section<'_>) -> Result<WeightTowSpec, RecordError> 
     })
 }
 
+/// The runs that a source plans: every weight at every angle for every configuration. A weight, N, stands where the speed of a table's plan does.
+///
+/// # Errors
+///
+/// [`RecordError`] with its place.
+pub fn plan(source: &Source) -> Result<Vec<PlanBlock>, RecordError> {
+    runs_of(source, WEIGHT_TOW, block, |p| Asks {
+        count: p.configurations.len() * p.speed_m_s.len() * p.angle_rad.len() * p.repeats,
+        samples: 0.0,
+    })
+}
+
 /// Reads a `[[source.plan]]` of weights.
-pub(crate) fn weight_plan(s: &Section<'_>) -> Result<WeightPlan, RecordError> {
+fn block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
     s.only(&["configurations", "weight", "angle", "repeats"])?;
     let weight =
         s.get("weight").ok_or_else(|| s.missing("weight", "write \"100 mN\", a list, or { start, stop, step }"))?;
-    let mut configurations = s.texts("configurations")?;
-    if configurations.is_empty() {
-        configurations.push(String::new());
-    }
-    let out = WeightPlan {
-        configurations,
-        weight_n: series(s, "weight", weight, Dimension::FORCE)?,
+    let out = PlanBlock {
+        configurations: configurations(s)?,
+        speed_m_s: series(s, "weight", weight, Dimension::FORCE)?,
         angle_rad: s.get("angle").map_or(Ok(vec![0.0]), |v| series(s, "angle", v, Dimension::ONE))?,
+        pitch_rad: vec![0.0],
         repeats: count(s, "repeats", MOST_RUNS as u64)?.unwrap_or(1),
     };
-    if out.weight_n.iter().any(|w| *w <= 0.0) {
+    if out.speed_m_s.iter().any(|w| *w <= 0.0) {
         return Err(s.wrong("weight", weight, "must be larger than zero"));
     }
     let numbers = [
         ("configurations", out.configurations.len()),
-        ("weight", out.weight_n.len()),
+        ("weight", out.speed_m_s.len()),
         ("angle", out.angle_rad.len()),
         ("repeats", out.repeats),
     ];

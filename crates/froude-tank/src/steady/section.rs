@@ -10,12 +10,15 @@
 //! tow       = { still = "5 s", acceleration = "0.3 m/s^2", steady = "10 s", rate = "100 Hz" }
 //! ```
 
-use crate::error::RecordError;
-use crate::section::Section;
-use crate::units::Dimension;
+use froude_records::RecordError;
+use froude_records::campaign::Source;
+use froude_records::run::STEADY;
+use froude_records::section::Section;
+use froude_records::units::Dimension;
+use froude_rig::steady::Tow;
 
 /// N/s.
-const FORCE_RATE: Dimension = Dimension { m: 1, kg: 1, s: -3, k: 0, a: 0 };
+const FORCE_RATE: Dimension = Dimension::new(1, 1, -3);
 
 /// How steady tows are reduced, and how planned ones are driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,19 +46,6 @@ pub struct Drift {
     pub most_n: f64,
 }
 
-/// One tow: still, up to speed, steady, to rest, still.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tow {
-    /// At rest before and after, s.
-    pub still_s: f64,
-    /// Up to speed and to rest, m/s².
-    pub acceleration_m_s2: f64,
-    /// At constant speed, s.
-    pub steady_s: f64,
-    /// Samples a second.
-    pub rate_hz: f64,
-}
-
 impl Default for SteadySpec {
     fn default() -> Self {
         let tow = Tow { still_s: 5.0, acceleration_m_s2: 0.3, steady_s: 10.0, rate_hz: 100.0 };
@@ -63,8 +53,17 @@ impl Default for SteadySpec {
     }
 }
 
+/// What a source says of it, or what is usual.
+///
+/// # Errors
+///
+/// [`RecordError`] with its place.
+pub fn declared(source: &Source) -> Result<SteadySpec, RecordError> {
+    source.section(STEADY)?.map_or_else(|| Ok(SteadySpec::default()), |s| steady(&s))
+}
+
 /// Reads `[source.steady]`.
-pub(crate) fn steady(s: &Section<'_>) -> Result<SteadySpec, RecordError> {
+fn steady(s: &Section<'_>) -> Result<SteadySpec, RecordError> {
     s.only(&["settle", "shortest", "tolerance", "block", "drift", "tow"])?;
     let usual = SteadySpec::default();
     let drift = s.section("drift")?.map(|d| -> Result<Drift, RecordError> {

@@ -1,0 +1,111 @@
+//! `[source.rotation]`: what is declared of a body that a motor turns to and fro about its own centre, and the runs that are planned of it.
+//!
+//! ```toml
+//! [source.rotation]
+//! axis      = "upright"                                              # or "stream": the axis lies level, and the weight restores
+//! inertia   = { value = "3.4e-3 kg m^2", standard = "1e-5 kg m^2" }  # dry, of all below the torque cell; runs in air find it too
+//! tare_inertia = "2e-4 kg m^2"                                       # of it without the body; needed where there are runs of the role tare
+//! restoring = { value = "2 mN m", standard = "0.2 mN m" }            # K of K sin θ; axis = "stream" only
+//! delay     = { value = "0 ms", standard = "5 ms" }                  # of the torque behind the angle; leave out what is to be found
+//! cycles    = { skip = 1, used = 5, fewest = 5 }
+//!
+//! [[source.plan]]
+//! role      = "test"                                                 # or dry_air, tare
+//! amplitude = ["30 deg", "45 deg", "60 deg"]
+//! frequency = ["60 deg/s", "70 deg/s", "80 deg/s"]                   # Hz is a frequency, deg/s and rad/s are angular ones
+//! periods   = 7
+//! ```
+
+use froude_hydro::swing::Pivot;
+
+use froude_records::RecordError;
+use froude_records::campaign::Source;
+use froude_records::run::{ROTATION, Role, declared};
+use froude_records::section::Section;
+use froude_records::section_values::{MOST_RUNS, at_most, count, one_of};
+use froude_records::units::Dimension;
+
+use super::setup::Setup;
+use crate::declared::{INERTIA, Swings, cycles, runs_of, uncertain};
+
+/// One block of planned runs: every amplitude at every frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RotationPlan {
+    /// [`Role::Test`], [`Role::DryAir`] or [`Role::Tare`].
+    pub role: Role,
+    /// How the body turns.
+    pub swings: Swings,
+}
+
+/// Reads `[source.rotation]`; what other sections say of water, link and errors is not in it.
+pub(super) fn rotation(s: &Section<'_>) -> Result<Setup, RecordError> {
+    s.only(&["axis", "inertia", "tare_inertia", "restoring", "delay", "cycles", "harmonics"])?;
+    let axis = one_of(s, "axis", &Pivot::NAMES, &Pivot::ALL)?.ok_or_else(|| {
+        s.missing(
+            "axis",
+            "state how the axis of rotation lies: \"upright\" (gravity does nothing) or \"stream\" (level, along the stream: weight and buoyancy \
+             restore, and their moment is taken off)",
+        )
+    })?;
+    let restoring_n_m = declared(s, "restoring", Dimension::MOMENT)?;
+    match (axis, s.get("restoring")) {
+        (Pivot::Upright, Some(value)) => {
+            let problem = "about an upright axis gravity restores nothing; leave it out, or write axis = \"stream\"";
+            return Err(s.wrong("restoring", value, problem));
+        }
+        (Pivot::Stream, None) => {
+            return Err(s.missing(
+                "restoring",
+                "about a level axis weight and buoyancy give a moment K sin θ, in phase with the added inertia: declare K, restoring = { value = \"2 mN m\", standard = \
+                 \"0.2 mN m\" }, from the torque at rest at two angles; \"0 N m\" where the body is trimmed",
+            ));
+        }
+        _ => {}
+    }
+    let inertia = |key: &'static str| {
+        let number = declared(s, key, INERTIA)?;
+        match (number, s.get(key)) {
+            (Some(number), Some(value)) if number.value < 0.0 => {
+                Err(s.wrong(key, value, "is negative; an inertia is not"))
+            }
+            _ => Ok(number.map(uncertain)),
+        }
+    };
+    Ok(Setup {
+        axis,
+        inertia_kg_m2: inertia("inertia")?,
+        tare_inertia_kg_m2: inertia("tare_inertia")?,
+        restoring_n_m: restoring_n_m.map(uncertain),
+        delay_s: declared(s, "delay", Dimension::TIME)?.map(uncertain),
+        angle_relative: 0.0,
+        torque_relative: 0.0,
+        cycles: cycles(s)?,
+        harmonics: count(s, "harmonics", 20)?.unwrap_or(3),
+        density_kg_m3: None,
+        link: None,
+    })
+}
+
+/// The runs that a source plans.
+///
+/// # Errors
+///
+/// [`RecordError`] with its place.
+pub fn plan(source: &Source) -> Result<Vec<RotationPlan>, RecordError> {
+    runs_of(source, ROTATION, block, |p| p.swings.asks(1))
+}
+
+/// Reads a `[[source.plan]]` of rotations.
+fn block(s: &Section<'_>) -> Result<RotationPlan, RecordError> {
+    s.only(&["role", "amplitude", "frequency", "periods", "still", "rate", "repeats"])?;
+    let swings = Swings::read(s, "45 deg")?;
+    let roles = [Role::Test, Role::DryAir, Role::Tare];
+    let role = one_of(s, "role", &roles.map(Role::name), &roles)?.unwrap_or(Role::Test);
+    let numbers = [
+        ("amplitude", swings.amplitude_rad.len()),
+        ("frequency", swings.omega_rad_s.len()),
+        ("repeats", swings.repeats),
+    ];
+    at_most(s, &numbers, MOST_RUNS)?;
+    Ok(RotationPlan { role, swings })
+}
