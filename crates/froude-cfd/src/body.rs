@@ -1,11 +1,11 @@
 //! Bodies as their computations need them: shape, lengths, and the O-grid or the cubes about them.
 
+use crate::section::{CfdSpec, CubeSpec, MeshSpec, Mesher};
 use froude_mesh::measure::Measure;
 use froude_mesh::sections::{Resolution, SectionBody};
 use froude_mesh::vector::Vec3;
 use froude_mesh::{Mesh, robot};
 use froude_records::body::{BodyFile, SemiAxes, Shape};
-use froude_records::cfd::{CfdSpec, CubeSpec, MeshSpec, Mesher};
 use froude_records::table::links_of_configuration;
 
 use crate::case::Reference;

@@ -43,6 +43,7 @@
 //! | [`quality`] | how good a mesh is, by the measures of `checkMesh` |
 //! | [`result`] | results of attempts, and the one that counts |
 //! | [`retry`] | cases that are to be computed again |
+//! | [`section`] | what a campaign says of a computed flow |
 //! | [`snappy`] | meshes of any closed surface by snappyHexMesh, with its [files](snappy_files) and [what came out](snappy_log) |
 //! | [`solve`] | a whole case, from its folder to its outcome |
 //! | [`solver_log`] | residuals, time of processors, errors, the largest speed, y+ |
@@ -107,6 +108,7 @@ pub mod process;
 pub mod quality;
 pub mod result;
 pub mod retry;
+pub mod section;
 pub mod snappy;
 pub mod snappy_files;
 pub mod snappy_log;

@@ -9,8 +9,8 @@
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
+use crate::section::{CfdSpec, FineSpec, StudySpec};
 use froude_records::campaign::Source;
-use froude_records::cfd::{CfdSpec, FineSpec, StudySpec};
 
 use crate::again::Again;
 use crate::case::{Case, Flow, Model, Reference, Stop, Water};
@@ -319,6 +319,7 @@ mod tests {
     use froude_records::campaign::parse_campaign;
 
     use super::*;
+    use crate::section::declared;
 
     const REFERENCE: Reference = Reference { length_m: 0.6, width_m: 0.08, area_m2: 0.05, point_m: [0.0; 3] };
     const WATER: Water = Water { density_kg_m3: 1025.0, viscosity_m2_s: 1.19e-6 };
@@ -328,7 +329,7 @@ mod tests {
             "schema = 1\nname = \"a\"\n[[source]]\nname = \"flow\"\nkind = \"cfd\"\ncases = \"cases\"\n[source.cfd]\n{spec}\n{plan}"
         );
         let source = parse_campaign(Path::new("campaign.toml"), &text).unwrap().sources.remove(0);
-        let spec = source.cfd.clone().unwrap();
+        let spec = declared(&source).unwrap().unwrap();
         let meshed = ["H1LT", "H2LT"].map(|c| Meshed {
             configuration: c.to_owned(),
             mesh: format!("mesh of {c}"),
@@ -414,7 +415,7 @@ mod tests {
             "schema = 1\nname = \"a\"\n[[source]]\nname = \"flow\"\nkind = \"cfd\"\ncases = \"cases\"\n[source.cfd]\ncold = 0\n{TABLE_2}"
         );
         let source = parse_campaign(Path::new("campaign.toml"), &text).unwrap().sources.remove(0);
-        let spec = source.cfd.clone().unwrap();
+        let spec = declared(&source).unwrap().unwrap();
         let meshed = [0.0, 45.0_f64.to_radians()].map(|angle| Meshed {
             configuration: "H1LT".to_owned(),
             mesh: format!("mesh at {angle}"),

@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use froude_records::cfd::CfdSpec;
+use crate::section::CfdSpec;
 
 use crate::collect::Collected;
 

@@ -11,7 +11,7 @@
 //!
 //! Studies are too few to correct by, fine cases too close to each other to extrapolate from: so the one corrects and the other says what is left. All of it goes as [`OverAngles`] says.
 
-use froude_records::cfd::CfdSpec;
+use crate::section::CfdSpec;
 
 use crate::again::Again;
 use crate::body::domain_radius;
@@ -124,7 +124,7 @@ fn mesh_errors(studies: &[Study], fine: &[[Collected; 2]], least: f64) -> Vec<(C
 
 #[cfg(test)]
 mod tests {
-    use froude_records::cfd::{FineSpec, MeshSpec};
+    use crate::section::{FineSpec, MeshSpec};
 
     use super::*;
     use crate::case::{Flow, Model, Reference, Stop, Water};

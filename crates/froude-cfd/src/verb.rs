@@ -15,13 +15,13 @@ mod swing;
 
 use std::path::{Path, PathBuf};
 
+use crate::section::{CfdSpec, declared};
 use froude_added_mass::AddedMassError;
 use froude_added_mass::load::is_body_file;
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::block::{Block, TableBuilder};
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
-use froude_records::cfd::CfdSpec;
 use froude_records::hash::{sha256_of_bytes, sha256_of_file};
 use froude_records::outcome::Outcome;
 use froude_records::output::inside;
@@ -172,7 +172,7 @@ impl Asked {
                 return Err(need("viscosity", "kinematic_viscosity = \"1.19e-6 m^2/s\", or temperature = \"20 degC\""));
             }
         };
-        let spec = source.cfd.clone().unwrap_or_default();
+        let spec = declared(source)?.unwrap_or_default();
         let body = spec.body.clone().ok_or_else(|| {
             refused(format!("source {:?} names no body: write body = \"body.toml\" in [source.cfd]", source.name))
         })?;

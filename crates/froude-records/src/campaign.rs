@@ -13,7 +13,6 @@ use indexmap::IndexMap;
 
 use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
-use crate::cfd::CfdSpec;
 use crate::document::Document;
 use crate::error::{Place, RecordError};
 use crate::estimate::ErrorKind;
@@ -131,8 +130,6 @@ pub struct Source {
     pub tare: Option<Tare>,
     /// What its methods read of it themselves; `None` where no campaign names it.
     pub own: Option<OwnSections>,
-    /// How its flow is computed.
-    pub cfd: Option<CfdSpec>,
     /// What is asked of its mesh.
     pub added_mass: Vec<GivenOption>,
     /// What is to be run, where no method has a form of its own for it.
@@ -690,7 +687,6 @@ impl Source {
             uncertainty: Vec::new(),
             tare: None,
             own: None,
-            cfd: None,
             added_mass: Vec::new(),
             plan: Vec::new(),
         }

@@ -15,7 +15,6 @@ use crate::campaign::{
     Tare, Truth, UserModel,
 };
 use crate::carriage_toml::carriage;
-use crate::cfd::cfd;
 use crate::document::Document;
 use crate::error::RecordError;
 use crate::estimate::ErrorKind;
@@ -264,7 +263,7 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
             return Err(s.wrong(method, value, problem));
         }
     }
-    for name in TANK_METHODS.map(|(name, _)| name).into_iter().chain(["decay"]) {
+    for name in TANK_METHODS.map(|(name, _)| name).into_iter().chain(["decay", "cfd"]) {
         s.section(name)?;
     }
     let blocks = s.sections("plan")?;
@@ -289,7 +288,6 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
         tare,
         added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
         own: Some(OwnSections { document: document.clone(), index, planned_by }),
-        cfd: s.section("cfd")?.map(|s| cfd(&s)).transpose()?,
         plan: plan_of(
             rows,
             of_rows,

@@ -5,7 +5,7 @@
 //!
 //! | file            | module                                     |
 //! |-----------------|--------------------------------------------|
-//! | campaign (TOML) | [`campaign`]; its rig and carriage [`carriage`], its options of added mass [`added_mass_options`]; its computed flows [`cfd`] |
+//! | campaign (TOML) | [`campaign`]; its rig and carriage [`carriage`], its options of added mass [`added_mass_options`] |
 //! | table (CSV)     | [`csv_table`], in memory; [`fast_csv`], streamed |
 //! | table (Parquet) | [`parquet_table`]                          |
 //! | body (TOML)     | [`body`]                                   |
@@ -25,7 +25,6 @@ mod campaign_file;
 mod campaign_toml;
 pub mod carriage;
 mod carriage_toml;
-pub mod cfd;
 mod checksum;
 pub mod chunks;
 pub mod comparison;

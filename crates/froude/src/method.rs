@@ -41,6 +41,7 @@ pub fn read_campaign(path: &Path) -> Result<Campaign, Error> {
 pub fn check_sections(campaign: &Campaign) -> Result<(), Error> {
     for source in &campaign.sources {
         METHODS.iter().try_for_each(|method| method.check(source))?;
+        Computed.check(source)?;
     }
     Ok(())
 }

@@ -3,9 +3,9 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use crate::section::CfdSpec;
 use froude_records::RecordError;
 use froude_records::block::{Block, ResultColumn, ResultTable, Section, TableBuilder, facts};
-use froude_records::cfd::CfdSpec;
 use froude_records::csv_table::csv_bytes;
 use froude_records::manifest::take_own_place;
 use froude_records::number::significant;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::case::Case;
 use crate::collect::Collected as Row;
 use crate::outcome::Loads;
+use crate::section::{CFD, declared};
 use crate::wall::std_of_wall;
 use froude_fit::budget::Kind;
 use froude_identify::method::{Found, Method, MethodError, Need};
@@ -12,6 +13,7 @@ use froude_identify::reduce::{Observations, reduce_table};
 use froude_identify::source::{ReadFile, identify_observations};
 use froude_identify::uncertainty::SharedError;
 use froude_identify::validation::{STD_ITERATIVE, STD_NUMERICAL};
+use froude_records::RecordError;
 use froude_records::block::Section;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
@@ -41,6 +43,10 @@ impl Method for Computed {
         ""
     }
 
+    fn check(&self, source: &Source) -> Result<(), RecordError> {
+        declared(source).map(drop)
+    }
+
     fn identify(
         &self,
         campaign: &Campaign,
@@ -50,13 +56,12 @@ impl Method for Computed {
     ) -> Result<Found, MethodError> {
         progress("collecting cases");
         // Another source may read the same cases, of which one says how they were computed.
-        let of_cases = |other: &&Source| other.cfd.is_some() && other.input == source.input;
-        let spec =
-            source.cfd.clone().or_else(|| campaign.sources.iter().find(of_cases)?.cfd.clone()).unwrap_or_default();
+        let of_cases = |other: &&Source| other.has_section(CFD) && other.input == source.input;
+        let all = || std::iter::once(source).chain(&campaign.sources);
+        let spec = all().find(of_cases).map(declared).transpose()?.flatten().unwrap_or_default();
         let may_write = || inside(&campaign.path, source.input.path(), &source.place, "cases", "froude identify");
         let input = |e: super::VerbError| MethodError::input(source.input.path(), e.to_string());
-        let mut planning = std::iter::once(source).chain(&campaign.sources);
-        let planned = planning.find(|other| of_cases(other) && !other.plan.is_empty());
+        let planned = all().find(|other| of_cases(other) && !other.plan.is_empty());
         // A campaign that can no longer be planned is not the one that was planned.
         let inputs_sha256 = planned.map(|other| {
             let asked = Asked::of(campaign, other, source.input.path().to_owned());

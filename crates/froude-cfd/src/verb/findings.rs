@@ -2,9 +2,9 @@
 
 use crate::collect::Collected as Row;
 use crate::outcome::{Outcome, Status};
+use crate::section::CfdSpec;
 use crate::wall::{MeshQuality, SUBLAYER, std_of_wall};
 use froude_records::campaign::Source;
-use froude_records::cfd::CfdSpec;
 use froude_records::estimate::ErrorKind;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::{count, percent, significant};

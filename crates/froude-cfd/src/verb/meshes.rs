@@ -12,12 +12,12 @@ use crate::o_grid::OGrid;
 use crate::openfoam::OpenFoam;
 use crate::poly_mesh::PolyMesh;
 use crate::quality::Quality;
+use crate::section::Mesher;
 use crate::snappy::Made;
 use crate::surface::{bounds_m, shadow_m2};
 use crate::wall::{MIN_COVERAGE, MeshQuality, WallLayers};
 use froude_hydro::similarity::blockage;
 use froude_mesh::sections::SectionBody;
-use froude_records::cfd::Mesher;
 
 use super::{Asked, MESHES, VerbError};
 

@@ -27,6 +27,7 @@ use crate::matrix::model;
 use crate::openfoam::OpenFoam;
 use crate::orphans;
 use crate::oscillation::{Period, Swing, swing as compute};
+use crate::section::{CFD, declared};
 use crate::solve::{How, Progress};
 use crate::store::check_links;
 
@@ -111,7 +112,7 @@ pub fn swing(
     plan: &dyn Fn(&Campaign, &Source) -> Result<Planned, MethodError>,
 ) -> Result<Outcome, VerbError> {
     let read = read_campaign(campaign)?;
-    let source = chosen(&read.sources, name).map_err(|problem| VerbError::input(campaign, problem))?;
+    let source = chosen(&read, name)?;
     let planned = plan(&read, source)?;
     let runs = source.input.path();
     inside(campaign, runs, &source.place, "runs", "froude cfd swing")?;
@@ -167,26 +168,31 @@ fn check_logs(runs: &Path, all: &[Job]) -> Result<(), VerbError> {
 }
 
 /// The only computed source that is a forced oscillation and says how its flow is computed, or the one of a name.
-fn chosen<'a>(sources: &'a [Source], name: Option<&str>) -> Result<&'a Source, String> {
+fn chosen<'a>(campaign: &'a Campaign, name: Option<&str>) -> Result<&'a Source, VerbError> {
+    let refused = |problem: &str| Err(VerbError::input(&campaign.path, problem.to_owned()));
     let is_it = |s: &&Source| {
         s.kind == SourceKind::Cfd
             && s.has_section(FORCED_OSCILLATION)
-            && s.cfd.is_some()
+            && s.has_section(CFD)
             && matches!(s.input, Input::Runs { .. })
     };
-    let found: Vec<&Source> = sources.iter().filter(is_it).filter(|s| name.is_none_or(|name| s.name == name)).collect();
+    let found: Vec<&Source> =
+        campaign.sources.iter().filter(is_it).filter(|s| name.is_none_or(|name| s.name == name)).collect();
     match found[..] {
         [only] => {
-            let spec = only.cfd.as_ref();
-            if spec.is_some_and(|s| s.tank.is_some() || s.fine.is_some() || !s.study.is_empty()) {
-                return Err("asks for a tank, a finer mesh or a study of a body that swings; take tank, fine and study out of [source.cfd]: mesh and step are varied by hand".to_owned());
+            if declared(only)?.is_some_and(|s| s.tank.is_some() || s.fine.is_some() || !s.study.is_empty()) {
+                return refused(
+                    "asks for a tank, a finer mesh or a study of a body that swings; take tank, fine and study out of [source.cfd]: mesh and step are varied by hand",
+                );
             }
             Ok(only)
         }
-        [] => Err("has no source that swings and says how its flow is computed: write kind = \"cfd\", method = \"forced_oscillation\", runs = \"runs\", [source.forced_oscillation], [[source.plan]] and [source.cfd] with a body".to_owned()),
+        [] => refused(
+            "has no source that swings and says how its flow is computed: write kind = \"cfd\", method = \"forced_oscillation\", runs = \"runs\", [source.forced_oscillation], [[source.plan]] and [source.cfd] with a body",
+        ),
         _ => {
             let names = found.iter().map(|s| format!("{:?}", s.name)).collect::<Vec<_>>().join(", ");
-            Err(format!("has the sources {names} that swing; say which with --source"))
+            refused(&format!("has the sources {names} that swing; say which with --source"))
         }
     }
 }

@@ -11,12 +11,12 @@ use froude_cfd::case::Case;
 use froude_cfd::collect::collect;
 use froude_cfd::openfoam::OpenFoam;
 use froude_cfd::outcome::Loads;
+use froude_cfd::section::CfdSpec;
 use froude_cfd::solve::How;
 use froude_cfd::store::Store;
 use froude_cfd::transient::{Times, solve_in_time};
 use froude_cfd::window::std_of_mean;
 use froude_records::body::read_body;
-use froude_records::cfd::CfdSpec;
 use froude_records::hash::sha256_of_bytes;
 use froude_records::write::write_atomically;
 

@@ -27,13 +27,15 @@
 
 use std::path::PathBuf;
 
-use toml::de::DeValue;
+use froude_records::RecordError;
+use froude_records::added_mass_options::GivenOption;
+use froude_records::campaign::Source;
+use froude_records::section::Section;
+use froude_records::section_values::{at_most, count, one_of, series};
+use froude_records::units::Dimension;
 
-use crate::added_mass_options::GivenOption;
-use crate::error::RecordError;
-use crate::section::Section;
-use crate::section_values::{at_most, count, one_of, series};
-use crate::units::Dimension;
+/// The section of a source.
+pub(crate) const CFD: &str = "cfd";
 
 /// Most cells in one direction.
 const MOST_CELLS: u64 = 2000;
@@ -212,8 +214,17 @@ impl Default for CfdSpec {
     }
 }
 
+/// What a source says of how its flow is computed; `None` where it says nothing.
+///
+/// # Errors
+///
+/// [`RecordError`] with its place.
+pub fn declared(source: &Source) -> Result<Option<CfdSpec>, RecordError> {
+    source.section(CFD)?.map(|s| cfd(&s)).transpose()
+}
+
 /// Reads `[source.cfd]`.
-pub(crate) fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
+fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
     s.only(&[
         "body",
         "unit",
@@ -372,7 +383,7 @@ fn tank(s: &Section<'_>) -> Result<TankSpec, RecordError> {
 
 fn mesh(s: &Section<'_>) -> Result<Option<(MeshSpec, Mesher)>, RecordError> {
     let Some(value) = s.get("mesh") else { return Ok(None) };
-    if matches!(value.get_ref(), DeValue::String(_)) {
+    if value.get_ref().is_str() {
         let named = [MeshSpec::COARSE, MeshSpec::MEDIUM, MeshSpec::FINE];
         let found = one_of(s, "mesh", &["coarse", "medium", "fine"], &named)?;
         return Ok(found.map(|spec| (spec, Mesher::ByBody)));
@@ -433,28 +444,31 @@ fn cubes(m: &Section<'_>) -> Result<CubeSpec, RecordError> {
 mod tests {
     use std::path::Path;
 
+    use froude_records::campaign::parse_campaign;
+
     use super::*;
-    use crate::campaign::{Campaign, parse_campaign};
 
     const CAMPAIGN: &str = "schema = 1\nname = \"a\"\n\n[[source]]\nname = \"flow\"\nkind = \"cfd\"\ncases = \"cases\"\n\
          [source.cfd]\nbody = \"body.toml\"\nmesh = \"medium\"\ndomain = \"full\"\n\
          [[source.plan]]\nconfigurations = [\"H1LT\"]\nspeed = \"0.4 m/s\"\nangle = [\"0 deg\", \"90 deg\"]\npitch = \"10 deg\"\n";
 
-    fn parse(from: &str, to: &str) -> Result<Campaign, String> {
+    fn parse(from: &str, to: &str) -> Result<(Source, CfdSpec), String> {
         assert!(CAMPAIGN.contains(from), "{from}");
-        parse_campaign(Path::new("lab/campaign.toml"), &CAMPAIGN.replacen(from, to, 1)).map_err(|e| e.to_string())
+        let campaign = parse_campaign(Path::new("lab/campaign.toml"), &CAMPAIGN.replacen(from, to, 1));
+        let source = campaign.map_err(|e| e.to_string())?.sources.remove(0);
+        let spec = declared(&source).map_err(|e| e.to_string())?.unwrap();
+        Ok((source, spec))
     }
 
     #[test]
     fn a_campaign_says_how_its_flow_is_computed() {
-        let source = parse("", "").unwrap().sources.remove(0);
-        let spec = source.cfd.unwrap();
+        let (source, spec) = parse("", "").unwrap();
         assert_eq!(spec.body.as_deref(), Some(Path::new("lab/body.toml")));
         assert_eq!((spec.mesh, spec.is_half), (MeshSpec::MEDIUM, false));
         assert_eq!(spec.mesh.cells(), 92_160);
         assert!((source.plan[0].pitch_rad[0] - 10_f64.to_radians()).abs() < 1e-15);
         let own = "mesh = { stations = 20, layers = 18, azimuth = 8, first_layer = \"0.2 mm\" }";
-        let spec = parse("mesh = \"medium\"", own).unwrap().sources.remove(0).cfd.unwrap();
+        let (_, spec) = parse("mesh = \"medium\"", own).unwrap();
         assert_eq!((spec.mesh.cells(), spec.mesh.first_layer_m, spec.mesher), (2880, 2e-4, Mesher::OGrid));
     }
 
@@ -462,7 +476,7 @@ mod tests {
     fn a_surface_lies_somehow_in_cubes_within_a_tank() {
         let own = "unit = \"mm\"\nup = \"-y\"\nmesh = { surface_cell = \"4 mm\", first_layer = \"0.2 mm\", layers = 8 }\n\
              tank = { width = \"1.5 m\", depth = \"1 m\", submergence = \"0.3 m\" }";
-        let spec = parse("mesh = \"medium\"", own).unwrap().sources.remove(0).cfd.unwrap();
+        let (_, spec) = parse("mesh = \"medium\"", own).unwrap();
         let cubes = CubeSpec { surface_cell_m: 4e-3, first_layer_m: 2e-4, layers: Some(8), growth: 1.3 };
         assert_eq!(spec.mesher, Mesher::Cubes(cubes));
         assert_eq!(spec.tank, Some(TankSpec { width_m: 1.5, depth_m: 1.0, submergence_m: 0.3 }));
@@ -475,7 +489,7 @@ mod tests {
     fn a_campaign_names_what_is_computed_again() {
         let text = "\"full\"\nfine = { mesh = \"fine\" }\n[[source.cfd.study]]\nconfigurations = [\"H1LT\"]\nspeed = \"0.4 m/s\"\nangle = [\"0 deg\", \"90 deg\"]\n\
                     [[source.cfd.study]]\nspeed = [\"0.4 m/s\"]\nradius = [6, 12.5]\n";
-        let spec = parse("\"full\"", text).unwrap().sources.remove(0).cfd.unwrap();
+        let (_, spec) = parse("\"full\"", text).unwrap();
         assert_eq!(spec.fine, Some(FineSpec { mesh: MeshSpec::FINE, every: 5 }));
         let [grids, domains] = &spec.study[..] else { panic!("{:?}", spec.study) };
         assert_eq!((grids.grids, grids.angle_rad.len(), &grids.radius[..]), (4, 2, &[][..]));
