@@ -235,9 +235,8 @@ fn reduced(
     one_unit(table, sample, campaign, source)?;
     let (validity, found) = validity::ranges(ends, campaign);
     findings.extend(found);
-    findings.extend(lint::of_ends(ends, campaign, &laws));
+    findings.extend(lint::of_counted(&seconds.counts, ends, campaign, &laws));
     findings.extend(no_budget(campaign, source, &[]));
-    findings.extend(seconds.findings(facts, ends, &laws));
     check_budget(source, ends)?;
     findings.extend(columns::unused(ends, campaign, source, &laws));
     let scatter = scatter(campaign, source, TABLE, ends, &mut findings)?;

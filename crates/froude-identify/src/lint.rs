@@ -3,6 +3,7 @@
 //! A lint changes nothing except that identical copies are dropped, and says so.
 //! Every limit is a constant with its reason.
 
+pub(crate) mod counts;
 pub(crate) mod motion;
 pub mod repeats;
 mod volumes;
@@ -10,21 +11,15 @@ mod volumes;
 use froude_records::campaign::Campaign;
 use froude_records::finding::{Finding, Severity};
 use froude_records::plausible::AIR_KG_M3;
-use froude_records::text::counted;
 
-use crate::dataset::{Dataset, LOADS};
+use crate::dataset::Dataset;
 use crate::law::ForceLaw;
-use crate::lint::motion::{force_along_motion, largest, moving};
+use crate::lint::counts::Counts;
+use crate::lint::motion::moving;
 use crate::lint::repeats::{AHEAD, repeats};
 use crate::lint::volumes::{volume_channel, volumes};
 use crate::source::models::Drift;
 
-/// Share of rows at one extreme value that looks like a saturated sensor.
-const SATURATED_SHARE: f64 = 0.02;
-/// A linear and a quadratic term need at least this many distinct speeds.
-const DISTINCT_SPEEDS_NEEDED: usize = 3;
-/// Angles all below this, over at least eight rows, were probably typed in radians (π/2 read as degrees).
-const RADIAN_SUSPICION_RAD: f64 = 1.6 * std::f64::consts::PI / 180.0;
 /// Drag coefficients on frontal area that bodies have (Hoerner 1965: 0.04 streamlined to 2.3 hollow section; margin 2 both ways).
 const BODY_DRAG_COEFFICIENT: std::ops::RangeInclusive<f64> = 0.02..=4.6;
 
@@ -50,20 +45,14 @@ const FASTEST_IN_AIR_M_S: f64 = 100.0;
 /// A finding for each doubt; an empty list says that none of these checks found anything.
 #[must_use]
 pub fn observations(data: &Dataset, campaign: &Campaign, laws: &[ForceLaw]) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    findings.extend(force_along_motion(data, laws));
-    findings.extend(saturation(data));
-    findings.extend(angle_in_radians(data));
-    findings.extend(distinct_speeds(data, laws));
-    findings.extend(one_drift(data, laws));
-    findings.extend(repeats(data));
-    findings.extend(of_ends(data, campaign, laws));
-    findings
+    of_counted(&Counts::of(data), data, campaign, laws)
 }
 
-/// Those that the rows at the ends of the ranges decide.
-pub(crate) fn of_ends(data: &Dataset, campaign: &Campaign, laws: &[ForceLaw]) -> Vec<Finding> {
-    let mut findings = Vec::new();
+/// The same of rows that were counted before; `data` has all of them, or those at the ends of their ranges.
+pub(crate) fn of_counted(counts: &Counts, data: &Dataset, campaign: &Campaign, laws: &[ForceLaw]) -> Vec<Finding> {
+    let mut findings = counts.findings(data, laws);
+    findings.extend(one_drift(data, laws));
+    findings.extend(repeats(data));
     findings.extend(implausible_speed(data));
     findings.extend(drag_area(data, campaign.body.as_ref().and_then(|b| b.reference_area_m2)));
     findings.extend(one_sign_of_angle(data).filter(|_| laws.iter().any(has_cross_term)));
@@ -150,66 +139,6 @@ fn drag_area(data: &Dataset, reference_area_m2: Option<f64>) -> Option<Finding> 
     ))
 }
 
-/// Many rows at exactly the largest or smallest value of a load.
-fn saturation(data: &Dataset) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    for load in LOADS {
-        let Some(f) = data.values(load) else { continue };
-        for (end, extreme) in [
-            ("largest", f.iter().copied().fold(f64::MIN, f64::max)),
-            ("smallest", f.iter().copied().fold(f64::MAX, f64::min)),
-        ] {
-            let there = f.iter().filter(|&&x| x == extreme).count();
-            findings.extend(saturated(load, end, extreme, there, f.len()));
-        }
-    }
-    findings
-}
-
-/// Whether so many rows at the end of a load's range look like a saturated sensor.
-pub(crate) fn saturated(load: &str, end: &str, extreme: f64, there: usize, n_rows: usize) -> Option<Finding> {
-    (extreme != 0.0 && there >= 3 && there as f64 > SATURATED_SHARE * n_rows as f64).then(|| {
-        let text =
-            format!("{load}: {there} rows lie exactly at the {end} value {extreme}; the sensor may be saturated");
-        Finding::new(Severity::Warning, "saturation", text)
-    })
-}
-
-/// Angles so small that they look like radians in a column of degrees.
-fn angle_in_radians(data: &Dataset) -> Option<Finding> {
-    let angle = data.values("angle")?;
-    // One that follows from velocities was typed by nobody.
-    let is_typed =
-        data.headers.is_empty() || data.headers.iter().any(|header| header.split(" [").next() == Some("angle"));
-    if !is_typed {
-        return None;
-    }
-    in_radians(distinct_count(angle), largest(angle))
-}
-
-/// Whether so many angles up to a largest one look like radians.
-pub(crate) fn in_radians(distinct: usize, largest: f64) -> Option<Finding> {
-    (distinct >= 5 && largest > 0.0 && largest <= RADIAN_SUSPICION_RAD).then(|| {
-        Finding::new(
-            Severity::Warning,
-            "angle-in-radians",
-            format!(
-                "all {distinct} angles lie within ±{:.3} deg: they look like radians in a column of degrees; \
-                 head the column `angle [rad]` if so",
-                largest.to_degrees()
-            ),
-        )
-    })
-}
-
-/// Too few distinct speeds to distinguish a linear from a quadratic term, along every axis that a law reads.
-fn distinct_speeds(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
-    data.values("speed")?;
-    // The laws are odd in the speed: ahead and astern are one.
-    let distinct = |name: &str| Some(distinct_count(&data.values(name)?.iter().map(|u| u.abs()).collect::<Vec<_>>()));
-    few_speeds(of_speeds(laws).flat_map(ForceLaw::channels).filter(|name| is_speed(name)).filter_map(distinct).max()?)
-}
-
 /// Rows that move askew at one speed, or at one magnitude of the angle: terms of the built-in laws that have nearly one shape there.
 fn one_drift(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
     let built_in = laws.iter().find(|law| matches!(law.name.as_str(), "quadratic" | "linear_quadratic"))?;
@@ -246,30 +175,6 @@ fn one_drift(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
             all.join("; ")
         );
         Finding::new(Severity::Note, "one-drift", text)
-    })
-}
-
-fn is_speed(name: &str) -> bool {
-    name == "speed" || name.starts_with("v_") && !name.ends_with("_dot")
-}
-
-/// The laws in speeds alone: one that also reads a tip speed ratio, say, has its terms in that.
-pub(crate) fn of_speeds(laws: &[ForceLaw]) -> impl Iterator<Item = &ForceLaw> {
-    let is_known = |name: &str| is_speed(name) || matches!(name, "angle" | "density" | "n_links");
-    laws.iter().filter(move |law| law.channels().into_iter().all(is_known))
-}
-
-/// Whether so many speeds are too few.
-pub(crate) fn few_speeds(n: usize) -> Option<Finding> {
-    (n < DISTINCT_SPEEDS_NEEDED).then(|| {
-        Finding::new(
-            Severity::Warning,
-            "few-speeds",
-            format!(
-                "{}: a linear and a quadratic term cannot be distinguished with fewer than {DISTINCT_SPEEDS_NEEDED}",
-                counted(n, "distinct speed", "distinct speeds")
-            ),
-        )
     })
 }
 
@@ -316,18 +221,4 @@ pub fn drag_coefficient(name: &str, d_n_s2_m2: f64, density_kg_m3: f64, area_m2:
             ),
         )
     })
-}
-
-/// Step of a value, a thousandth of the largest of its channel.
-pub(crate) fn step_of(value: f64, largest: f64) -> i64 {
-    (value / largest.max(f64::MIN_POSITIVE) * 1e3).round() as i64
-}
-
-fn distinct_count(values: &[f64]) -> usize {
-    // Settings are typed with few digits; a part in 10⁶ of the largest separates them.
-    let scale = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())).max(f64::MIN_POSITIVE);
-    let mut sorted: Vec<i64> = values.iter().map(|v| step_of(*v, scale)).collect();
-    sorted.sort_unstable();
-    sorted.dedup();
-    sorted.len()
 }

@@ -19,7 +19,7 @@ use froude_records::campaign::{Campaign, Source};
 
 use crate::dataset::{Dataset, labels};
 use crate::law::ForceLaw;
-use crate::lint::motion::SIGN_MATTERS_ABOVE;
+use crate::lint::counts::SIGN_MATTERS_ABOVE;
 use crate::lint::repeats::{is_outcome, within};
 use crate::regression::{Settings, regress};
 use crate::source::models::laws;

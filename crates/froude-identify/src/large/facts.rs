@@ -6,18 +6,16 @@
 use std::rc::Rc;
 
 use froude_records::campaign::{Campaign, Source};
-use froude_records::finding::Finding;
 use froude_records::table::{ColumnData, Table};
 use froude_records::units::Dimension;
 use indexmap::{IndexMap, IndexSet};
 
-use super::rows::{End, Ends, Row, Sample, without_rows};
+use super::rows::{Ends, Row, Sample, without_rows};
 use crate::dataset::{Dataset, LOADS};
 use crate::error::IdentifyError;
 use crate::large::limits::{MOST_CLUSTERS, MOST_CONFIGURATIONS, refusal};
-use crate::law::ForceLaw;
 use crate::lint;
-use crate::lint::motion::Pushed;
+use crate::lint::counts::Counts;
 use crate::reduce::{conditioned, kept_rows, zeros_of};
 use crate::source::models::MOMENTS;
 use crate::validity::{self, AT_REST, off_axis, per_observation};
@@ -189,22 +187,14 @@ impl Facts {
         self.ends.values().flat_map(Ends::rows).chain(self.sample())
     }
 
-    fn largest(&self, name: &str) -> f64 {
-        self.ends.get(name).map_or(0.0, Ends::largest)
+    /// The smallest and the largest value of a channel.
+    fn range(&self, name: &str) -> [f64; 2] {
+        self.ends.get(name).map_or([0.0; 2], Ends::range)
     }
 
-    /// Loads of which many rows stand at one end.
-    pub(super) fn saturation(&self) -> Vec<Finding> {
-        let mut out = Vec::new();
-        for load in LOADS {
-            let Some(ends) = self.ends.get(load) else { continue };
-            let mut say = |word: &str, end: Option<&End>| {
-                out.extend(end.and_then(|end| lint::saturated(load, word, end.value, end.count, self.n_used)));
-            };
-            say("largest", ends.most());
-            say("smallest", ends.least());
-        }
-        out
+    fn largest(&self, name: &str) -> f64 {
+        let [low, high] = self.range(name);
+        low.abs().max(high.abs())
     }
 }
 
@@ -232,34 +222,11 @@ fn across(data: &Dataset, x: &str, y: &str) -> Vec<f64> {
     u.iter().zip(v).map(|(u, v)| u.hypot(*v)).collect()
 }
 
-/// Steps of a channel that some row has, from that of its largest size below zero to that above.
-#[derive(Default)]
-struct Steps(Vec<bool>);
-
-impl Steps {
-    fn take(&mut self, values: impl Iterator<Item = f64>, largest: f64) {
-        let most = lint::step_of(largest, largest);
-        self.0.resize(usize::try_from(2 * most + 1).unwrap_or(1), false);
-        for x in values {
-            let step = usize::try_from(lint::step_of(x, largest) + most).ok();
-            if let Some(has) = step.and_then(|step| self.0.get_mut(step)) {
-                *has = true;
-            }
-        }
-    }
-
-    fn count(&self) -> usize {
-        self.0.iter().filter(|has| **has).count()
-    }
-}
-
 /// The second pass.
 #[derive(Default)]
 pub(super) struct Seconds {
     ends: IndexMap<String, Ends>,
-    pushed: Vec<(&'static str, &'static str, Pushed)>,
-    speeds: Steps,
-    angles: Steps,
+    pub(super) counts: Counts,
 }
 
 impl Seconds {
@@ -303,11 +270,6 @@ impl Seconds {
                     put(&format!("near {load}"), &mut faster(lint::NEAR_LARGEST_SPEED).map(|i| (keep[i], f[i])));
                 }
             }
-            self.speeds.take(speed.iter().map(|u| u.abs()), fastest);
-        }
-        if let Some(angle) = data.values("angle") {
-            let largest = facts.largest("angle");
-            self.angles.take(angle.iter().copied(), largest);
         }
         for (moment, along, athwart, _) in MOMENTS {
             if let (true, Some(u), Some(v)) =
@@ -321,32 +283,10 @@ impl Seconds {
         for (name, values) in per_observation(data, campaign) {
             put(name, &mut chunk.placed(&values));
         }
-        if self.pushed.is_empty() {
-            let both = lint::motion::ALONG.into_iter().filter(|(load, motion)| has(data, load) && has(data, motion));
-            self.pushed = both.map(|(load, motion)| (load, motion, Pushed::default())).collect();
-        }
-        for (load, motion, pushed) in &mut self.pushed {
-            if let (Some(f), Some(v)) = (data.values(load), data.values(motion)) {
-                pushed.count(data, (f, v), [facts.largest(load), facts.largest(motion)]);
-            }
-        }
+        self.counts.take(data, &|name| facts.range(name));
     }
 
     pub(super) fn rows(&self) -> impl Iterator<Item = &Rc<Row>> {
         self.ends.values().flat_map(Ends::rows)
     }
-
-    /// The lints that count rows; `data` says which channels there are.
-    pub(super) fn findings(&self, facts: &Facts, data: &Dataset, laws: &[ForceLaw]) -> Vec<Finding> {
-        let mut out = lint::motion::along_motion(&self.pushed, facts.n_used, data);
-        out.extend(facts.saturation());
-        out.extend(has(data, "angle").then(|| lint::in_radians(self.angles.count(), facts.largest("angle"))).flatten());
-        let asks_speeds = has(data, "speed") && lint::of_speeds(laws).next().is_some();
-        out.extend(asks_speeds.then(|| lint::few_speeds(self.speeds.count())).flatten());
-        out
-    }
-}
-
-fn has(data: &Dataset, channel: &str) -> bool {
-    data.channels.contains_key(channel)
 }

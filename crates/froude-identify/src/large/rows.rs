@@ -70,70 +70,50 @@ pub(super) fn without_rows(table: &Table) -> Table {
 
 /// The rows at both ends of a number's range.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Ends {
-    least: Option<End>,
-    most: Option<End>,
-}
+pub(super) struct Ends(Option<[End; 2]>);
 
-/// One end: its value, how many rows have it, the first and the last of them.
+/// One end: its value, and the first and the last row that have it.
 #[derive(Debug, Clone)]
-pub(super) struct End {
-    pub(super) value: f64,
-    pub(super) count: usize,
-    first: Rc<Row>,
-    last: Rc<Row>,
+struct End {
+    value: f64,
+    rows: [Rc<Row>; 2],
 }
 
 impl Ends {
     /// Takes in numbers of a chunk, each with its row there.
     pub(super) fn take(&mut self, numbers: impl Iterator<Item = (usize, f64)>, table: &Table) {
-        let mut found: Option<[(f64, usize, usize, usize); 2]> = None;
+        let mut found: Option<[(f64, usize, usize); 2]> = None;
         for (i, x) in numbers {
-            let [least, most] = found.get_or_insert([(x, 0, i, i), (x, 0, i, i)]);
-            for (end, sign) in [(least, 1.0), (most, -1.0)] {
+            for (end, sign) in found.get_or_insert([(x, i, i); 2]).iter_mut().zip([1.0, -1.0]) {
                 if sign * x < sign * end.0 {
-                    *end = (x, 1, i, i);
+                    *end = (x, i, i);
                 } else if x == end.0 {
-                    *end = (x, end.1 + 1, end.2, i);
+                    end.2 = i;
                 }
             }
         }
-        let Some([least, most]) = found else { return };
-        join(&mut self.least, least, table, |new, old| new < old);
-        join(&mut self.most, most, table, |new, old| new > old);
+        let Some(found) = found else { return };
+        let of = |(value, first, last)| End { value, rows: [first, last].map(|i| Row::of(table, i)) };
+        let Some(ends) = &mut self.0 else {
+            self.0 = Some(found.map(of));
+            return;
+        };
+        for ((end, new), sign) in ends.iter_mut().zip(found).zip([1.0, -1.0]) {
+            if new.0 == end.value {
+                end.rows[1] = Row::of(table, new.2);
+            } else if sign * new.0 < sign * end.value {
+                *end = of(new);
+            }
+        }
     }
 
-    pub(super) fn least(&self) -> Option<&End> {
-        self.least.as_ref()
-    }
-
-    pub(super) fn most(&self) -> Option<&End> {
-        self.most.as_ref()
-    }
-
-    /// The largest size.
-    pub(super) fn largest(&self) -> f64 {
-        [&self.least, &self.most].into_iter().flatten().fold(0.0, |m, end| m.max(end.value.abs()))
+    /// The smallest and the largest value; zero before any.
+    pub(super) fn range(&self) -> [f64; 2] {
+        self.0.as_ref().map_or([0.0; 2], |ends| ends.each_ref().map(|end| end.value))
     }
 
     pub(super) fn rows(&self) -> impl Iterator<Item = &Rc<Row>> {
-        [&self.least, &self.most].into_iter().flatten().flat_map(|end| [&end.first, &end.last])
-    }
-}
-
-fn join(
-    end: &mut Option<End>,
-    (value, count, first, last): (f64, usize, usize, usize),
-    table: &Table,
-    is_beyond: fn(f64, f64) -> bool,
-) {
-    match end {
-        Some(end) if end.value == value => {
-            end.count += count;
-            end.last = Row::of(table, last);
-        }
-        Some(old) if !is_beyond(value, old.value) => {}
-        _ => *end = Some(End { value, count, first: Row::of(table, first), last: Row::of(table, last) }),
+        self.0.iter().flatten().flat_map(|end| &end.rows)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Motions that contradict each other, and loads along them.
+//! Motions that contradict each other.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,9 +10,6 @@ use crate::law::ForceLaw;
 
 /// An angle that differs from that of the velocity by more says something else, 1°.
 pub(crate) const ANGLE_CONTRADICTS_RAD: f64 = std::f64::consts::PI / 180.0;
-
-/// A load below this share of the largest is too small for its sign to say anything.
-pub(crate) const SIGN_MATTERS_ABOVE: f64 = 0.05;
 
 /// Rows slower than this part of the fastest are at rest: the angle of their velocity is that of noise.
 pub(crate) const AT_REST: f64 = 0.05;
@@ -118,94 +115,4 @@ pub(crate) const OF_RESISTANCE: [&str; 14] = [
 pub(crate) fn has_other_cause(load: &str, laws: &[ForceLaw]) -> bool {
     let of_load = laws.iter().filter(|law| law.responses.iter().any(|r| r == load));
     of_load.flat_map(ForceLaw::channels).any(|channel| !OF_RESISTANCE.contains(&channel))
-}
-
-/// Rows in which a load points along the motion.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Pushed {
-    /// Rows large enough to tell.
-    large: usize,
-    along: usize,
-    /// Line of the first of them.
-    line: usize,
-}
-
-impl Pushed {
-    /// Counts the rows of a load and a motion, of which the largest are known.
-    pub(crate) fn count(&mut self, data: &Dataset, (f, v): (&[f64], &[f64]), [largest_f, largest_v]: [f64; 2]) {
-        for (i, (f, v)) in f.iter().zip(v).enumerate() {
-            if f.abs() > SIGN_MATTERS_ABOVE * largest_f && v.abs() > SIGN_MATTERS_ABOVE * largest_v {
-                self.large += 1;
-                if f * v > 0.0 {
-                    if self.along == 0 {
-                        self.line = data.line.get(i).copied().unwrap_or(0);
-                    }
-                    self.along += 1;
-                }
-            }
-        }
-    }
-}
-
-/// The largest size of some numbers.
-pub(crate) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0_f64, |m, x| m.max(x.abs()))
-}
-
-/// Loads along the motion: a drag that pushes.
-pub(crate) fn force_along_motion(data: &Dataset, laws: &[ForceLaw]) -> Vec<Finding> {
-    let counted = |(load, motion): (&'static str, &'static str)| {
-        if has_other_cause(load, laws) {
-            return None;
-        }
-        let (f, v) = (data.values(load)?, data.values(motion)?);
-        // What slows down is pushed by the water that goes with it.
-        if data.values(&format!("{motion}_dot")).is_some_and(|a| a.iter().any(|a| *a != 0.0)) {
-            return None;
-        }
-        let mut pushed = Pushed::default();
-        pushed.count(data, (f, v), [largest(f), largest(v)]);
-        Some((load, motion, pushed))
-    };
-    along_motion(&ALONG.into_iter().filter_map(counted).collect::<Vec<_>>(), data.rows, data)
-}
-
-/// The message about loads along the motion, of so many rows; `data` says which channels there are.
-pub(crate) fn along_motion(
-    counted: &[(&'static str, &'static str, Pushed)],
-    n_rows: usize,
-    data: &Dataset,
-) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    for (load, motion, Pushed { large, along, line }) in counted {
-        if *along == 0 {
-            continue;
-        }
-        let all = along * 2 > *large;
-        let of = if *large == n_rows {
-            format!("in {along} of {large} rows")
-        } else {
-            format!("in {along} of the {large} rows large enough to tell ({n_rows} in all)")
-        };
-        findings.push(Finding::new(
-            if all { Severity::Error } else { Severity::Warning },
-            "force-along-motion",
-            if all {
-                format!(
-                    "{load} points along {motion} {of}: a drag must oppose the motion; if the sensor is mounted the other \
-                     way round, write sign = -1 for its column, or remove it if it is there{}",
-                    if *motion == "v_y" && data.channels.contains_key("angle") {
-                        "; if the angle is counted in the opposite sense (as beta of a ship's drift test is), write it for the angle's"
-                    } else {
-                        ""
-                    }
-                )
-            } else {
-                format!(
-                    "{load} points along {motion} {of}, first on line {line}; check zero and mounting of these runs"
-                )
-            },
-        ));
-    }
-    findings
 }
