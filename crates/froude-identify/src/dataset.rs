@@ -247,6 +247,11 @@ impl Dataset {
         }
     }
 
+    /// The rows of `keep`, which is in order; no copy where these are all.
+    pub(crate) fn keeping(self, keep: &[usize]) -> Self {
+        if keep.len() < self.rows { self.subset(keep) } else { self }
+    }
+
     /// Distinct configurations in order of first appearance.
     #[must_use]
     pub fn configurations(&self) -> Vec<String> {

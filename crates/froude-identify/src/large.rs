@@ -20,6 +20,7 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use facts::{Chunk, Facts, Seconds};
@@ -31,16 +32,16 @@ use froude_records::table::Table;
 use rows::table_of;
 
 use crate::dataset::{Dataset, Drawn};
+use crate::dissipation;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
-use crate::motions::Motions;
-use crate::reduce::{kept_rows, left_out, observed, one_unit, zero_drift};
+use crate::motions::{self, Motions};
+use crate::reduce::{Observations, files_of, kept_rows, left_out, motion_and_zeros, observed, one_unit};
 use crate::regression::{Condensed, ModelFit, Scatter, Settings, regress};
-use crate::result::{ReadFile, SourceResult};
-use crate::seam::{Reduced, conclude};
-use crate::source::handed::{TABLE, merges_motions, no_budget, of_table, scatter};
-use crate::source::{check_budget, laws};
-use crate::{columns, diagnosis, dissipation, lint, motions, validity};
+use crate::result::SourceResult;
+use crate::seam::{Choice, Reduced, conclude};
+use crate::source::handed::{TABLE, merges_motions, scatter};
+use crate::source::{Asked, laws, reduced, with_recommended};
 
 pub use crate::large::limits::MOST_KEPT;
 pub(crate) use crate::large::limits::{Limits, refused_above};
@@ -80,45 +81,47 @@ pub(crate) fn identify_source(
         motions.probe(&chunk.data);
         Ok(())
     })?;
-    let mut few = Few::of(&facts, &seconds, campaign, source)?;
-    let mut laws = laws(campaign, source, &few.ends)?;
+    let (table, mut few) = few(&facts, &seconds, campaign, source)?;
+    let mut laws = laws(campaign, source, &few.data)?;
     if nobody_asked(campaign, source) {
         laws.retain(|law| !law.is_nonlinear());
     }
     if let Some(clusters) = motions.clusters(&laws) {
         few.findings.push(motions::found(&clusters));
         if motions::is_enough(&clusters) {
-            for data in [&mut few.ends, &mut few.sample] {
-                motions::rename(data, &clusters);
-            }
+            motions::rename(&mut few.data, &clusters);
             facts.merge(&clusters);
         }
     }
-    let reduced = reduced(campaign, source, &facts, &seconds, &few, laws)?;
+    let scatter = scatter(campaign, source, TABLE, &few.data, &mut few.findings)?;
+    let lines: BTreeSet<usize> = facts.sample().iter().map(|row| row.line()).collect();
+    let of_sample: Vec<usize> = (0..few.data.rows).filter(|&i| lines.contains(&few.data.line[i])).collect();
+    let sample = few.data.subset(&of_sample);
+    one_unit(&table, &sample, campaign, source)?;
+    few.findings.push(in_chunks(&facts, &sample).of_source(&source.name));
+    let asked = Asked { method: TABLE, laws, scatter, choice: Choice::Selection, has_budget: false };
+    let mut reduced = reduced(campaign, source, few, &seconds.counts, asked)?;
+    let ends = std::mem::replace(&mut reduced.data, sample);
     if let Some(what) = weighs_all(&reduced) {
         let is_kept = facts.n_read <= MOST_AT_ONCE;
         return if is_kept { Ok(None) } else { Err(refused_above(MOST_AT_ONCE, source, &what)) };
     }
     progress("all rows of a long table");
-    let fitted = regressed(campaign, source, &facts, &few, &reduced)?;
+    let fitted = regressed(campaign, source, &facts, &ends, &reduced)?;
     let (fitted, leverage) = with_residuals(campaign, source, fitted, &reduced.data)?;
     let mut result = conclude(reduced, &campaign.identify, fitted, progress)?;
     for ((estimate, model), leverage) in result.estimates.iter_mut().zip(&result.models).zip(leverage) {
         let diagnostics = &mut estimate.diagnostics;
         diagnostics.largest_leverage = leverage;
         if diagnostics.largest_power_w.is_some() {
-            let power = dissipation::largest_power_w(&model.law, &few.ends, model.law_coefficients())?;
+            let power = dissipation::largest_power_w(&model.law, &ends, model.law_coefficients())?;
             diagnostics.largest_power_w = Some(power);
         }
         if let (Some(density), Some(mean)) = (facts.density(), estimate.refers_to.get_mut("density")) {
             mean.value = density;
         }
     }
-    if let Some(i) = result.recommendation.as_ref().map(|r| r.index) {
-        let found = diagnosis::findings(&result.models[i], &result.data, campaign, &result.estimates[i].diagnostics);
-        result.findings.extend(found.into_iter().map(|f| f.of_source(&source.name)));
-    }
-    Ok(Some(result))
+    Ok(Some(with_recommended(result, campaign)))
 }
 
 /// What of the table itself, and not of the campaign, needs all rows at once.
@@ -187,65 +190,28 @@ fn nobody_asked(campaign: &Campaign, source: &Source) -> bool {
     source.models.is_empty() && identify.models.is_empty() && identify.user_models.is_empty()
 }
 
-/// The few rows that stand for all where these are judged.
-struct Few {
-    table: Table,
-    /// Observations of the table, and the row of each.
-    ends: Dataset,
-    keep: Vec<usize>,
-    sample: Dataset,
-    findings: Vec<Finding>,
-}
-
-impl Few {
-    fn of(facts: &Facts, seconds: &Seconds, campaign: &Campaign, source: &Source) -> Result<Self, IdentifyError> {
-        let nothing = || IdentifyError::NothingKept { source_name: source.name.clone(), n_read: facts.n_read };
-        let like = facts.like.as_ref().ok_or_else(nothing)?;
-        let table = table_of(like, facts.rows().chain(seconds.rows()));
-        let mut findings = Vec::new();
-        let all = observed(&table, campaign, source, &mut findings)?;
-        let keep = kept_rows(&all, source)?;
-        let drawn = Drawn {
-            rows: facts.n_used,
-            clusters: if source.group.is_some() { facts.clusters() } else { 0 },
-            configurations: facts.configurations.iter().cloned().collect(),
-        };
-        let ends = Dataset { sample: Some(drawn), ..all.subset(&keep) };
-        let lines: std::collections::BTreeSet<usize> = facts.sample().iter().map(|row| row.line()).collect();
-        let of_sample: Vec<usize> = (0..ends.rows).filter(|&i| lines.contains(&ends.line[i])).collect();
-        let sample = ends.subset(&of_sample);
-        Ok(Self { table, ends, keep, sample, findings })
-    }
-}
-
-/// The source as it is handed over the seam: a sample of its rows, and what all of them say.
-fn reduced(
-    campaign: &Campaign,
-    source: &Source,
+/// The few rows that stand for all where these are judged: the table, and its observations.
+fn few(
     facts: &Facts,
     seconds: &Seconds,
-    few: &Few,
-    laws: Vec<ForceLaw>,
-) -> Result<Reduced, IdentifyError> {
-    let Few { table, ends, keep, sample, .. } = few;
-    let mut findings = few.findings.clone();
+    campaign: &Campaign,
+    source: &Source,
+) -> Result<(Table, Observations), IdentifyError> {
+    let nothing = || IdentifyError::NothingKept { source_name: source.name.clone(), n_read: facts.n_read };
+    let table = table_of(facts.like.as_ref().ok_or_else(nothing)?, facts.rows().chain(seconds.rows()));
+    let mut findings = Vec::new();
+    let all = observed(&table, campaign, source, &mut findings)?;
+    let keep = kept_rows(&all, source)?;
+    let drawn = Drawn {
+        rows: facts.n_used,
+        clusters: if source.group.is_some() { facts.clusters() } else { 0 },
+        configurations: facts.configurations.iter().cloned().collect(),
+    };
+    let data = Dataset { sample: Some(drawn), ..all.keeping(&keep) };
     findings.extend(left_out(facts.n_used, facts.n_read));
-    findings.extend(zero_drift(ends));
-    findings.extend(lint::motion::motion_contradictions(table, keep, ends));
-    one_unit(table, sample, campaign, source)?;
-    let (validity, found) = validity::ranges(ends, campaign);
-    findings.extend(found);
-    findings.extend(lint::of_counted(&seconds.counts, ends, campaign, &laws));
-    findings.extend(no_budget(campaign, source, &[]));
-    check_budget(source, ends)?;
-    findings.extend(columns::unused(ends, campaign, source, &laws));
-    let scatter = scatter(campaign, source, TABLE, ends, &mut findings)?;
-    findings.push(in_chunks(facts, sample));
-    let mut files = vec![ReadFile::new(source.input.path().to_owned(), "table")];
-    files.extend(table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar")));
-    let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
-    let out = of_table(campaign, source, TABLE, sample.clone(), laws);
-    Ok(Reduced { n_read: facts.n_read, scatter, validity, findings, files, ..out })
+    findings.extend(motion_and_zeros(&table, &keep, &data));
+    let files = files_of(&table);
+    Ok((table, Observations { data, n_read: facts.n_read, findings, shared_errors: Vec::new(), files }))
 }
 
 /// The message about a table that was read in chunks.
@@ -280,7 +246,7 @@ fn regressed(
     campaign: &Campaign,
     source: &Source,
     facts: &Facts,
-    few: &Few,
+    ends: &Dataset,
     reduced: &Reduced,
 ) -> Result<Vec<Fitted>, IdentifyError> {
     let is_clustered = reduced.scatter == Scatter::Cluster;
@@ -293,9 +259,8 @@ fn regressed(
         Ok(())
     })?;
     let settings = reduced.settings(&campaign.identify);
-    let fit = |law: &ForceLaw, condensed: &Condensed| {
-        regress(law, &few.ends, Settings { condensed: Some(condensed), ..settings })
-    };
+    let fit =
+        |law: &ForceLaw, condensed: &Condensed| regress(law, ends, Settings { condensed: Some(condensed), ..settings });
     let mut condensed = fold.finish().into_iter();
     let finish = |law: &ForceLaw| {
         let rows = if law.is_nonlinear() { None } else { condensed.next() };

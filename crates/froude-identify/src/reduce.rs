@@ -15,6 +15,7 @@ use froude_records::units::Dimension;
 
 use crate::dataset::{Channel, Dataset, GroupedBy, LOADS};
 use crate::error::IdentifyError;
+use crate::lint::motion::motion_contradictions;
 use crate::result::ReadFile;
 use crate::source::models;
 use crate::uncertainty::SharedError;
@@ -46,9 +47,13 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, Iden
         other => return Err(not_a_table(source, other)),
     };
     let table = read_table_with_blanks(&path, source.sidecar.as_deref())?;
-    let mut files = vec![ReadFile::new(path, "table")];
-    files.extend(table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar")));
-    reduce_table(campaign, source, &table, files)
+    reduce_table(campaign, source, &table, files_of(&table))
+}
+
+/// The files of a table.
+pub(crate) fn files_of(table: &Table) -> Vec<ReadFile> {
+    let sidecar = table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar"));
+    std::iter::once(ReadFile::new(table.path.clone(), "table")).chain(sidecar).collect()
 }
 
 /// Reduces a table in memory, made of `files`: of a file, or of the windows of raw runs.
@@ -70,11 +75,11 @@ pub fn reduce_table(
     if keep.is_empty() {
         return Err(IdentifyError::NothingKept { source_name: source.name.clone(), n_read });
     }
-    let mut data = data.subset(&keep);
+    let mut data = data.keeping(&keep);
     let (unique, dropped) = crate::lint::repeats::identical_copies(&data);
     if let Some(finding) = dropped {
         findings.push(finding);
-        data = data.subset(&unique);
+        data = data.keeping(&unique);
         keep = unique.iter().map(|&i| keep[i]).collect();
     }
     // Computed loads are zero by symmetry.
@@ -82,8 +87,7 @@ pub fn reduce_table(
         findings.extend(idle::mark(&mut data));
     }
     // The findings about the observations concern those that are fitted.
-    findings.extend(zero_drift(&data));
-    findings.extend(crate::lint::motion::motion_contradictions(table, &keep, &data));
+    findings.extend(motion_and_zeros(table, &keep, &data));
     one_unit(table, &data, campaign, source)?;
     let mut shared_errors = Vec::new();
     if let Some(tare) = &source.tare {
@@ -396,8 +400,13 @@ fn subtract_zeros(data: &mut Dataset) {
     }
 }
 
+/// What is doubtful about the zeros and the motion of some rows of a table.
+pub(crate) fn motion_and_zeros(table: &Table, rows: &[usize], data: &Dataset) -> Vec<Finding> {
+    [zero_drift(data), motion_contradictions(table, rows, data)].concat()
+}
+
 /// How far the zeros moved that were subtracted.
-pub(crate) fn zero_drift(data: &Dataset) -> Vec<Finding> {
+fn zero_drift(data: &Dataset) -> Vec<Finding> {
     let mut findings = Vec::new();
     for load in LOADS {
         let (Some(zero), Some(values)) = (mean_zero(data, load), data.values(load)) else { continue };

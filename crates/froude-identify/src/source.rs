@@ -9,6 +9,7 @@ use froude_records::finding::{Finding, Severity};
 use crate::error::IdentifyError;
 use crate::large::{self, Limits};
 use crate::law::ForceLaw;
+use crate::lint::counts::Counts;
 use crate::reduce::{Observations, reduce};
 use crate::regression::Scatter;
 use crate::seam::{Choice, Reduced, fit};
@@ -100,20 +101,26 @@ pub fn identify_laws(
     asked: Asked<'_>,
     progress: &dyn Fn(&str),
 ) -> Result<SourceResult, IdentifyError> {
-    let mut result = fit(reduced(campaign, source, observations, asked)?, &campaign.identify, progress)?;
-    // What is wrong with one of many models belongs to that model; the report shows the recommended one's.
-    if let Some(i) = result.recommendation.as_ref().map(|r| r.index) {
-        let found = diagnosis::findings(&result.models[i], &result.data, campaign, &result.estimates[i].diagnostics);
-        result.findings.extend(found.into_iter().map(|f| f.of_source(&source.name)));
-    }
-    Ok(result)
+    let counts = Counts::of(&observations.data);
+    let reduced = reduced(campaign, source, observations, &counts, asked)?;
+    Ok(with_recommended(fit(reduced, &campaign.identify, progress)?, campaign))
 }
 
-/// The rows with the laws that are asked for.
-fn reduced(
+/// What is wrong with one of many models belongs to that model; the report shows the recommended one's.
+pub(crate) fn with_recommended(mut result: SourceResult, campaign: &Campaign) -> SourceResult {
+    if let Some(i) = result.recommendation.as_ref().map(|r| r.index) {
+        let found = diagnosis::findings(&result.models[i], &result.data, campaign, &result.estimates[i].diagnostics);
+        result.findings.extend(found.into_iter().map(|f| f.of_source(&result.name)));
+    }
+    result
+}
+
+/// The rows with the laws that are asked for; `counts` are those of all rows, of which the observations may be few.
+pub(crate) fn reduced(
     campaign: &Campaign,
     source: &Source,
     observations: Observations,
+    counts: &Counts,
     asked: Asked<'_>,
 ) -> Result<Reduced, IdentifyError> {
     let Observations { data, n_read, mut findings, shared_errors, files } = observations;
@@ -121,7 +128,7 @@ fn reduced(
     findings.extend(found);
     let Asked { method, laws, scatter, choice, has_budget } = asked;
     validity.extend(validity::of_laws(&data, &laws));
-    findings.extend(lint::observations(&data, campaign, &laws));
+    findings.extend(lint::of_counted(counts, &data, campaign, &laws));
     findings.extend(no_budget(campaign, source, &shared_errors).filter(|_| !has_budget));
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));

@@ -38,8 +38,7 @@ impl Chunk {
     ) -> Result<Self, IdentifyError> {
         let all = conditioned(&table, campaign, source, &mut Vec::new(), has_speed)?;
         let keep = kept_rows(&all, source)?;
-        let data = if keep.len() < all.rows { all.subset(&keep) } else { all };
-        Ok(Self { table, data, keep })
+        Ok(Self { data: all.keeping(&keep), table, keep })
     }
 
     /// Numbers of the observations, each with its row of the table.

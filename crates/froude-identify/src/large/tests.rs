@@ -192,6 +192,24 @@ fn runs_that_repeat_a_motion_are_one_cluster_in_rows_and_in_chunks() {
     }
 }
 
+/// A propeller pushes: a load along the motion is no sign of a sensor that is mounted the other way round.
+#[test]
+fn a_load_that_has_another_cause_is_passed_over_in_rows_and_in_chunks() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = Pcg64::new(11, 0);
+    let mut text = "v_x [m/s],rate [rad/s],f_x [N]\n".to_owned();
+    for i in 0..2_000 {
+        let (u, rate, z): (f64, f64, f64) =
+            (0.05 * f64::from(1 + i % 40), f64::from(2 + i % 7), StandardNormal.sample(&mut rng));
+        let _ = writeln!(text, "{u},{rate},{:.6}", 0.5 * rate * rate - 2.0 * u * u + 0.1 * z);
+    }
+    std::fs::write(folder.path().join("pushed.csv"), text).unwrap();
+    let law = "models = [\"own\"]\n[[identify.model]]\nname = \"own\"\nf_x = \"T*rate^2 - D*v_x*abs(v_x)\"";
+    let campaign = written(folder.path(), "table = \"pushed.csv\"", law);
+    check(&campaign);
+    assert!(both(&campaign).iter().flat_map(|found| &found.findings).all(|f| f.code != "force-along-motion"));
+}
+
 #[test]
 fn a_parquet_table_gives_what_the_csv_gives() {
     let folder = tempfile::tempdir().unwrap();
