@@ -254,7 +254,7 @@ fn regressed(
     let mut fold = Fold::new(linear, &source.name, is_clustered);
     each(campaign, source, reads_speed(source, &reduced.laws), &mut |chunk| {
         let group = chunk.data.group.as_deref().unwrap_or_default();
-        let clusters = if is_clustered { facts.numbered(group) } else { Vec::new() };
+        let clusters = if is_clustered { facts.numbered(group) } else { vec![0; chunk.data.rows] };
         fold.take(&chunk.data, &clusters);
         Ok(())
     })?;

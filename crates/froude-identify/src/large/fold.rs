@@ -2,7 +2,7 @@
 
 use froude_fit as fit;
 use froude_fit::faer::{Col, Mat};
-use froude_fit::stream::{Accumulator, ClusterAccumulator, Factor, Shape, StreamError};
+use froude_fit::stream::{ClusterAccumulator, Factor, Shape, StreamError};
 
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
@@ -20,6 +20,7 @@ pub(super) struct Fold<'a> {
     /// Why a law is left out.
     failed: Vec<Option<IdentifyError>>,
     loads: Vec<Load>,
+    is_clustered: bool,
     /// Rows so far.
     n: usize,
 }
@@ -28,12 +29,7 @@ struct Load {
     name: String,
     /// Law, coefficient, and place of the load among those of the law.
     columns: Vec<(usize, usize, usize)>,
-    rows: Rows,
-}
-
-enum Rows {
-    All(Accumulator),
-    Clustered(ClusterAccumulator),
+    rows: ClusterAccumulator,
 }
 
 impl<'a> Fold<'a> {
@@ -51,30 +47,21 @@ impl<'a> Fold<'a> {
         }
         let load = |(name, columns): (String, Vec<(usize, usize, usize)>)| {
             let shape = Shape { regressors: columns.len(), responses: 1 };
-            let rows = if is_clustered {
-                Rows::Clustered(ClusterAccumulator::new(shape, MOST_CLUSTERS))
-            } else {
-                Rows::All(Accumulator::new(shape))
-            };
-            Load { name, columns, rows }
+            Load { name, columns, rows: ClusterAccumulator::new(shape, MOST_CLUSTERS) }
         };
         let failed = laws.iter().map(|_| None).collect();
-        Self { source, failed, loads: loads.into_iter().map(load).collect(), laws, n: 0 }
+        Self { source, failed, loads: loads.into_iter().map(load).collect(), laws, is_clustered, n: 0 }
     }
 
-    /// Takes in a chunk; `clusters` has the cluster of each row.
+    /// Takes in a chunk; `clusters` has the cluster of each row, and all are of one where there are none.
     pub(super) fn take(&mut self, data: &Dataset, clusters: &[u64]) {
         let n = data.rows;
         let designs: Vec<Mat<f64>> = (0..self.laws.len()).map(|l| self.design(l, data)).collect();
         for load in &mut self.loads {
             let of = |&(l, j, r): &(usize, usize, usize)| &designs[l].col_as_slice(j)[r * n..(r + 1) * n];
             let regressors: Vec<&[f64]> = load.columns.iter().map(of).collect();
-            let taken = match (data.values(&load.name), &mut load.rows) {
-                (None, _) => continue,
-                (Some(response), Rows::All(all)) => all.push(&regressors, &[response]),
-                (Some(response), Rows::Clustered(all)) => all.push(clusters, &regressors, &[response]),
-            };
-            let Err(error) = taken else { continue };
+            let Some(response) = data.values(&load.name) else { continue };
+            let Err(error) = load.rows.push(clusters, &regressors, &[response]) else { continue };
             let why = match error {
                 StreamError::NotFinite { row, value, .. } => format!("the load is {value} in observation {}", row + 1),
                 other => other.to_string(),
@@ -112,31 +99,31 @@ impl<'a> Fold<'a> {
 
     /// All rows, condensed, for each law.
     pub(super) fn finish(self) -> Vec<Result<Condensed, IdentifyError>> {
-        let Self { source, laws, mut failed, loads, .. } = self;
+        let Self { source, laws, mut failed, loads, is_clustered, .. } = self;
         let mut all: Vec<Triangles> = Vec::new();
         for Load { name, columns, rows } in loads {
-            let mut triangles = Triangles { name, columns, of: Vec::new(), is_clustered: false, observations: 0 };
-            match rows {
-                Rows::All(rows) => triangles.put(0, &rows.finish()),
-                Rows::Clustered(rows) => match rows.finish() {
-                    Ok(rows) => {
-                        triangles.is_clustered = true;
-                        rows.iter().for_each(|(of, factor)| triangles.put(of, factor));
+            let width = columns.len() + 1;
+            match rows.finish() {
+                Ok(factors) => {
+                    let observations = factors.iter().map(|(_, factor)| factor.rows()).sum();
+                    let row = |(cluster, factor): (u64, &Factor), i| {
+                        (cluster, (0..width).map(|k| factor.entry(i, k)).collect())
+                    };
+                    let of = factors.iter().flat_map(|of| (0..width).map(move |i| row(of, i))).collect();
+                    all.push(Triangles { name, columns, of, observations });
+                }
+                Err(error) => {
+                    let gives = |(_, law): &(usize, &&ForceLaw)| law.responses.contains(&name);
+                    for (l, law) in laws.iter().enumerate().filter(gives) {
+                        failed[l].get_or_insert_with(|| no_fit(law, source, error.to_string()));
                     }
-                    Err(error) => {
-                        let gives = |(_, law): &(usize, &&ForceLaw)| law.responses.contains(&triangles.name);
-                        for (l, law) in laws.iter().enumerate().filter(gives) {
-                            failed[l].get_or_insert_with(|| no_fit(law, source, error.to_string()));
-                        }
-                    }
-                },
+                }
             }
-            all.push(triangles);
         }
         let is_left: Vec<bool> = failed.iter().map(Option::is_none).collect();
         let condensed = |(l, failed): (usize, Option<IdentifyError>)| match failed {
             Some(error) => Err(error),
-            None => Ok(condensed(l, &laws, &is_left, &all)),
+            None => Ok(condensed(l, &laws, &is_left, &all, is_clustered)),
         };
         failed.into_iter().enumerate().map(condensed).collect()
     }
@@ -148,20 +135,11 @@ struct Triangles {
     columns: Vec<(usize, usize, usize)>,
     /// Cluster, columns and load of each row.
     of: Vec<(u64, Vec<f64>)>,
-    is_clustered: bool,
     observations: u64,
 }
 
-impl Triangles {
-    fn put(&mut self, cluster: u64, factor: &Factor) {
-        let width = self.columns.len() + 1;
-        self.observations += factor.rows();
-        self.of.extend((0..width).map(|i| (cluster, (0..width).map(|k| factor.entry(i, k)).collect())));
-    }
-}
-
 /// The rows of one law, with the columns of the others on them.
-fn condensed(l: usize, laws: &[&ForceLaw], is_left: &[bool], all: &[Triangles]) -> Condensed {
+fn condensed(l: usize, laws: &[&ForceLaw], is_left: &[bool], all: &[Triangles], is_clustered: bool) -> Condensed {
     let law = laws[l];
     let of_law: Vec<&Triangles> =
         law.responses.iter().filter_map(|load| all.iter().find(|triangles| triangles.name == *load)).collect();
@@ -178,7 +156,6 @@ fn condensed(l: usize, laws: &[&ForceLaw], is_left: &[bool], all: &[Triangles]) 
         }
         out
     };
-    let is_clustered = of_law.iter().any(|t| t.is_clustered);
     let cluster = |(_, _, (of, _)): &(usize, &Triangles, &(u64, Vec<f64>))| usize::try_from(*of).unwrap_or(usize::MAX);
     let problem = fit::Problem {
         design: design(l),
