@@ -16,6 +16,7 @@ use froude_records::body::{Shape, read_body};
 use froude_records::campaign::{Identify, SourceKind};
 use froude_records::estimate::{Estimate, Range};
 use froude_records::finding::Finding;
+use froude_records::texts::Texts;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
@@ -168,8 +169,8 @@ fn least_squares(source: &str, rows: &[Row], density_kg_m3: f64) -> Result<Sourc
     let mut data = Dataset {
         rows: n,
         configuration: rows.iter().map(|row| row.name.clone()).collect(),
-        setup: vec![String::new(); n],
-        run: vec![String::new(); n],
+        setup: Texts::repeated("", n),
+        run: Texts::repeated("", n),
         line: (2..2 + n).collect(),
         ..Dataset::default()
     };

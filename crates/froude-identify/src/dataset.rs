@@ -4,8 +4,9 @@
 //! fluid exerts on the body. `speed` and `angle` belong to the velocity by
 //! v = (U cos θ, −U sin θ), so that `angle ≡ atan2(−v_y, v_x)`.
 
+use froude_records::texts::Texts;
 use froude_records::units::Dimension;
-use indexmap::IndexMap;
+use indexmap::{IndexMap, IndexSet};
 
 use crate::formula::aliased;
 
@@ -26,13 +27,13 @@ pub struct Dataset {
     /// Numbers by name: `v_x`, `speed`, `angle`, `f_x`, `n_links`, `density`, …
     pub channels: IndexMap<String, Channel>,
     /// Configuration of each row; empty text where the table has none.
-    pub configuration: Vec<String>,
+    pub configuration: Texts,
     /// Setup of each row.
-    pub setup: Vec<String>,
+    pub setup: Texts,
     /// Run of each row.
-    pub run: Vec<String>,
+    pub run: Texts,
     /// Cluster that each row belongs to, by the source's `group` column.
-    pub group: Option<Vec<String>>,
+    pub group: Option<Texts>,
     /// What its clusters are.
     pub grouped_by: GroupedBy,
     /// Line of each row in its file.
@@ -221,7 +222,6 @@ impl Dataset {
     /// The rows named by `keep`, in that order.
     #[must_use]
     pub fn subset(&self, keep: &[usize]) -> Self {
-        let text = |column: &[String]| keep.iter().filter_map(|&i| column.get(i).cloned()).collect();
         Self {
             rows: keep.len(),
             channels: self
@@ -232,10 +232,10 @@ impl Dataset {
                     (name.clone(), Channel { values, dimension: c.dimension })
                 })
                 .collect(),
-            configuration: text(&self.configuration),
-            setup: text(&self.setup),
-            run: text(&self.run),
-            group: self.group.as_ref().map(|g| text(g)),
+            configuration: self.configuration.subset(keep),
+            setup: self.setup.subset(keep),
+            run: self.run.subset(keep),
+            group: self.group.as_ref().map(|group| group.subset(keep)),
             grouped_by: self.grouped_by,
             line: keep.iter().filter_map(|&i| self.line.get(i).copied()).collect(),
             headers: self.headers.clone(),
@@ -274,17 +274,14 @@ impl Dataset {
 
 /// Distinct texts in order of first appearance.
 #[must_use]
-pub fn distinct(texts: &[String]) -> Vec<String> {
-    let mut seen = indexmap::IndexSet::new();
-    for t in texts {
-        seen.insert(t.clone());
-    }
-    seen.into_iter().collect()
+pub fn distinct<'a>(texts: impl IntoIterator<Item = &'a String>) -> Vec<String> {
+    let seen: IndexSet<&String> = texts.into_iter().collect();
+    seen.into_iter().cloned().collect()
 }
 
 /// Index of each text among the distinct ones.
 #[must_use]
-pub fn labels(texts: &[String]) -> Vec<usize> {
-    let names: indexmap::IndexSet<&String> = texts.iter().collect();
-    texts.iter().map(|t| names.get_index_of(t).unwrap_or(0)).collect()
+pub fn labels<'a>(texts: impl IntoIterator<Item = &'a String>) -> Vec<usize> {
+    let mut seen = IndexSet::new();
+    texts.into_iter().map(|text| seen.insert_full(text).0).collect()
 }

@@ -246,7 +246,7 @@ fn decided_by_one(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
         let name = &model.specs[j].name;
         let numbers = format!("{}, {name}: {} degrees of freedom", model.law.name, plain(dof, 2));
         if model.is_refused(j) {
-            let groups = data.group.as_ref().map(|group| distinct(group)).unwrap_or_default();
+            let groups = data.group.as_ref().map(distinct).unwrap_or_default();
             let group = groups.get(which).cloned().unwrap_or_default();
             let is_in_time = data.values("time").is_some() && data.rows >= 2 * data.clusters();
             let advice = if is_in_time {

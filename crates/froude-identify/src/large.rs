@@ -253,8 +253,8 @@ fn regressed(
     let linear: Vec<&ForceLaw> = reduced.laws.iter().filter(|law| !law.is_nonlinear()).collect();
     let mut fold = Fold::new(linear, &source.name, is_clustered);
     each(campaign, source, reads_speed(source, &reduced.laws), &mut |chunk| {
-        let group = chunk.data.group.as_deref().unwrap_or_default();
-        let clusters = if is_clustered { facts.numbered(group) } else { vec![0; chunk.data.rows] };
+        let group = chunk.data.group.as_ref().filter(|_| is_clustered);
+        let clusters = group.map_or_else(|| vec![0; chunk.data.rows], |group| facts.numbered(group));
         fold.take(&chunk.data, &clusters);
         Ok(())
     })?;

@@ -246,11 +246,8 @@ pub(crate) fn is_enough(clusters: &IndexMap<String, String>) -> bool {
 
 /// Puts the cluster of each row in the place of its group.
 pub(crate) fn rename(data: &mut Dataset, clusters: &IndexMap<String, String>) {
-    for group in data.group.iter_mut().flatten() {
-        if let Some(of) = clusters.get(group) {
-            group.clone_from(of);
-        }
-    }
+    let of = |group: &String| clusters.get(group).unwrap_or(group).clone();
+    data.group = data.group.as_ref().map(|groups| groups.iter().map(of).collect());
     data.grouped_by = GroupedBy::Motion;
     if let Some(all) = &mut data.sample {
         all.clusters = count(clusters);

@@ -11,6 +11,7 @@ use froude_records::nearest::meant;
 use froude_records::plausible;
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration, read_table, read_table_with_blanks};
 use froude_records::text::counted;
+use froude_records::texts::Texts;
 use froude_records::units::Dimension;
 
 use crate::dataset::{Channel, Dataset, GroupedBy, LOADS};
@@ -217,9 +218,9 @@ fn not_a_table(source: &Source, input: &Input) -> IdentifyError {
 /// The table's columns as channels, with velocity from speed and angle or the other way round.
 fn dataset(table: &Table, source: &Source, has_speed: bool) -> Result<Dataset, IdentifyError> {
     let mut data = Dataset { rows: table.n_rows, ..Dataset::default() };
-    let text = |name: &str| -> Vec<String> {
+    let text = |name: &str| -> Texts {
         table.columns.iter().find(|c| c.name == name).map_or_else(
-            || vec![String::new(); table.n_rows],
+            || Texts::repeated("", table.n_rows),
             |c| match &c.data {
                 ColumnData::Text(t) => t.clone(),
                 ColumnData::Number { si, .. } => si.iter().map(f64::to_string).collect(),

@@ -22,6 +22,7 @@ use froude_fit::ratio::{Form, above};
 use froude_fit::residuals::Residuals;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::p_equation;
+use froude_records::texts::Texts;
 
 use crate::dataset::{Dataset, distinct, labels};
 use crate::motions;
@@ -252,7 +253,7 @@ fn offset(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
     let groupings = groupings(data);
     // Columns that name the same rows are one.
     let distinct_ones: std::collections::BTreeSet<Vec<usize>> =
-        groupings.iter().map(|(_, texts)| labels(texts)).collect();
+        groupings.iter().map(|(_, texts)| labels(*texts)).collect();
     let level = ALARM_OF_FEW / (loads * distinct_ones.len().max(1) as f64);
     for (by, texts) in groupings {
         let group = labels(texts);
@@ -291,8 +292,8 @@ fn offset(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
 }
 
 /// Columns that may hold what rows share.
-fn groupings(data: &Dataset) -> Vec<(&'static str, &Vec<String>)> {
-    let named = |texts: &&Vec<String>| texts.iter().any(|t| !t.is_empty());
+fn groupings(data: &Dataset) -> Vec<(&'static str, &Texts)> {
+    let named = |texts: &&Texts| texts.iter().any(|t| !t.is_empty());
     let group = data.group.iter().map(|group| ("group", group));
     [("setup", &data.setup), ("run", &data.run)].into_iter().chain(group).filter(|(_, texts)| named(texts)).collect()
 }

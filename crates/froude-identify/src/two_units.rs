@@ -257,7 +257,7 @@ mod tests {
         }
         data.rows = speed.len();
         for text in [&mut data.configuration, &mut data.setup, &mut data.run] {
-            *text = vec![String::new(); data.rows];
+            *text = vec![String::new(); data.rows].into();
         }
         data.put("speed", speed, Dimension::SPEED);
         data.put("angle", angle, Dimension::ANGLE);

@@ -160,7 +160,7 @@ fn f4_campaign(kind: &str, source: &str, identify: &str, simulate: &str) -> (tem
     std::fs::write(folder.path().join("c.toml"), &text).unwrap();
     let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
     let mut data = froude_identify::simulate::observations(&campaign, &campaign.sources[0], 0).unwrap();
-    data.setup = vec!["mount".to_owned(); data.rows];
+    data.setup = vec!["mount".to_owned(); data.rows].into();
     let table = froude_identify::simulate::table(&data, &campaign.sources[0]).unwrap();
     froude_records::csv_table::write_csv(&table, &folder.path().join("t.csv")).unwrap();
     (folder, text)

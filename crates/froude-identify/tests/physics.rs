@@ -159,7 +159,7 @@ fn an_angle_offset_is_found_from_pairs_of_opposite_angle_and_taken_out_of_the_cr
     let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
     let mut data = froude_identify::simulate::observations(&campaign, &campaign.sources[0], 0).unwrap();
     // The sensor is mounted once: one setup.
-    data.setup = vec!["mount".to_owned(); data.rows];
+    data.setup = vec!["mount".to_owned(); data.rows].into();
     let table = froude_identify::simulate::table(&data, &campaign.sources[0]).unwrap();
     froude_records::csv_table::write_csv(&table, &folder.path().join("t.csv")).unwrap();
     let result = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();

@@ -30,8 +30,8 @@ fn data() -> Dataset {
     let n = rows().count();
     let mut data = Dataset {
         rows: n,
-        configuration: vec![String::new(); n],
-        setup: vec![String::new(); n],
+        configuration: vec![String::new(); n].into(),
+        setup: vec![String::new(); n].into(),
         run: rows().map(|(run, _)| run.to_string()).collect(),
         group: Some(rows().map(|(run, _)| run.to_string()).collect()),
         line: (1..=n).collect(),

@@ -402,7 +402,7 @@ pub(crate) fn column(
             } else if cells.iter().all(|cell| fast_float2::parse::<f64, _>(cell).is_ok()) {
                 return Err(missing_unit(&table.path, name, headers, header_place));
             }
-            Column { name: name.clone(), data: ColumnData::Text(cells) }
+            Column { name: name.clone(), data: ColumnData::Text(cells.into()) }
         }
         (Want::Mapped(_) | Want::LeftOut, _) => return Ok(None),
     }))

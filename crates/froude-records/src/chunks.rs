@@ -176,7 +176,9 @@ mod tests {
             for (column, more) in all.columns.iter_mut().zip(chunk.columns) {
                 match (&mut column.data, more.data) {
                     (ColumnData::Number { si, .. }, ColumnData::Number { si: more, .. }) => si.extend(more),
-                    (ColumnData::Text(texts), ColumnData::Text(more)) => texts.extend(more),
+                    (ColumnData::Text(texts), ColumnData::Text(more)) => {
+                        more.iter().for_each(|text| texts.push(text.clone()));
+                    }
                     _ => panic!("a column changes its kind"),
                 }
             }

@@ -62,6 +62,7 @@ pub mod sidecar;
 pub mod table;
 mod table_file;
 pub mod text;
+pub mod texts;
 pub mod unfinished;
 pub mod units;
 pub mod write;

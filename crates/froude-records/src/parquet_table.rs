@@ -587,7 +587,7 @@ fn write_columns(table: &Table, file: impl std::io::Write + Send) -> Result<(), 
             ColumnData::Text(cells) => {
                 let values: Vec<ByteArray> = cells.iter().map(|cell| ByteArray::from(cell.as_str())).collect();
                 target.typed::<ByteArrayType>().write_batch(&values, None, None)?;
-                Raw::Texts(cells.clone())
+                Raw::Texts(cells.iter().cloned().collect())
             }
         };
         target.close()?;

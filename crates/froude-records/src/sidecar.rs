@@ -18,6 +18,7 @@ use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};
 use crate::section_values::one_of;
 use crate::table::{Column, ColumnData, is_text_column, known_dimension};
+use crate::texts::Texts;
 use crate::units::{Dimension, Quantity, Unit, is_plausible, parse_unit};
 
 const LARGEST_BYTES: u64 = 1 << 20;
@@ -282,7 +283,7 @@ impl Sidecar {
                         advice: fill_or_delete(),
                     });
                 }
-                return Ok(ColumnData::Text(cells));
+                return Ok(ColumnData::Text(cells.into()));
             }
             (Raw::Texts(_), true) => {
                 return Err(RecordError::ColumnKind {
@@ -303,7 +304,7 @@ impl Sidecar {
                 let factor = unit.as_ref().map_or(1.0, |unit| unit.factor);
                 self.scaled(mapping, scale, factor, &values, done)?
             }
-            (None, None) => ColumnData::Text(Vec::new()),
+            (None, None) => ColumnData::Text(Texts::default()),
         };
         if let ColumnData::Number { si, .. } = &data
             && let Some(row) = si.iter().position(|v| !is_plausible(*v))

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
 use crate::plausible;
+use crate::texts::Texts;
 use crate::units::{Dimension, Unit};
 
 pub use crate::table_file::{prepare_table, read_table, read_table_with_blanks, sidecar_of};
@@ -50,7 +51,7 @@ pub enum ColumnData {
         si: Vec<f64>,
     },
     /// Texts.
-    Text(Vec<String>),
+    Text(Texts),
 }
 
 impl Column {
@@ -95,7 +96,7 @@ impl Table {
     /// # Errors
     ///
     /// No such column, or numbers.
-    pub fn text(&self, name: &str) -> Result<&[String], RecordError> {
+    pub fn text(&self, name: &str) -> Result<&Texts, RecordError> {
         match &self.column(name)?.data {
             ColumnData::Text(texts) => Ok(texts),
             ColumnData::Number { .. } => Err(self.kind(name, "numbers", "text")),

@@ -11,6 +11,7 @@ use froude_identify::validity::{ALONG, OFF_AXIS};
 use froude_records::campaign::{BodyAxis, SourceKind};
 use froude_records::estimate::{Attitude, Frame, Measured, Range};
 use froude_records::text::counted;
+use froude_records::texts::Texts;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
@@ -63,11 +64,11 @@ fn observations(points: &[Point], setup: &DragSetup) -> Dataset {
     let strut = setup.strut_n_s2_m2.map_or(0.0, |s| s.value);
     let speed: Vec<f64> = points.iter().map(|p| p.speed_m_s).collect();
     let load = points.iter().map(|p| strut * p.speed_m_s * p.speed_m_s.abs() - p.force_n).collect();
-    let texts = |of: &dyn Fn(&Point) -> String| points.iter().map(of).collect::<Vec<_>>();
+    let texts = |of: &dyn Fn(&Point) -> String| points.iter().map(of).collect();
     let mut data = Dataset {
         rows: points.len(),
-        configuration: vec![String::new(); points.len()],
-        setup: vec![String::new(); points.len()],
+        configuration: Texts::repeated("", points.len()),
+        setup: Texts::repeated("", points.len()),
         run: texts(&|p| p.run.clone()),
         group: Some(texts(&|p| p.pair.to_string())),
         line: (1..=points.len()).collect(),

@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use froude_records::campaign::{Campaign, Source};
 use froude_records::table::{ColumnData, Table};
+use froude_records::texts::Texts;
 use froude_records::units::Dimension;
 use indexmap::{IndexMap, IndexSet};
 
@@ -145,10 +146,9 @@ impl Facts {
         }
         // Where the table names none, all rows are of the one without a name.
         let is_named = table.columns.iter().any(|column| column.name == "configuration");
-        let configurations =
-            if is_named { &data.configuration[..] } else { data.configuration.get(..1).unwrap_or_default() };
+        let configurations = data.configuration.iter().take(if is_named { data.rows } else { 1 });
         add(&mut self.configurations, configurations, MOST_CONFIGURATIONS, source, "configurations")?;
-        add(&mut self.groups, data.group.as_deref().unwrap_or_default(), MOST_CLUSTERS, source, "clusters of `group`")
+        add(&mut self.groups, data.group.iter().flatten(), MOST_CLUSTERS, source, "clusters of `group`")
     }
 
     /// Whether no row can be a copy of another: a column rises from each to the next.
@@ -168,7 +168,7 @@ impl Facts {
     }
 
     /// The number of the cluster of each group.
-    pub(super) fn numbered(&self, groups: &[String]) -> Vec<u64> {
+    pub(super) fn numbered(&self, groups: &Texts) -> Vec<u64> {
         let number = |group: &String| self.groups.get_index_of(self.merged.get(group).unwrap_or(group)).unwrap_or(0);
         groups.iter().map(|group| number(group) as u64).collect()
     }
@@ -198,9 +198,9 @@ impl Facts {
 }
 
 /// Distinct texts, up to so many.
-fn add(
+fn add<'a>(
     to: &mut IndexSet<String>,
-    texts: &[String],
+    texts: impl Iterator<Item = &'a String>,
     most: usize,
     source: &Source,
     what: &str,

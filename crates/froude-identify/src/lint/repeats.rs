@@ -1,10 +1,12 @@
 //! Rows that repeat a setting, and rows that are copies.
 
+use std::collections::BTreeSet;
+
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::percent;
 use indexmap::IndexMap;
 
-use crate::dataset::{Dataset, LOADS, distinct};
+use crate::dataset::{Dataset, LOADS};
 
 /// How well rigs repeat a setting, as part of the largest: 2 mm/s in 1 m/s moves a drag by 0.4 % there.
 pub(crate) const REPEATS_WITHIN: f64 = 2e-3;
@@ -221,6 +223,5 @@ pub(crate) fn within(values: &[f64], part: f64) -> Vec<usize> {
 }
 
 pub(crate) fn distinct_usize(labels: &[usize]) -> usize {
-    let texts: Vec<String> = labels.iter().map(usize::to_string).collect();
-    distinct(&texts).len()
+    labels.iter().collect::<BTreeSet<_>>().len()
 }

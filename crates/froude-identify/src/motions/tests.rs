@@ -27,11 +27,11 @@ fn logged(runs: &[Run], noise: f64) -> Dataset {
         }
     }
     data.rows = time.len();
-    data.configuration = vec![String::new(); data.rows];
+    data.configuration = vec![String::new(); data.rows].into();
     data.put("time", time, Dimension::ONE);
     data.put("v_x", u, Dimension::SPEED);
     data.put("v_y", v, Dimension::SPEED);
-    data.group = Some(group);
+    data.group = Some(group.into());
     data
 }
 

@@ -76,9 +76,9 @@ pub fn data(channels: Channels, axis: &str) -> Dataset {
     let n = channels.run.len();
     let [load, speed, acceleration, _] = names(axis);
     let mut out = Dataset { rows: n, ..Dataset::default() };
-    out.setup.clone_from(&channels.configuration);
-    out.configuration = channels.configuration;
-    out.run = channels.run;
+    out.configuration = channels.configuration.into();
+    out.setup = out.configuration.clone();
+    out.run = channels.run.into();
     out.line = (1..=n).collect();
     let across = if axis == "x" { "v_y" } else { "v_x" };
     out.put(&speed, channels.speed_m_s, Dimension::SPEED);

@@ -9,6 +9,7 @@ use froude_records::estimate::{
     Range as Stated, ReferencePoint, SharedError, Signs, Status, TypeA,
 };
 use froude_records::finding::{Finding, Severity};
+use froude_records::texts::Texts;
 use froude_records::units::{Dimension, Unit};
 use indexmap::IndexMap;
 
@@ -88,8 +89,8 @@ fn rows(fit: &DecayFit) -> Dataset {
     let n = fit.rows.len();
     let mut data = Dataset {
         rows: n,
-        configuration: vec![String::new(); n],
-        setup: vec![String::new(); n],
+        configuration: Texts::repeated("", n),
+        setup: Texts::repeated("", n),
         run: fit.rows.iter().map(|row| row.run.clone()).collect(),
         line: (1..=n).collect(),
         ..Dataset::default()

@@ -10,6 +10,7 @@ use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{Channel, FORCED_OSCILLATION, ImportedRun, Role};
 use froude_records::table::links_of_configuration;
+use froude_records::texts::Texts;
 use froude_records::units::Dimension;
 
 use super::forces::{Drag, LOAD};
@@ -222,8 +223,8 @@ pub fn setup_of(
 /// An unknown law, or one that cannot be used here.
 pub fn drags(campaign: &Campaign, source: &Source, setup: &Setup) -> Result<Vec<Drag>, MethodError> {
     let mut data = Dataset { rows: 1, ..Dataset::default() };
-    data.configuration = vec![String::new()];
-    (data.setup, data.run, data.line) = (vec![String::new()], vec![String::new()], vec![1]);
+    data.configuration = Texts::repeated("", 1);
+    (data.setup, data.run, data.line) = (data.configuration.clone(), data.configuration.clone(), vec![1]);
     data.put("v_x", vec![0.1], Dimension::SPEED);
     data.put("v_y", vec![0.1], Dimension::SPEED);
     data.speed_and_angle_from_velocity();
