@@ -1,6 +1,5 @@
 //! The least-squares problem of a law: columns, response, weights.
 
-use faer::Mat;
 use froude_fit as fit;
 use froude_records::campaign::{AngleOffset, Identify};
 
@@ -88,26 +87,25 @@ pub(crate) fn problem(
 ) -> Result<fit::Problem, IdentifyError> {
     let n = data.rows;
     let p = law.coefficients.len();
-    let mut slopes = law.regressors(data, &beta[..p])?;
-    let mut current = law.predict(data, &beta[..p])?;
+    let mut design = law.regressors(data, &beta[..p])?;
+    // What a linear law gives at the current coefficients is asked by the angle offset alone.
+    let is_asked = law.is_nonlinear() || !setups.names.is_empty();
+    let mut current = if is_asked { law.predict(data, &beta[..p])? } else { Vec::new() };
     if law.in_logarithms() {
         for i in 0..measured.len() {
             for j in 0..p {
-                slopes[(i, j)] /= current[i];
+                design[(i, j)] /= current[i];
             }
             current[i] = current[i].abs().ln();
         }
     }
-    let mut design = Mat::zeros(measured.len(), specs.len());
-    for i in 0..measured.len() {
-        for j in 0..p {
-            design[(i, j)] = slopes[(i, j)];
-        }
+    if specs.len() > p {
+        design.resize_with(measured.len(), specs.len(), |_, _| 0.0);
     }
     let mut response = measured.to_vec();
     if law.is_nonlinear() {
         for i in 0..response.len() {
-            let linear: f64 = (0..p).map(|j| slopes[(i, j)] * beta[j]).sum();
+            let linear: f64 = (0..p).map(|j| design[(i, j)] * beta[j]).sum();
             response[i] += linear - current[i];
         }
     }

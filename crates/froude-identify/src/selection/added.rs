@@ -93,11 +93,19 @@ pub(crate) fn widened(
     }
     let free = fit::complement(&problem, &law.options, &of_other)?;
     let (p, m) = (problem.n_coefficients(), free.ncols());
+    let weight = |i: usize| problem.weight.as_ref().map_or(1.0, |w| w[i]);
+    let along = Mat::from_fn(m, of_other.ncols(), |k, j| {
+        (0..free.nrows()).map(|i| free[(i, k)] * weight(i) * of_other[(i, j)]).sum()
+    });
+    drop(of_other);
     let mut names = problem.names.clone();
     names.extend((0..m).map(|k| format!("added {k}")));
     let design =
         Mat::from_fn(problem.n_rows(), p + m, |i, j| if j < p { problem.design[(i, j)] } else { free[(i, j - p)] });
-    let larger = fit::Problem { design, names, ..problem };
+    // Columns of a long table are not kept twice.
+    drop(free);
+    let mut larger = problem;
+    (larger.design, larger.names) = (design, names);
     let mut options = law.options.unconstrained();
     if p == 0 {
         let observations = other.law.responses.iter().position(|own| own == load);
@@ -134,10 +142,6 @@ pub(crate) fn widened(
     for part in declared([law, other], load, data, settings, (&larger, &fitted))? {
         covariance += Mat::from_fn(m, m, |a, b| part.covariance[(p + a, p + b)]);
     }
-    let weight = |i: usize| larger.weight.as_ref().map_or(1.0, |w| w[i]);
-    let along = Mat::from_fn(m, of_other.ncols(), |k, j| {
-        (0..free.nrows()).map(|i| free[(i, k)] * weight(i) * of_other[(i, j)]).sum()
-    });
     Some(Widened { fitted, along, gamma, covariance, dof })
 }
 
@@ -240,14 +244,16 @@ fn beside(law: &ModelFit, other: &ModelFit, load: &str, data: &Dataset) -> Optio
         let of = |i: usize, j: usize| if is_of_load(i) { columns[(i, j)] } else { 0.0 };
         return Some((law.problem.clone(), Mat::from_fn(columns.nrows(), columns.ncols(), of)));
     }
-    let slopes = other.law.regressors(data, other.law_coefficients()).ok()?;
-    // d ln|F| = dF/F.
-    let force = if law.law.in_logarithms() { law.law.predict(data, law.law_coefficients()).ok()? } else { Vec::new() };
-    let of = |i: usize, j: usize| {
-        let slope = slopes[(of_other * n + i % n, j)];
-        if is_of_load(i) { slope / force.get(i).copied().unwrap_or(1.0) } else { 0.0 }
+    let mut columns = {
+        let slopes = other.law.regressors(data, other.law_coefficients()).ok()?;
+        // d ln|F| = dF/F.
+        let force =
+            if law.law.in_logarithms() { law.law.predict(data, law.law_coefficients()).ok()? } else { Vec::new() };
+        Mat::from_fn(law.problem.n_rows(), slopes.ncols(), |i, j| {
+            let slope = slopes[(of_other * n + i % n, j)];
+            if is_of_load(i) { slope / force.get(i).copied().unwrap_or(1.0) } else { 0.0 }
+        })
     };
-    let mut columns = Mat::from_fn(law.problem.n_rows(), slopes.ncols(), of);
     let problem = match &law.whitened {
         Some(whitened) => {
             whitened.whiten(&mut columns);

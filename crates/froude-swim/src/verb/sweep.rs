@@ -260,7 +260,7 @@ pub(super) fn table(rows: &[Row], path: &Path) -> Table {
         rows.iter().any(|row| row.numbers[j].is_finite()).then_some(column)
     };
     let mut columns: Vec<Column> = COLUMNS.iter().enumerate().filter_map(of).collect();
-    let status = rows.iter().map(|row| row.status.name().to_owned()).collect();
+    let status: Vec<String> = rows.iter().map(|row| row.status.name().to_owned()).collect();
     columns.push(Column { name: "status".to_owned(), data: ColumnData::Text(status.into()) });
     let line_of_row = (1..=rows.len()).collect();
     Table::of(path.to_owned(), columns, line_of_row)
