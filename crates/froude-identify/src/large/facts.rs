@@ -17,9 +17,10 @@ use crate::error::IdentifyError;
 use crate::large::limits::{MOST_CLUSTERS, MOST_CONFIGURATIONS, refusal};
 use crate::lint;
 use crate::lint::counts::Counts;
+use crate::lint::motion::apart;
 use crate::reduce::{conditioned, kept_rows, zeros_of};
 use crate::source::models::MOMENTS;
-use crate::validity::{self, AT_REST, off_axis, per_observation};
+use crate::validity::{AT_REST, off_axis, per_observation};
 
 /// A chunk of a table: its rows, and the observations that are kept of them.
 pub(super) struct Chunk {
@@ -53,10 +54,6 @@ impl Chunk {
             ColumnData::Number { si, .. } => Some(si.as_slice()),
             ColumnData::Text(_) => None,
         })
-    }
-
-    fn has_velocity(&self) -> bool {
-        self.read("v_x").is_some() || self.read("v_y").is_some()
     }
 }
 
@@ -120,19 +117,19 @@ impl Facts {
                 self.ends.entry(format!("read {name}")).or_default().take(values.iter().copied().enumerate(), table);
             }
         }
-        for (name, channel) in &data.channels {
-            let ends = self.ends.entry(name.clone()).or_default();
-            ends.take(chunk.placed(&channel.values), table);
-        }
+        let mut put = |name: String, values: &[f64]| {
+            self.ends.entry(name).or_default().take(chunk.placed(values), table);
+        };
+        data.channels.iter().for_each(|(name, channel)| put(name.clone(), &channel.values));
         for load in LOADS {
             if let [Some(before), Some(after)] = zeros_of(data, load) {
                 let drift: Vec<f64> = before.iter().zip(after).map(|(b, a)| a - b).collect();
-                self.ends.entry(format!("drift of {load}")).or_default().take(chunk.placed(&drift), table);
+                put(format!("drift of {load}"), &drift);
             }
         }
-        if data.channels.contains_key("v_z") {
-            let across = across(data, "v_x", "v_z");
-            self.ends.entry("across v_z".to_owned()).or_default().take(chunk.placed(&across), table);
+        if let (Some(u), Some(w)) = (data.values("v_x"), data.values("v_z")) {
+            let across: Vec<f64> = u.iter().zip(w).map(|(u, w)| u.hypot(*w)).collect();
+            put("across v_z".to_owned(), &across);
         }
         if let Some(density) = data.values("density") {
             self.density = density.iter().fold(self.density, |sum, rho| sum + rho);
@@ -215,12 +212,6 @@ fn add<'a>(
     if to.len() > most { Err(refusal(source, &format!("more than {most} {what}"))) } else { Ok(()) }
 }
 
-/// Speed in the plane of two axes.
-fn across(data: &Dataset, x: &str, y: &str) -> Vec<f64> {
-    let (u, v) = (data.values(x).unwrap_or_default(), data.values(y).unwrap_or_default());
-    u.iter().zip(v).map(|(u, v)| u.hypot(*v)).collect()
-}
-
 /// The second pass.
 #[derive(Default)]
 pub(super) struct Seconds {
@@ -231,56 +222,42 @@ pub(super) struct Seconds {
 impl Seconds {
     pub(super) fn take(&mut self, chunk: &Chunk, facts: &Facts, campaign: &Campaign) {
         let Chunk { table, data, keep } = chunk;
-        let mut put = |name: &str, numbers: &mut dyn Iterator<Item = (usize, f64)>| {
-            self.ends.entry(name.to_owned()).or_default().take(numbers, table);
-        };
-        let fastest = facts.largest("speed");
+        let (velocity, fastest) = (data.velocities_m_s(), facts.largest("speed"));
+        // A row that does not count is no number.
+        let mut all: Vec<(String, Vec<f64>)> = Vec::new();
         if let Some(speed) = data.values("speed") {
-            let faster = |part: f64| (0..data.rows).filter(move |&i| speed[i].abs() > part * fastest);
+            let mut put = |name: &str, part: f64, at: &dyn Fn(usize) -> f64| {
+                let of = |i: usize| if speed[i].abs() > part * fastest { at(i) } else { f64::NAN };
+                all.push((name.to_owned(), (0..data.rows).map(of).collect()));
+            };
             if let Some(angle) = data.values("angle") {
-                put("angle", &mut faster(AT_REST).map(|i| (keep[i], angle[i])));
-                let none = vec![0.0; data.rows];
-                let along = |name| data.values(name).unwrap_or(&none);
-                let (v_x, v_y) = (along("v_x"), along("v_y"));
-                let off: Vec<(usize, f64)> = faster(AT_REST).map(|i| (keep[i], off_axis([v_x[i], v_y[i]]))).collect();
-                put("off axis", &mut off.iter().copied());
-                put("askew", &mut off.iter().map(|(i, angle)| (*i, (2.0 * angle).sin())));
+                put("angle", AT_REST, &|i| angle[i]);
+                put("off axis", AT_REST, &|i| off_axis(velocity(i)));
+                put("askew", AT_REST, &|i| (2.0 * off_axis(velocity(i))).sin());
             }
-            if let Some(v_x) = data.values(validity::ALONG) {
-                put("along", &mut faster(AT_REST).map(|i| (keep[i], v_x[i])));
-            }
-            if chunk.has_velocity() {
-                let stated_speed = chunk.read("speed");
-                if let (Some(stated), Some(derived)) = (chunk.read("angle"), data.values("angle")) {
-                    let apart = |i: usize| {
-                        lint::motion::angles_apart(stated[keep[i]], stated_speed.map(|u| u[keep[i]]), derived[i])
-                    };
-                    put("angles apart", &mut faster(lint::motion::AT_REST).map(|i| (keep[i], apart(i))));
-                }
-                if let Some(stated) = stated_speed {
-                    put(
-                        "speeds apart",
-                        &mut (0..data.rows).map(|i| (keep[i], lint::motion::speeds_apart(stated[keep[i]], speed[i]))),
-                    );
-                }
-            }
+            put("along", AT_REST, &|i| velocity(i)[0]);
             for load in ["f_x", "f_y", "f_z"] {
                 if let Some(f) = data.values(load) {
-                    put(&format!("near {load}"), &mut faster(lint::NEAR_LARGEST_SPEED).map(|i| (keep[i], f[i])));
+                    put(&format!("near {load}"), lint::NEAR_LARGEST_SPEED, &|i| f[i]);
                 }
             }
+            let [angles, speeds] = apart(table, keep, data);
+            if let Some(apart) = angles {
+                put("angles apart", lint::motion::AT_REST, &|i| apart[i]);
+            }
+            all.extend(speeds.map(|apart| ("speeds apart".to_owned(), apart)));
         }
         for (moment, along, athwart, _) in MOMENTS {
-            if let (true, Some(u), Some(v)) =
-                (data.channels.contains_key(moment), data.values(along), data.values(athwart))
-            {
+            let (Some(u), Some(v)) = (data.values(along), data.values(athwart)) else { continue };
+            if data.channels.contains_key(moment) {
                 let largest = if athwart == "v_z" { facts.largest("across v_z") } else { fastest };
-                let askew = (0..data.rows).filter(|&i| v[i].abs() > 1e-9 * largest);
-                put(&format!("angle of {athwart}"), &mut askew.map(|i| (keep[i], v[i].abs().atan2(u[i]))));
+                let of = |(u, v): (&f64, &f64)| if v.abs() > 1e-9 * largest { v.abs().atan2(*u) } else { f64::NAN };
+                all.push((format!("angle of {athwart}"), u.iter().zip(v).map(of).collect()));
             }
         }
-        for (name, values) in per_observation(data, campaign) {
-            put(name, &mut chunk.placed(&values));
+        all.extend(per_observation(data, campaign).into_iter().map(|(name, values)| (name.to_owned(), values)));
+        for (name, values) in all {
+            self.ends.entry(name).or_default().take(chunk.placed(&values), table);
         }
         self.counts.take(data, &|name| facts.range(name));
     }

@@ -83,7 +83,7 @@ impl Ends {
     /// Takes in numbers of a chunk, each with its row there.
     pub(super) fn take(&mut self, numbers: impl Iterator<Item = (usize, f64)>, table: &Table) {
         let mut found: Option<[(f64, usize, usize); 2]> = None;
-        for (i, x) in numbers {
+        for (i, x) in numbers.filter(|(_, x)| !x.is_nan()) {
             for (end, sign) in found.get_or_insert([(x, i, i); 2]).iter_mut().zip([1.0, -1.0]) {
                 if sign * x < sign * end.0 {
                     *end = (x, i, i);

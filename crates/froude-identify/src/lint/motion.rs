@@ -19,21 +19,16 @@ pub(crate) const AT_REST: f64 = 0.05;
 /// `rows` of the table are those of `data`, in its order.
 #[must_use]
 pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> Vec<Finding> {
-    let read = |name: &str| -> Option<Vec<f64>> {
-        table.columns.iter().find(|c| c.name == name).and_then(|c| match &c.data {
-            ColumnData::Number { si, .. } => Some(rows.iter().map(|&i| si[i]).collect()),
-            ColumnData::Text(_) => None,
-        })
+    let has = |name: &str| table.columns.iter().any(|c| c.name == name);
+    let worst = |apart: &[f64], rows: Vec<usize>| {
+        rows.into_iter().rev().map(|i| (apart[i], i)).max_by(|a, b| a.0.total_cmp(&b.0))
     };
+    let speed = data.values("speed").unwrap_or_default();
+    let [angles, speeds] = apart(table, rows, data);
     let mut findings = Vec::new();
-    let has_velocity = read("v_x").is_some() || read("v_y").is_some();
-    if has_velocity && let (Some(stated), Some(derived)) = (read("angle"), data.values("angle")) {
-        // At rest there is no angle; a turn more is the same one.
-        let speed = data.values("speed").unwrap_or_default();
-        let moving = moving(speed, AT_REST);
-        let stated_speed = read("speed");
-        let apart = |i: usize| angles_apart(stated[i], stated_speed.as_ref().map(|u| u[i]), derived[i]);
-        let worst = moving.into_iter().rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some(apart) = angles {
+        // At rest there is no angle.
+        let worst = worst(&apart, moving(speed, AT_REST));
         if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > ANGLE_CONTRADICTS_RAD) {
             findings.push(Finding::new(
                 Severity::Warning,
@@ -42,21 +37,20 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
                     "the angle column differs from atan2(-v_y, v_x) by up to {:.2} deg ({}); v_x and v_y are used{}",
                     worst.to_degrees(),
                     data.row_name(row),
-                    match (read("v_x"), read("v_y")) {
-                        (Some(_), None) =>
+                    match (has("v_x"), has("v_y")) {
+                        (true, false) =>
                             " (v_y is missing and read as 0): if v_x is the speed of the carriage, name it speed",
-                        (None, Some(_)) => " (v_x is missing and read as 0): give speed and angle, or both velocities",
+                        (false, true) => " (v_x is missing and read as 0): give speed and angle, or both velocities",
                         _ => ": check the sign of v_y, or leave one of the two out",
                     }
                 ),
             ));
         }
     }
-    if has_velocity && let (Some(stated), Some(derived)) = (read("speed"), data.values("speed")) {
-        let apart = |i: usize| speeds_apart(stated[i], derived[i]);
-        let worst = (0..data.rows).rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
-        let scale = derived.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > 0.01 * scale) {
+    if let Some(apart) = speeds {
+        let fastest = speed.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let worst = worst(&apart, (0..data.rows).collect());
+        if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > 0.01 * fastest) {
             findings.push(Finding::new(
                 Severity::Warning,
                 "speed-contradicts-velocity",
@@ -70,17 +64,29 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
     findings
 }
 
-/// How far a stated angle lies from that of the velocity, rad.
-pub(crate) fn angles_apart(stated: f64, stated_speed: Option<f64>, derived: f64) -> f64 {
-    // With a speed below zero the body moves the other way than its angle says.
-    let astern = if stated_speed.is_some_and(|u| u < 0.0) { PI } else { 0.0 };
-    let by = stated + astern - derived;
-    (by - TAU * (by / TAU).round()).abs()
-}
-
-/// How far a stated speed lies from that of the velocity, m/s.
-pub(crate) fn speeds_apart(stated: f64, derived: f64) -> f64 {
-    (stated.abs() - derived.abs()).abs()
+/// How far the stated angle of each row lies from that of its velocity, rad, and the stated speed, m/s, where a table states both. `rows` of the table are those of `data`, in its order.
+pub(crate) fn apart(table: &Table, rows: &[usize], data: &Dataset) -> [Option<Vec<f64>>; 2] {
+    let read = |name: &str| match &table.columns.iter().find(|c| c.name == name)?.data {
+        ColumnData::Number { si, .. } => Some(si),
+        ColumnData::Text(_) => None,
+    };
+    if read("v_x").or_else(|| read("v_y")).is_none() {
+        return [None, None];
+    }
+    let (angle, speed) = (read("angle"), read("speed"));
+    let angle_apart = |(stated, derived, row): (f64, f64, usize)| {
+        // With a speed below zero the body moves the other way than its angle says; a turn more is the same angle.
+        let astern = if speed.is_some_and(|u| u[row] < 0.0) { PI } else { 0.0 };
+        let by = stated + astern - derived;
+        (by - TAU * (by / TAU).round()).abs()
+    };
+    let of = |stated: &Vec<f64>, name: &str, apart: &dyn Fn((f64, f64, usize)) -> f64| -> Option<Vec<f64>> {
+        Some(rows.iter().zip(data.values(name)?).map(|(&row, derived)| apart((stated[row], *derived, row))).collect())
+    };
+    [
+        angle.and_then(|stated| of(stated, "angle", &angle_apart)),
+        speed.and_then(|stated| of(stated, "speed", &|(stated, derived, _)| (stated.abs() - derived.abs()).abs())),
+    ]
 }
 
 /// Rows that move faster than a part of the fastest; a speed below zero goes astern.
