@@ -388,7 +388,8 @@ fn cells_of_observations_are_no_formulas_and_read_back_as_they_were() {
     let back = froude::records::table::read_table(&path, None).unwrap();
     // A numeral that begins with a sign stays a number.
     let forces = back.number("f_x", froude::records::units::Dimension::FORCE).unwrap();
-    assert_eq!((back.text("run").unwrap(), forces[0]), (&runs.map(|r| r.replace("''", "'"))[..], -1.5));
+    let named: Vec<&String> = back.text("run").unwrap().iter().collect();
+    assert_eq!((named, forces[0]), (runs.map(|r| r.replace("''", "'")).iter().collect(), -1.5));
 }
 
 #[cfg(unix)]
