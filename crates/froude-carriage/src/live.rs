@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use froude_records::campaign::Campaign;
-use froude_records::carriage::plan::PlannedRun;
-use froude_records::carriage::{CarriageCampaign, CarriagePlan, Directions};
 use froude_records::run::{BodyState, LAST_RUN, Role, RunMeta, STOPPED_EARLY, read_run};
 use froude_records::write::write_atomically;
+use froude_rig::carriage::plan::PlannedRun;
+use froude_rig::carriage::{CarriageCampaign, CarriagePlan, Directions, DrivenCampaign};
 
 use crate::drag::calibration::Readings;
 use crate::drag::detectability::DryMean;
@@ -20,7 +20,7 @@ use crate::runs::for_drag;
 pub struct Live {
     online: Option<OnLine>,
     setup: DragSetup,
-    campaign: Campaign,
+    campaign: DrivenCampaign,
     folder: PathBuf,
     /// Runs whose partner has not been driven yet; a log of megabytes is read again when it has.
     waiting: Vec<Waiting>,
@@ -41,13 +41,14 @@ impl Live {
     /// Nothing is known yet of a campaign that `carriage` drives as `asked`; what is known is noted in `folder`.
     #[must_use]
     pub fn new(campaign: &Campaign, carriage: &CarriageCampaign, asked: &CarriagePlan, folder: &Path) -> Self {
+        let campaign = DrivenCampaign { campaign: campaign.clone(), carriage: Some(carriage.clone()) };
         let axis = if asked.axis as usize == 0 { Some(&carriage.rig.y) } else { carriage.rig.x.as_ref() };
         let constants = axis.map(|axis| &axis.constants);
         let directions = if asked.directions == Directions::Both { 2 } else { 1 };
         Self {
             online: asked.stop_at_relative_half_width.map(|target| OnLine::new(target, directions)),
-            setup: DragSetup { looks: asked.repeats, ..setup_of(Some(campaign), constants) },
-            campaign: campaign.clone(),
+            setup: DragSetup { looks: asked.repeats, ..setup_of(Some(&campaign), constants) },
+            campaign,
             folder: folder.to_owned(),
             waiting: Vec::new(),
             calibration: Readings::default(),

@@ -7,12 +7,12 @@ use froude_fit::budget::Uncertain;
 use froude_fit::distribution::t_two_sided;
 use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_identify::method::MethodError;
-use froude_records::campaign::Campaign;
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::{sha256_of_file, short_key};
 use froude_records::number;
 use froude_records::run::{AxisConstants, Role, RunLog, STOPPED_EARLY};
 use froude_records::text::counted;
+use froude_rig::carriage::DrivenCampaign;
 
 use crate::drag::calibration::record::Known;
 use crate::drag::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
@@ -148,10 +148,10 @@ fn stopped_early(runs: &Runs, reduced: &[DragRun<'_>]) -> Option<EarlyStop> {
 /// # Errors
 ///
 /// Wet runs without ballast of a body whose volume is not declared: the wheel load that buoyancy removes is not known.
-fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Option<Finding>, MethodError> {
+fn undeclared(campaign: Option<&DrivenCampaign>, runs: &[DragRun<'_>]) -> Result<Option<Finding>, MethodError> {
     let carriage = campaign.and_then(|c| c.carriage.as_ref());
     let is_ballasted = carriage.and_then(|c| c.plan.as_ref()).is_none_or(|p| p.is_ballasted);
-    let volume_m3 = campaign.and_then(|c| c.body.as_ref()).and_then(|b| b.volume_m3);
+    let volume_m3 = campaign.and_then(|c| c.campaign.body.as_ref()).and_then(|b| b.volume_m3);
     if !is_ballasted && volume_m3.is_none() {
         return Err(MethodError::Undeclared { place: String::new(), what:
             "the wet runs carried no ballast and the campaign declares no volume of the body: the wheel load that buoyancy removes is not \
@@ -175,12 +175,12 @@ fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Optio
 
 /// What is declared, from the campaign where there is one, else from what the runs state about their rig.
 #[must_use]
-pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> DragSetup {
+pub fn setup_of(campaign: Option<&DrivenCampaign>, axis: Option<&AxisConstants>) -> DragSetup {
     let mut setup = DragSetup::of_the_paper();
     setup.efficiency = Efficiency::Undeclared;
-    setup.density_kg_m3 = density_kg_m3(campaign);
+    setup.density_kg_m3 = density_kg_m3(campaign.map(|c| &c.campaign));
     let carriage = campaign.and_then(|c| c.carriage.as_ref());
-    if let Some(campaign) = campaign {
+    if let Some(DrivenCampaign { campaign, .. }) = campaign {
         setup.name.clone_from(&campaign.name);
         setup.reference_area_m2 = campaign.body.as_ref().and_then(|b| b.reference_area_m2);
         setup.travel = campaign.body.as_ref().and_then(|b| b.travel);
@@ -202,7 +202,7 @@ pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> Dr
     let declared = carriage.and_then(|c| c.rig.force_sensor.as_ref()).and_then(|f| f.gain_standard);
     setup.sensor.gain_relative = declared.unwrap_or(UNDECLARED_GAIN);
     let displaced_kg =
-        campaign.and_then(|c| c.body.as_ref()).and_then(|b| b.volume_m3).map(|v| setup.density_kg_m3 * v);
+        campaign.and_then(|c| c.campaign.body.as_ref()).and_then(|b| b.volume_m3).map(|v| setup.density_kg_m3 * v);
     let strut = carriage.and_then(|c| c.plan.as_ref()).and_then(|p| p.strut_drag_n_s2_m2);
     setup.strut_n_s2_m2 = strut.map(|s| Uncertain::new(s.value, s.standard_uncertainty));
     setup.ballast = match carriage.and_then(|c| c.plan.as_ref()).map(|p| p.is_ballasted) {
@@ -213,18 +213,18 @@ pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> Dr
 }
 
 /// Standard uncertainty of a campaign's weights, as a part; 0.1 % where it declares none, as of shop weights.
-fn declared_weight_relative(campaign: Option<&Campaign>) -> f64 {
+fn declared_weight_relative(campaign: Option<&DrivenCampaign>) -> f64 {
     let plan = campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref());
     plan.and_then(|p| p.calibration.as_ref()).map_or(1e-3, weight_relative)
 }
 
 /// Standard uncertainty of the weights, as a part: that of the heaviest, which tells the most.
-pub fn weight_relative(calibration: &froude_records::carriage::Calibration) -> f64 {
+pub fn weight_relative(calibration: &froude_rig::carriage::Calibration) -> f64 {
     calibration.weight_standard_n / calibration.weights_n.iter().copied().fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// Key of the error of the declared weights: campaigns that declare the same weights on a carriage of the same size hung the same ones.
-fn weights_key(campaign: Option<&Campaign>) -> Option<String> {
+fn weights_key(campaign: Option<&DrivenCampaign>) -> Option<String> {
     let carriage = campaign?.carriage.as_ref()?;
     let calibration = carriage.plan.as_ref()?.calibration.as_ref()?;
     let axis = &carriage.rig.y;
@@ -234,7 +234,7 @@ fn weights_key(campaign: Option<&Campaign>) -> Option<String> {
 }
 
 /// Loss of the campaign's pulley, as a part of the weight; [`PULLEY_LOSS`] where it declares none.
-fn pulley_loss(campaign: Option<&Campaign>) -> Uncertain {
+fn pulley_loss(campaign: Option<&DrivenCampaign>) -> Uncertain {
     let plan = campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref());
     let declared = plan.and_then(|p| p.calibration.as_ref()).and_then(|c| c.pulley_loss);
     declared.map_or(PULLEY_LOSS, |p| Uncertain::new(p.value, p.standard_uncertainty))
@@ -242,7 +242,7 @@ fn pulley_loss(campaign: Option<&Campaign>) -> Uncertain {
 
 /// What is known of the errors of a campaign's calibration, on the rig of this key: campaigns that take the same loss on one rig have one pulley.
 #[must_use]
-pub fn known_of_calibration(campaign: Option<&Campaign>, rig: Option<&str>) -> Known {
+pub fn known_of_calibration(campaign: Option<&DrivenCampaign>, rig: Option<&str>) -> Known {
     let loss = pulley_loss(campaign);
     Known {
         weight_relative: declared_weight_relative(campaign),
@@ -256,7 +256,7 @@ pub fn known_of_calibration(campaign: Option<&Campaign>, rig: Option<&str>) -> K
 #[must_use]
 pub fn calibration_of(
     runs: &[DragRun<'_>],
-    campaign: Option<&Campaign>,
+    campaign: Option<&DrivenCampaign>,
     setup: &DragSetup,
 ) -> (Option<Calibration>, Option<Finding>) {
     let mut readings = Readings::default();
@@ -289,7 +289,7 @@ fn friction_by_direction(c: &Calibration) -> Option<Finding> {
 #[must_use]
 pub fn calibration_from(
     readings: &Readings,
-    campaign: Option<&Campaign>,
+    campaign: Option<&DrivenCampaign>,
     setup: &DragSetup,
 ) -> (Option<Calibration>, Option<Finding>) {
     if readings.is_empty() {

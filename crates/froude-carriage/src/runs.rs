@@ -9,13 +9,14 @@ use froude_identify::method::MethodError;
 use froude_identify::runs::{files, of_method, refuse_others};
 use froude_identify::wild;
 use froude_records::RecordError;
-use froude_records::campaign::{BodyAxis, Campaign, Fluid, read_campaign};
+use froude_records::campaign::{BodyAxis, Campaign, Fluid};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{
     BodyState, CAMPAIGN_COPY, Direction, DoubtKind, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, read_run_meta,
 };
 use froude_records::text::counted;
 use froude_records::units::Dimension;
+use froude_rig::carriage::DrivenCampaign;
 
 use crate::drag::run as drag;
 
@@ -36,7 +37,7 @@ pub struct Runs {
     /// Runs left out, gaps, and what the campaign planned and is not there.
     pub findings: Vec<Finding>,
     /// The campaign that lies with them.
-    pub campaign: Option<Campaign>,
+    pub campaign: Option<DrivenCampaign>,
     /// The axis of the body along the travel, as the runs declare it or else their campaign; `None` where neither does.
     pub travel: Option<BodyAxis>,
     /// How many runs of the same roles lie beside single runs that were named, and were not named; 0 where whole folders were read.
@@ -62,7 +63,7 @@ impl Runs {
             let beside = self.results(what);
             beside.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
         };
-        self.campaign.as_ref().map_or_else(of_folder, |campaign| campaign.name.clone())
+        self.campaign.as_ref().map_or_else(of_folder, |c| c.campaign.name.clone())
     }
 
     /// Where results go that nobody named a folder for: beside what was read, and called after it, so that the results of a part never
@@ -130,8 +131,8 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
     out.take_folders(paths, &files, roles, &complete)?;
     let copy = out.folder.join(CAMPAIGN_COPY);
     let path = campaign.map(Path::to_owned).or_else(|| copy.exists().then_some(copy));
-    out.campaign = path.as_deref().map(read_campaign).transpose()?;
-    out.travel = attitude(&out.logs, out.campaign.as_ref())?;
+    out.campaign = path.as_deref().map(DrivenCampaign::read).transpose()?;
+    out.travel = attitude(&out.logs, out.campaign.as_ref().map(|c| &c.campaign))?;
     if out.logs.is_empty() {
         refuse_others(&out.folder, TOW, &others)?;
         return Err(out.no_run(roles));

@@ -8,8 +8,8 @@ use froude::carriage::tune::{find_resonance, tune};
 use froude::fit::budget::Uncertain;
 use froude::pipeline::{Input, Job, Purpose};
 use froude::records::block::Block;
-use froude::records::carriage::plan::Step;
 use froude::records::units::{Dimension, parse_quantity};
+use froude::rig::carriage::plan::Step;
 
 use crate::args::{CarriageJob, Experiment};
 use crate::failure::Failure;

@@ -9,10 +9,10 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use froude::carriage::drive::Prepared;
-use froude::records::carriage::plan::PlannedRun;
 use froude::records::text::visible;
 use froude::rig::campaign::runner::{Operator, Progress};
 use froude::rig::campaign::stop::StopSwitch;
+use froude::rig::carriage::plan::PlannedRun;
 use froude::rig::drive::Sample;
 use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

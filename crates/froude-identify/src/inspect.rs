@@ -5,13 +5,11 @@ mod told;
 use std::path::Path;
 
 use froude_records::campaign::{BudgetEntry, Campaign, Input, Source, read_campaign};
-use froude_records::carriage::{CarriageCampaign, Directions, RigKind};
 use froude_records::estimate::Estimate;
 use froude_records::finding::Finding;
 use froude_records::json::read_estimates;
 use froude_records::run::{Meaning, is_servo_log};
 use froude_records::table::{ColumnData, Table, read_table, read_table_with_blanks};
-use froude_records::text::counted;
 
 use crate::error::IdentifyError;
 use crate::reduce::{Observations, reduce};
@@ -192,7 +190,7 @@ fn doubts(campaign: &Campaign, source: &Source, reduced: &Observations) -> Vec<F
     findings.into_iter().map(|f| f.of_source(&source.name)).collect()
 }
 
-/// Inspects a campaign and its sources; what a mesh or the log of a servo is asked for is checked by whoever computes it.
+/// Inspects a campaign and its sources; what a mesh or the log of a servo is asked for is checked by whoever computes it, and what is driven is said by whoever drives it.
 ///
 /// # Errors
 ///
@@ -201,7 +199,6 @@ pub fn campaign(path: &Path) -> Result<(Campaign, Inspection), IdentifyError> {
     let campaign = read_campaign(path)?;
     let mut facts = vec![("name".to_owned(), campaign.name.clone())];
     facts.extend(campaign.cite.iter().map(|work| ("cite".to_owned(), work.clone())));
-    facts.extend(campaign.carriage.iter().flat_map(driven));
     let (mut sources, mut findings) = (Vec::new(), Vec::new());
     for source in &campaign.sources {
         let (facts, found) = source_facts(&campaign, source)?;
@@ -211,43 +208,6 @@ pub fn campaign(path: &Path) -> Result<(Campaign, Inspection), IdentifyError> {
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let found = Inspection { sources, ..Inspection::new("campaign", facts, findings) };
     Ok((campaign, found))
-}
-
-fn times(n: usize) -> String {
-    counted(n, "time", "times")
-}
-
-/// What a campaign drives and is to do; `froude run --check` has the runs one by one.
-fn driven(carriage: &CarriageCampaign) -> Vec<(String, String)> {
-    let rig = match &carriage.rig.kind {
-        RigKind::Twin { seed, truths } => {
-            format!("twin, seed {seed}, {}", counted(truths.len(), "truth of its own", "truths of its own"))
-        }
-        RigKind::Serial { port, baud } => format!("board at {port}, {baud} baud"),
-    };
-    let [low, high] = carriage.rig.y.travel_m;
-    let mut facts = vec![("rig".to_owned(), format!("{rig}; long axis from {low} m to {high} m"))];
-    let Some(plan) = &carriage.plan else { return facts };
-    let mut fact = |name: &str, value: String| facts.push((name.to_owned(), value));
-    let speeds: Vec<String> = plan.speed_m_s.iter().map(f64::to_string).collect();
-    fact("tows", format!("axis {}, {} m/s over {} m", plan.axis.name(), speeds.join(", "), plan.distance_m));
-    let ways = if plan.directions == Directions::Both { "out and back" } else { "out" };
-    let ballast = if plan.is_ballasted { "ballasted" } else { "not ballasted" };
-    fact("pairs", format!("{} at each speed, {ways}; wet runs {ballast}", plan.repeats));
-    if let Some(sweep) = &plan.friction {
-        fact(
-            "friction sweep",
-            format!("{}, {}", counted(sweep.speed_m_s.len(), "speed", "speeds"), times(sweep.repeats)),
-        );
-    }
-    if let Some(c) = &plan.calibration {
-        let weights: Vec<String> = c.weights_n.iter().map(f64::to_string).collect();
-        fact("calibration", format!("{} N over a pulley, {}", weights.join(", "), times(c.repeats)));
-    }
-    if let Some(part) = plan.stop_at_relative_half_width {
-        fact("stops early", format!("when D_d is known within {} %", 100.0 * part));
-    }
-    facts
 }
 
 fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Vec<Finding>), IdentifyError> {

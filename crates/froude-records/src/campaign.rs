@@ -12,7 +12,7 @@ use froude_hydro::Link;
 use indexmap::IndexMap;
 
 use crate::added_mass_options::GivenOption;
-use crate::carriage::CarriageCampaign;
+use crate::campaign_toml::ROOT_KEYS;
 use crate::document::Document;
 use crate::error::{Place, RecordError};
 use crate::estimate::ErrorKind;
@@ -46,8 +46,8 @@ pub struct Campaign {
     pub identify: Identify,
     /// How to make up observations.
     pub simulate: Option<Simulate>,
-    /// What is driven, and what it is to do.
-    pub carriage: Option<CarriageCampaign>,
+    /// Its text, for whoever reads sections of his own out of it; `None` where no file stands behind it.
+    pub document: Option<Document>,
 }
 
 /// The water: density, or temperature and salinity.
@@ -595,8 +595,23 @@ impl Campaign {
             sources,
             identify: Identify::default(),
             simulate: None,
-            carriage: None,
+            document: None,
         }
+    }
+
+    /// The whole file, for sections that belong to whoever reads them: `[rig]` and `[carriage]`.
+    #[must_use]
+    pub fn root(&self) -> Option<Section<'_>> {
+        let root = self.document.as_ref()?.root();
+        // Known keys are no misspelt ones.
+        root.only(&ROOT_KEYS).ok()?;
+        Some(root)
+    }
+
+    /// Whether it drives a carriage.
+    #[must_use]
+    pub fn is_driven(&self) -> bool {
+        self.root().is_some_and(|root| root.get("rig").is_some())
     }
 
     /// A table with a plan may still have to be simulated or run, and cases to be computed, those of this source or of another that reads them; everything else must be there.

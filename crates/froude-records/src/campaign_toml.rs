@@ -14,7 +14,6 @@ use crate::campaign::{
     PlanBlock, PriorRecord, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, StatedUnit, Tank,
     Tare, Truth, UserModel,
 };
-use crate::carriage_toml::carriage;
 use crate::document::Document;
 use crate::error::RecordError;
 use crate::estimate::ErrorKind;
@@ -32,6 +31,10 @@ use crate::units::{Dimension, Unit};
 /// Kinds of covariance that can be asked for.
 const COVARIANCES: [&str; 4] = ["classical", "HC3", "cluster", "serial"];
 
+/// The sections and keys of a campaign.
+pub(crate) const ROOT_KEYS: [&str; 11] =
+    ["schema", "name", "cite", "fluid", "body", "tank", "source", "identify", "simulate", "rig", "carriage"];
+
 /// Where the numbers of a source can lie.
 const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
 
@@ -40,9 +43,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
     let document = Document::parse(path, text)?;
     let root = document.root();
     root.schema("campaign")?;
-    root.only(&[
-        "schema", "name", "cite", "fluid", "body", "tank", "source", "identify", "simulate", "rig", "carriage",
-    ])?;
+    root.only(&ROOT_KEYS)?;
     let campaign = Campaign {
         path: path.to_owned(),
         key: short_key(text.as_bytes()),
@@ -59,7 +60,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
             .collect::<Result<_, _>>()?,
         identify: root.section("identify")?.map(|s| identify(&s)).transpose()?.unwrap_or_default(),
         simulate: root.section("simulate")?.map(|s| simulate(&s)).transpose()?,
-        carriage: carriage(&root)?,
+        document: Some(document.clone()),
     };
     let mut names = BTreeSet::new();
     for a in &campaign.sources {

@@ -5,7 +5,7 @@
 //!
 //! | file            | module                                     |
 //! |-----------------|--------------------------------------------|
-//! | campaign (TOML) | [`campaign`]; its rig and carriage [`carriage`], its options of added mass [`added_mass_options`] |
+//! | campaign (TOML) | [`campaign`]; its options of added mass [`added_mass_options`]; sections of methods and of the carriage are read by the crates that use them |
 //! | table (CSV)     | [`csv_table`], in memory; [`fast_csv`], streamed |
 //! | table (Parquet) | [`parquet_table`]                          |
 //! | body (TOML)     | [`body`]                                   |
@@ -23,13 +23,11 @@ mod body_axis;
 pub mod campaign;
 mod campaign_file;
 mod campaign_toml;
-pub mod carriage;
-mod carriage_toml;
 mod checksum;
 pub mod chunks;
 pub mod comparison;
 pub mod csv_table;
-mod document;
+pub mod document;
 mod error;
 pub mod estimate;
 pub mod fast_csv;

@@ -82,6 +82,7 @@ pub use recorded::recorded_run;
 pub use recorder::{Packing, Recorder};
 pub use seal::CampaignMark;
 pub use sidecar::{
-    declared, declared_value, parse_run_meta, positive_declared, read_run_meta, run_meta_text, write_run_meta,
+    AMPLIFIER, TORQUE_CONSTANT, declared, declared_value, parse_run_meta, positive_declared, read_run_meta,
+    run_meta_text, write_run_meta,
 };
 pub use ticks::Ticks;

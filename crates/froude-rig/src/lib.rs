@@ -9,6 +9,7 @@
 //! | [`twin`] | all of it, tick by tick, from one seed |
 //! | [`injection`] | what can be broken |
 //! | [`drive`] | twin and real rig behind the same few calls |
+//! | [`carriage`] | what a campaign drives, and the runs that it asks for |
 //! | [`campaign`] | a whole campaign: planned, checked, driven, recorded, resumed |
 //! | [`closed_loop`], [`defaults`] | the controller on the twin, and its configuration for this rig |
 //! | [`injection`], [`catalogue`] | what can be broken, and what the controller must say then |
@@ -46,6 +47,7 @@
 pub mod accelerated_tow;
 pub mod amplifier;
 pub mod campaign;
+pub mod carriage;
 pub mod catalogue;
 pub mod closed_loop;
 pub mod decay;

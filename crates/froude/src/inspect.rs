@@ -4,11 +4,12 @@ use std::path::Path;
 
 use froude_added_mass::options::Asked;
 use froude_carriage::axis::source::Servo;
-use froude_carriage::runs::inspect::{folder, run, without_log};
+use froude_carriage::runs::inspect::{driven, folder, run, without_log};
 pub use froude_identify::inspect::{BudgetFacts, ChannelFacts, ColumnFacts, Inspection, SourceFacts};
 use froude_identify::inspect::{campaign, estimates, table};
 use froude_records::campaign::Input;
 use froude_records::run::is_servo_log;
+use froude_rig::carriage::declared;
 
 use crate::{Error, method};
 
@@ -38,6 +39,7 @@ pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error>
 
 fn of_campaign(path: &Path) -> Result<Inspection, Error> {
     let (campaign, mut found) = campaign(path)?;
+    found.facts.extend(declared(&campaign)?.iter().flat_map(driven));
     method::check_sections(&campaign)?;
     for (source, facts) in campaign.sources.iter().zip(&mut found.sources) {
         match &source.input {

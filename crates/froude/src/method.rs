@@ -13,6 +13,7 @@ use froude_identify::table::Table;
 use froude_records::campaign::{self, Campaign, Input, Source};
 use froude_records::nearest::meant;
 use froude_records::run::is_servo_log;
+use froude_rig::carriage::declared;
 
 use crate::Error;
 use crate::pipeline::Purpose;
@@ -22,7 +23,7 @@ use froude_cfd::verb::Computed;
 /// A method with the names that it is asked for.
 pub(crate) type Asked = (&'static dyn Method, Vec<&'static str>);
 
-/// Reads a campaign, and every section in it that belongs to a method, used or not.
+/// Reads a campaign, and every section in it that belongs to a method or to the carriage, used or not.
 ///
 /// # Errors
 ///
@@ -33,7 +34,7 @@ pub fn read_campaign(path: &Path) -> Result<Campaign, Error> {
     Ok(campaign)
 }
 
-/// Reads the sections of a campaign that belong to methods.
+/// Reads the sections of a campaign that belong to methods and to the carriage.
 ///
 /// # Errors
 ///
@@ -43,6 +44,7 @@ pub fn check_sections(campaign: &Campaign) -> Result<(), Error> {
         METHODS.iter().try_for_each(|method| method.check(source))?;
         Computed.check(source)?;
     }
+    declared(campaign)?;
     Ok(())
 }
 

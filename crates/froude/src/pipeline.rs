@@ -99,7 +99,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Identified, Error>
     findings.extend(asked::laws_not_asked(&campaign));
     // What a method says without an estimate is an answer too: jogs show the polarity.
     if sources.is_empty() && published.is_empty() && summaries.is_empty() {
-        return Err(Error::NoSource { path: campaign.path, is_driven: campaign.carriage.is_some() });
+        return Err(Error::NoSource { is_driven: campaign.is_driven(), path: campaign.path });
     }
     // Matrices of one body, or of one and more links, are no sources to be held against each other.
     let is_one =

@@ -8,12 +8,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
-use froude::records::carriage::plan::PlannedRun;
 use froude::records::run::{
     Layout, Packing, Recorder, RunMeta, RunStatus, TOW, read_run, read_run_meta, write_run_meta,
 };
 use froude::rig::campaign::runner::{Operator, Progress};
 use froude::rig::campaign::stop::StopSwitch;
+use froude::rig::carriage::plan::PlannedRun;
 use froude::rig::drive::Sample;
 use froude_control::status::Phase;
 

@@ -13,6 +13,7 @@ use froude_records::run::{
     RunStatus, STEADY, TOW, WEIGHT_TOW, import_run, read_run, read_run_meta,
 };
 use froude_records::text::counted;
+use froude_rig::carriage::{CarriageCampaign, Directions, RigKind};
 use indexmap::IndexMap;
 
 use super::set::{Member, doubles, is_put_aside, strangers, summed_up};
@@ -29,6 +30,44 @@ pub fn without_log(sidecar: &Path) -> Result<MethodError, RecordError> {
     let log = sidecar.with_extension("mcap");
     let found = if is_put_aside(&log, &meta) { put_aside(&log, &meta) } else { gone(&log, &meta) };
     Ok(MethodError::NoLog { why: found.message })
+}
+
+fn times(n: usize) -> String {
+    counted(n, "time", "times")
+}
+
+/// What a campaign drives and is to do; `froude run --check` has the runs one by one.
+#[must_use]
+pub fn driven(carriage: &CarriageCampaign) -> Vec<(String, String)> {
+    let rig = match &carriage.rig.kind {
+        RigKind::Twin { seed, truths } => {
+            format!("twin, seed {seed}, {}", counted(truths.len(), "truth of its own", "truths of its own"))
+        }
+        RigKind::Serial { port, baud } => format!("board at {port}, {baud} baud"),
+    };
+    let [low, high] = carriage.rig.y.travel_m;
+    let mut facts = vec![("rig".to_owned(), format!("{rig}; long axis from {low} m to {high} m"))];
+    let Some(plan) = &carriage.plan else { return facts };
+    let mut fact = |name: &str, value: String| facts.push((name.to_owned(), value));
+    let speeds: Vec<String> = plan.speed_m_s.iter().map(f64::to_string).collect();
+    fact("tows", format!("axis {}, {} m/s over {} m", plan.axis.name(), speeds.join(", "), plan.distance_m));
+    let ways = if plan.directions == Directions::Both { "out and back" } else { "out" };
+    let ballast = if plan.is_ballasted { "ballasted" } else { "not ballasted" };
+    fact("pairs", format!("{} at each speed, {ways}; wet runs {ballast}", plan.repeats));
+    if let Some(sweep) = &plan.friction {
+        fact(
+            "friction sweep",
+            format!("{}, {}", counted(sweep.speed_m_s.len(), "speed", "speeds"), times(sweep.repeats)),
+        );
+    }
+    if let Some(c) = &plan.calibration {
+        let weights: Vec<String> = c.weights_n.iter().map(f64::to_string).collect();
+        fact("calibration", format!("{} N over a pulley, {}", weights.join(", "), times(c.repeats)));
+    }
+    if let Some(part) = plan.stop_at_relative_half_width {
+        fact("stops early", format!("when D_d is known within {} %", 100.0 * part));
+    }
+    facts
 }
 
 /// A folder of runs: how many of what, and whether the files are what they say.

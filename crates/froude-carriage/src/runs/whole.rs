@@ -9,13 +9,13 @@ use std::path::{Path, PathBuf};
 
 use froude_identify::method::MethodError;
 use froude_identify::runs::files;
-use froude_records::campaign::{Campaign, read_campaign};
-use froude_records::carriage::plan::{PlannedRun, Step, order_seed, plan};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
 use froude_records::read;
 use froude_records::run::{CAMPAIGN_COPY, LAST_RUN, Role, RunMeta, RunStatus, STOPPED_EARLY, read_run_meta};
 use froude_records::text::counted;
+use froude_rig::carriage::plan::{PlannedRun, Step, order_seed, plan};
+use froude_rig::carriage::{CarriageCampaign, DrivenCampaign};
 
 use super::set::is_put_aside;
 
@@ -54,7 +54,7 @@ impl Complete {
         if !copy.is_file() {
             return None;
         }
-        let campaign = match read_campaign(&copy) {
+        let campaign = match DrivenCampaign::read(&copy) {
             Ok(campaign) => campaign,
             Err(error) => {
                 let text = format!("the plan is not known: {error}");
@@ -67,7 +67,7 @@ impl Complete {
         if here.campaigns.iter().any(|driven_by| *driven_by != sha256) {
             return None;
         }
-        let planned = planned(&campaign);
+        let planned = planned(campaign.carriage.as_ref());
         let file = |run: &PlannedRun, extension: &str| folder.join(format!("{}.{extension}", run.id));
         if !planned.iter().any(|run| file(run, "mcap").exists() || file(run, "toml").exists()) {
             return None;
@@ -129,8 +129,8 @@ impl EarlyStop {
 }
 
 /// The runs that `froude run` drives of a campaign, in order; none where it drives none.
-fn planned(campaign: &Campaign) -> Vec<PlannedRun> {
-    let Some(carriage) = &campaign.carriage else { return Vec::new() };
+fn planned(carriage: Option<&CarriageCampaign>) -> Vec<PlannedRun> {
+    let Some(carriage) = carriage else { return Vec::new() };
     let Some(asked) = &carriage.plan else { return Vec::new() };
     // Where forward runs begin is no part of a run's name.
     let steps = plan(asked, asked.start_m.unwrap_or(0.0), order_seed(&carriage.rig.kind));

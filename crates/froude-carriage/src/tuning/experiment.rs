@@ -1,11 +1,11 @@
 //! What an experiment on the loop logged: the response of the drive from a sweep, the limit cycle of a relay.
 
 use froude_identify::method::MethodError;
-use froude_records::carriage::plan::{
-    RELAY_HEIGHT, RELAY_HYSTERESIS, SWEEP_AMPLITUDE, SWEEP_DURATION, SWEEP_FROM, SWEEP_SPEED, SWEEP_TO,
-};
 use froude_records::run::RunLog;
 use froude_records::units::Dimension;
+use froude_rig::carriage::plan::{
+    RELAY_HEIGHT, RELAY_HYSTERESIS, SWEEP_AMPLITUDE, SWEEP_DURATION, SWEEP_FROM, SWEEP_SPEED, SWEEP_TO,
+};
 
 use super::relay::{LimitCycle, limit_cycle};
 use super::response::{Sweep, plant_response};

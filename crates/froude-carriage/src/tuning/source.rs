@@ -61,7 +61,7 @@ impl Method for Tuning {
             )
         };
         let declared = runs.campaign.as_ref().ok_or_else(|| MethodError::input(&runs.folder, what()))?;
-        let configured = configured(declared).map_err(MethodError::refused)?;
+        let configured = configured(&declared.campaign).map_err(MethodError::refused)?;
         progress("judging gains");
         let of = ConfiguredLoop {
             axis: configured.axis(),

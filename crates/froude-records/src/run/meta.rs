@@ -210,8 +210,10 @@ pub enum Axis {
 }
 
 impl Axis {
-    pub(crate) const ALL: [Self; 2] = [Self::Y, Self::X];
-    pub(crate) const NAMES: [&'static str; 2] = ["y", "x"];
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Y, Self::X];
+    /// Their names.
+    pub const NAMES: [&'static str; 2] = ["y", "x"];
 
     /// As it stands in files and before the slash of channel names.
     #[must_use]

@@ -39,9 +39,9 @@ pub(crate) const RECORD_NAME: &str = "froude_run";
 pub(crate) const END_RECORD_NAME: &str = "froude_run_end";
 
 /// N m/A, of the torque constant.
-pub(crate) const TORQUE_CONSTANT: Dimension = Dimension { m: 2, kg: 1, s: -2, k: 0, a: -1 };
+pub const TORQUE_CONSTANT: Dimension = Dimension { m: 2, kg: 1, s: -2, k: 0, a: -1 };
 /// A/V, of the amplifier.
-pub(crate) const AMPLIFIER: Dimension = Dimension { m: -2, kg: -1, s: 3, k: 0, a: 2 };
+pub const AMPLIFIER: Dimension = Dimension { m: -2, kg: -1, s: 3, k: 0, a: 2 };
 
 /// The newest form, which is written.
 const SCHEMA: u64 = 2;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use crate::carriage::RigKind;
 use froude_control::config::Limits;
-use froude_records::carriage::RigKind;
 use froude_records::hash::sha256_of_bytes;
 use froude_records::read;
 use froude_records::run::{CAMPAIGN_COPY, CampaignMark, check_names};

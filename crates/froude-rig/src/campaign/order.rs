@@ -1,6 +1,6 @@
 //! What the thread of the rig is ordered to do, and what it answers.
 
-use froude_records::carriage::plan::PlannedRun;
+use crate::carriage::plan::PlannedRun;
 use froude_records::run::EventKind;
 
 use crate::campaign::runner::RunnerError;

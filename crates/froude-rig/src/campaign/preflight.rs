@@ -13,10 +13,10 @@ mod tests;
 mod told;
 mod tow;
 
+use crate::carriage::plan::{Drive, PlannedRun};
+use crate::carriage::{CarriagePlan, RigSpec};
 use excitation::excitation;
 use froude_control::config::Config;
-use froude_records::carriage::plan::{Drive, PlannedRun};
-use froude_records::carriage::{CarriagePlan, RigSpec};
 use tow::{Way, tow};
 
 use super::setup;

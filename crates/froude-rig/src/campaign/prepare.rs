@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use crate::carriage::plan::{PlannedRun, Step, order_seed, plan};
+use crate::carriage::{CarriageCampaign, CarriagePlan, RigKind, declared};
 use froude_control::config::{AxisConfig, Config, Limits};
 use froude_hydro::fluid::density_kg_m3;
 use froude_records::campaign::{Campaign, read_campaign};
-use froude_records::carriage::plan::{PlannedRun, Step, order_seed, plan};
-use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
 
 use super::error::CampaignError;
 use super::preflight::{check, check_campaign};
@@ -157,7 +157,7 @@ impl Configured {
 /// See [`CampaignError`]: a campaign without `[rig]` or `[carriage]`, a missing constant.
 pub fn configured(campaign: &Campaign) -> Result<Configured, CampaignError> {
     let path = || campaign.path.clone();
-    let carriage = campaign.carriage.clone().ok_or_else(|| CampaignError::NoRig { path: path() })?;
+    let carriage = declared(campaign)?.ok_or_else(|| CampaignError::NoRig { path: path() })?;
     let asked = carriage.plan.clone().ok_or_else(|| CampaignError::NoPlan { path: path() })?;
     if asked.axis as usize == 1 && carriage.rig.x.is_none() {
         return Err(CampaignError::NoAxis { place: asked.place.to_string() });

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::carriage::plan::PlannedRun;
 use froude_records::RecordError;
-use froude_records::carriage::plan::PlannedRun;
 use froude_records::run::{
     AxisSample, BodyState, CarriageFacts, CarriageSample, ClockAlignment, EventKind, Layout, Mounted, Packing,
     Recorder, Role, RunMeta, RunStatus, TOW,

@@ -15,8 +15,8 @@ pub(crate) mod setting;
 
 use std::path::{Path, PathBuf};
 
+use crate::carriage::plan::{OperatorStep, PlannedRun, Step};
 use froude_records::block::{Block, facts};
-use froude_records::carriage::plan::{OperatorStep, PlannedRun, Step};
 use froude_records::outcome::{Exit, Outcome};
 use froude_records::run::{EventKind, RunStatus};
 use froude_records::text::counted;

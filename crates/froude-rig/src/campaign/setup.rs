@@ -4,9 +4,9 @@
 //! overrides what it names. The two differ as they do in a laboratory: the gear's efficiency, for instance, is in the truth and in
 //! no declared friction.
 
+use crate::carriage::{AxisSpec, CarriageCampaign, RigKind, TwinTruth};
 use froude_control::config::{AxisConfig, Config, ConfigError, Drive, Gains, Limits};
 use froude_records::RecordError;
-use froude_records::carriage::{AxisSpec, CarriageCampaign, RigKind, TwinTruth};
 use froude_records::nearest::suggestion;
 use froude_records::run::{AxisConstants, Declared};
 use froude_records::units::parse_unit;
@@ -317,6 +317,7 @@ fn apply(truth: &TwinTruth, config: &mut TwinConfig, body: &mut Load) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::carriage::declared;
 
     /// The load of the example's twin with a truth more.
     fn of_the_example(truth: &str) -> Load {
@@ -324,7 +325,7 @@ mod tests {
         let text =
             std::fs::read_to_string(path).unwrap().replace("pulley_friction", &format!("{truth}\npulley_friction"));
         let campaign = froude_records::campaign::parse_campaign(std::path::Path::new("c.toml"), &text).unwrap();
-        twin(&campaign.carriage.unwrap(), Load::default()).unwrap().1
+        twin(&declared(&campaign).unwrap().unwrap(), Load::default()).unwrap().1
     }
 
     #[test]

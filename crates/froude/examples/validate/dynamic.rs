@@ -17,6 +17,7 @@ use froude::methods::carriage::drag::simulate::Logged;
 use froude::methods::carriage::drag::{BodyState, DragReport, DragRun, DragSetup, drag_report};
 use froude::records::campaign::read_campaign;
 use froude::rig::campaign::setup;
+use froude::rig::carriage::declared;
 use froude::rig::closed_loop::ClosedLoop;
 use froude::rig::load::{Load, Mounting, TowedBody};
 use froude::rig::parameters::{AMPLIFIER_A_V, AxisParameters};
@@ -42,7 +43,7 @@ const TICKS: u64 = 20;
 
 pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn Error>> {
     let campaign = read_campaign(&root.join("examples/towing-carriage/campaign.toml"))?;
-    let carriage = campaign.carriage.ok_or("the example has no carriage")?;
+    let carriage = declared(&campaign)?.ok_or("the example has no carriage")?;
     let control = setup::control(&carriage, 3.0 * 1000.0 * TowedBody::CYLINDER.displaced_m3)?;
     let (twin, load) = setup::twin(&carriage, Load::default())?;
     for d in [20.0, 10.0] {

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use froude_carriage::live::Live;
-use froude_records::carriage::plan::PlannedRun;
 use froude_rig::campaign::drive::drive as drive_until;
 use froude_rig::campaign::prepare::prepare as prepared;
 pub use froude_rig::campaign::prepare::{DriveJob, Prepared, prepare_with};
 use froude_rig::campaign::runner::{Driven, Operator, Progress};
 use froude_rig::campaign::stop::StopSwitch;
+use froude_rig::carriage::plan::PlannedRun;
 
 use crate::{Error, method};
 

@@ -2,9 +2,9 @@
 //!
 //! Tune: a relay's limit cycle and a sweep on the bare carriage. Resonance: the same sweep bare, dry and wet.
 
-use froude_records::carriage::plan::{Experiments, resonance, tuning};
 use froude_rig::campaign::runner::{Operator, Progress};
 use froude_rig::campaign::stop::StopSwitch;
+use froude_rig::carriage::plan::{Experiments, resonance, tuning};
 
 use super::drive::{DriveJob, Prepared, drive, prepare_with};
 use crate::pipeline::{Identified, Input, Job, Purpose, identify};

@@ -1,9 +1,9 @@
 //! Forecast of an excitation: pulses, relay, sweep, jog, and what a hung weight does.
 
+use crate::carriage::plan::{Drive, JOG_S, PlannedRun};
 use froude_control::config::Config;
 use froude_control::request::Excitation;
 use froude_control::travel::{Rigid, foresee_excitation, preflight_excitation};
-use froude_records::carriage::plan::{Drive, JOG_S, PlannedRun};
 
 use super::tow::{Load, beyond_the_drive};
 use crate::campaign::preflight::forecast::{Expected, Forecast, Objection};

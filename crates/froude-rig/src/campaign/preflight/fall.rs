@@ -1,8 +1,8 @@
 //! What a hung weight does when the torque fails.
 
+use crate::carriage::plan::PlannedRun;
 use froude_control::coast::Coast;
 use froude_control::config::AxisConfig;
-use froude_records::carriage::plan::PlannedRun;
 
 use crate::campaign::preflight::forecast::{Expected, at_most};
 

@@ -1,8 +1,8 @@
 use super::setup;
 use super::*;
+use crate::carriage::plan::{Experiments, Step, plan, tuning};
+use crate::carriage::{CarriageCampaign, declared};
 use crate::load::TowedBody;
-use froude_records::carriage::CarriageCampaign;
-use froude_records::carriage::plan::{Experiments, Step, plan, tuning};
 
 /// The example's campaign with some texts replaced.
 fn campaign(changes: &[(&str, &str)]) -> CarriageCampaign {
@@ -12,7 +12,8 @@ fn campaign(changes: &[(&str, &str)]) -> CarriageCampaign {
         assert!(text.contains(from), "the example has no {from}");
         text = text.replace(from, to);
     }
-    froude_records::campaign::parse_campaign(std::path::Path::new("c.toml"), &text).unwrap().carriage.unwrap()
+    let campaign = froude_records::campaign::parse_campaign(std::path::Path::new("c.toml"), &text).unwrap();
+    declared(&campaign).unwrap().unwrap()
 }
 
 fn told(changes: &[(&str, &str)], assumed_volume_m3: Option<f64>) -> (Vec<Forecast>, Vec<Objection>) {

@@ -1,7 +1,7 @@
 //! What the pre-flight says of a campaign, before anything moves.
 
+use crate::carriage::plan::PlannedRun;
 use froude_records::block::{Block, ResultTable, TableBuilder, facts};
-use froude_records::carriage::plan::PlannedRun;
 use froude_records::number::duration;
 use froude_records::outcome::{Exit, Outcome};
 use froude_records::run::{Direction, Role};

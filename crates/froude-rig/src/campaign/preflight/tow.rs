@@ -1,13 +1,13 @@
 //! Forecast of a tow: its ramps, what it asks of the drive, what it reaches.
 
+use crate::carriage::CarriagePlan;
+use crate::carriage::plan::PlannedRun;
 use froude_control::coast::Coast;
 use froude_control::config::{AxisConfig, Config};
 use froude_control::profile::{Bounds, Profile};
 use froude_control::request::Move;
 use froude_control::shaper::ShapedProfile;
 use froude_control::travel::{Preflight, preflight};
-use froude_records::carriage::CarriagePlan;
-use froude_records::carriage::plan::PlannedRun;
 use froude_records::run::{BodyState, Role};
 
 use super::fall::fall;

@@ -1,9 +1,9 @@
 //! One order at a time, on the rig's thread: begun, watched, ended.
 
+use crate::carriage::plan::{Drive, JOG_S, PlannedRun};
 use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::{Phase, Refusal};
-use froude_records::carriage::plan::{Drive, JOG_S, PlannedRun};
 use froude_records::run::EventKind;
 
 use super::super::hand_over::Engine;

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::carriage::CarriagePlan;
+use crate::carriage::plan::PlannedRun;
 use froude_control::tick::AXES;
 use froude_records::campaign::BodyAxis;
-use froude_records::carriage::CarriagePlan;
-use froude_records::carriage::plan::PlannedRun;
 use froude_records::run::{AxisConstants, BodyState, CampaignMark};
 use indexmap::IndexMap;
 

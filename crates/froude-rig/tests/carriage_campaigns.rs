@@ -3,9 +3,10 @@
 
 use std::path::Path;
 
-use froude_records::campaign::{parse_campaign, read_campaign};
-use froude_records::carriage::{CarriageCampaign, Directions, Order, RigKind};
+use froude_records::RecordError;
+use froude_records::campaign::{Campaign, parse_campaign};
 use froude_records::run::{Axis, Declared};
+use froude_rig::carriage::{CarriageCampaign, Directions, DrivenCampaign, Order, RigKind, declared};
 
 const EXAMPLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/towing-carriage/campaign.toml");
 
@@ -13,11 +14,21 @@ fn example() -> String {
     std::fs::read_to_string(EXAMPLE).unwrap()
 }
 
+fn read(text: &str) -> Result<(Campaign, Option<CarriageCampaign>), RecordError> {
+    let campaign = parse_campaign(Path::new("c.toml"), text)?;
+    let carriage = declared(&campaign)?;
+    Ok((campaign, carriage))
+}
+
+fn driven(text: &str) -> CarriageCampaign {
+    read(text).unwrap().1.unwrap()
+}
+
 /// The message about the example with one text replaced by another.
 fn refused(from: &str, to: &str) -> String {
     let text = example();
     assert_eq!(text.matches(from).count(), 1, "{from:?} stands once in the example");
-    parse_campaign(Path::new("c.toml"), &text.replace(from, to)).unwrap_err().to_string()
+    read(&text.replace(from, to)).unwrap_err().to_string()
 }
 
 /// `c.toml:line` of a text of the example.
@@ -28,9 +39,9 @@ fn line(of: &str) -> String {
 
 #[test]
 fn the_papers_campaign_is_read_as_it_is_written() {
-    let campaign = read_campaign(Path::new(EXAMPLE)).unwrap();
+    let DrivenCampaign { campaign, carriage } = DrivenCampaign::read(Path::new(EXAMPLE)).unwrap();
     assert!(campaign.sources.is_empty(), "what drives a rig needs no source");
-    let CarriageCampaign { rig, plan } = campaign.carriage.unwrap();
+    let CarriageCampaign { rig, plan } = carriage.unwrap();
     let RigKind::Twin { seed, truths } = &rig.kind else { panic!("{:?}", rig.kind) };
     assert_eq!(*seed, 1);
     assert_eq!((truths[0].name.as_str(), truths[0].quantity.value_si), ("drag", 20.0));
@@ -66,7 +77,7 @@ fn speeds_may_be_written_as_a_range_in_steps() {
         "speeds = [\"0.05 m/s\", \"0.15 m/s\", \"0.25 m/s\", \"0.35 m/s\", \"0.45 m/s\", \"0.55 m/s\"]",
         "speeds = { start = \"5 cm/s\", stop = \"55 cm/s\", step = \"10 cm/s\" }",
     );
-    let plan = parse_campaign(Path::new("c.toml"), &text).unwrap().carriage.unwrap().plan.unwrap();
+    let plan = driven(&text).plan.unwrap();
     assert_eq!(plan.speed_m_s.len(), 6);
     // A centimetre per second is no binary fraction: one rounding.
     let written = [0.05, 0.15, 0.25, 0.35, 0.45, 0.55];
@@ -81,7 +92,7 @@ fn a_board_at_a_serial_port_has_a_port_and_no_seed() {
         "[rig.twin]                        # the truth that identification has to find\ndrag = \"20 N s^2/m^2\"\npulley_friction = \"1 %\"",
         "",
     );
-    let rig = parse_campaign(Path::new("c.toml"), &text).unwrap().carriage.unwrap().rig;
+    let rig = driven(&text).rig;
     assert_eq!(rig.kind, RigKind::Serial { port: "/dev/ttyUSB0".to_owned(), baud: 3_000_000 });
     let at = line("kind = \"twin\"");
     assert_eq!(
@@ -166,7 +177,7 @@ fn what_is_wrong_is_reported_with_its_line_and_what_to_write() {
 #[test]
 fn an_encoder_that_counts_backwards_is_declared_with_a_negative_number() {
     let text = example().replace("counts_per_revolution = 4000 ", "counts_per_revolution = -4000 ");
-    let rig = parse_campaign(Path::new("c.toml"), &text).unwrap().carriage.unwrap().rig;
+    let rig = driven(&text).rig;
     assert_eq!(rig.y.constants.counts_per_revolution, -4000.0);
     assert_eq!(
         refused("counts_per_revolution = 4000 ", "counts_per_revolution = 0 "),
@@ -198,7 +209,7 @@ fn a_stop_that_the_steps_do_not_reach_is_refused_with_steps_that_do() {
     for part in odd.split("step = ").nth(1).unwrap().split(" m/s\"").take(2) {
         let step: f64 = part.rsplit('"').next().unwrap().parse().unwrap();
         let text = example().replace(speeds, &range("0.8 m/s", &format!("{step} m/s")));
-        let plan = parse_campaign(Path::new("c.toml"), &text).unwrap().carriage.unwrap().plan.unwrap();
+        let plan = driven(&text).plan.unwrap();
         assert!((plan.speed_m_s.last().unwrap() - 0.8).abs() < 1e-6, "{step}: {:?}", plan.speed_m_s);
     }
 }
@@ -207,7 +218,7 @@ fn a_stop_that_the_steps_do_not_reach_is_refused_with_steps_that_do() {
 fn litres_and_decimal_commas_are_reported_as_what_they_are() {
     let volume = "volume = \"6.283e-3 m^3\"";
     let text = example().replace(volume, "volume = \"6.283 l\"");
-    let body = parse_campaign(Path::new("c.toml"), &text).unwrap().body.unwrap();
+    let body = read(&text).unwrap().0.body.unwrap();
     assert_eq!(body.volume_m3, Some(6.283e-3));
     let comma = refused(volume, "volume = \"2,5 l\"");
     assert!(comma.ends_with("`2,5 l` has a decimal comma; write a decimal point, `2.5 l`"), "{comma}");
@@ -219,7 +230,7 @@ fn litres_and_decimal_commas_are_reported_as_what_they_are() {
 fn a_carriage_without_a_rig_is_told_to_name_one() {
     let text = "schema = 1\nname = \"a\"\n[carriage]\nspeeds = [\"0.1 m/s\"]\ndistance = \"1 m\"\nacceleration = \"1 m/s^2\"\n";
     assert_eq!(
-        parse_campaign(Path::new("c.toml"), text).unwrap_err().to_string(),
+        read(text).unwrap_err().to_string(),
         "c.toml:1:1: the file has no `rig`; [carriage] states what to do; [rig] states with what: kind = \"twin\", for example"
     );
 }

@@ -1,9 +1,8 @@
 //! From what is asked for to runs in order.
 
+use froude_records::estimate::Measured;
+use froude_records::run::{Axis, BodyState, Direction, Role};
 use indexmap::IndexMap;
-
-use crate::estimate::Measured;
-use crate::run::{Axis, BodyState, Direction, Role};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
@@ -444,12 +443,12 @@ pub fn order_seed(rig: &RigKind) -> u64 {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
-    use crate::Place;
     use crate::carriage::{Calibration, FrictionSweep};
+    use froude_records::Place;
 
-    pub(crate) fn asked() -> CarriagePlan {
+    fn asked() -> CarriagePlan {
         CarriagePlan {
             axis: Axis::Y,
             speed_m_s: vec![0.05, 0.25, 0.55],

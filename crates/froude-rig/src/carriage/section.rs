@@ -1,18 +1,16 @@
 //! `[rig]` and `[carriage]` of the campaign's TOML.
 
-use toml::Spanned;
-use toml::de::DeValue;
+use froude_records::RecordError;
+use froude_records::campaign::Campaign;
+use froude_records::run::{AMPLIFIER, Axis, AxisConstants, Declared, TORQUE_CONSTANT, positive_declared};
+use froude_records::section::{Section, Value, found};
+use froude_records::section_values::{MOST_RUNS, at_most, count, one_of, series};
+use froude_records::units::Dimension;
 
-use crate::carriage::{
+use super::{
     AxisSpec, Calibration, CarriageCampaign, CarriagePlan, Directions, ForceSensorSpec, FrictionSweep, GainsSpec,
     LimitsSpec, Order, PulseTrain, RigKind, RigSpec, TwinTruth, WarmUp,
 };
-use crate::error::RecordError;
-use crate::run::sidecar::{AMPLIFIER, TORQUE_CONSTANT};
-use crate::run::{Axis, AxisConstants, Declared, positive_declared};
-use crate::section::{Section, found};
-use crate::section_values::{at_most, count, one_of, series};
-use crate::units::Dimension;
 
 /// V s, of the derivative gain: radians are pure numbers.
 const VOLT_SECOND: Dimension = Dimension { m: 2, kg: 1, s: -2, k: 0, a: -1 };
@@ -27,8 +25,13 @@ const DRAG: Dimension = Dimension::new(-1, 1, 0);
 /// m/s³.
 const JERK: Dimension = Dimension::new(1, 0, -3);
 
-/// Both sections; `None` where the campaign has neither.
-pub(crate) fn carriage(root: &Section<'_>) -> Result<Option<CarriageCampaign>, RecordError> {
+/// What a campaign drives, by its `[rig]` and `[carriage]`; `None` where it has neither.
+///
+/// # Errors
+///
+/// [`RecordError`] with its place.
+pub fn declared(campaign: &Campaign) -> Result<Option<CarriageCampaign>, RecordError> {
+    let Some(root) = campaign.root() else { return Ok(None) };
     let plan = root.section("carriage")?.map(|s| plan(&s)).transpose()?;
     let Some(section) = root.section("rig")? else {
         return match plan {
@@ -330,9 +333,6 @@ fn duration(s: &Section<'_>, key: &'static str) -> Result<Option<f64>, RecordErr
     }
 }
 
-/// Most runs that a speed list and its repeats make, each way.
-const MOST_RUNS: usize = 10_000;
-
 /// Speeds larger than zero, increasing, none twice.
 fn speeds(s: &Section<'_>, key: &'static str) -> Result<Vec<f64>, RecordError> {
     let value = s.get(key).ok_or_else(|| {
@@ -349,7 +349,7 @@ fn speeds(s: &Section<'_>, key: &'static str) -> Result<Vec<f64>, RecordError> {
 fn positive_series<'a>(
     s: &Section<'a>,
     key: &'static str,
-    value: &'a Spanned<DeValue<'a>>,
+    value: &'a Value<'a>,
     dimension: Dimension,
 ) -> Result<Vec<f64>, RecordError> {
     let values = series(s, key, value, dimension)?;

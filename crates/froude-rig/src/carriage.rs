@@ -19,10 +19,38 @@
 //! ```
 
 pub mod plan;
+mod section;
 
-use crate::error::Place;
-use crate::run::{Axis, AxisConstants, Declared};
-use crate::units::Quantity;
+use std::path::Path;
+
+use froude_records::campaign::{Campaign, read_campaign};
+use froude_records::run::{Axis, AxisConstants, Declared};
+use froude_records::units::Quantity;
+use froude_records::{Place, RecordError};
+
+pub use section::declared;
+
+/// A campaign with what it drives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrivenCampaign {
+    /// The campaign.
+    pub campaign: Campaign,
+    /// What it drives; `None` where it drives nothing.
+    pub carriage: Option<CarriageCampaign>,
+}
+
+impl DrivenCampaign {
+    /// Reads both.
+    ///
+    /// # Errors
+    ///
+    /// See [`RecordError`].
+    pub fn read(path: &Path) -> Result<Self, RecordError> {
+        let campaign = read_campaign(path)?;
+        let carriage = declared(&campaign)?;
+        Ok(Self { campaign, carriage })
+    }
+}
 
 /// A campaign that drives a carriage.
 #[derive(Debug, Clone, PartialEq)]
