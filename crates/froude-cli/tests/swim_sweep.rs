@@ -59,7 +59,7 @@ fn rows_are_the_gaits_alone_and_say_why_there_is_none() {
         serde_json::from_slice(&froude(&[&["swim", text(&example())], &alone[..]].concat()).stdout).unwrap();
     assert_eq!(alone["speed_m_s"].as_f64(), Some(speed[3]));
     assert_eq!(alone["power_positive_w"].as_f64(), Some(column("power_pos", Dimension::new(2, 1, -3))[3]));
-    assert_eq!(table.text("status").unwrap(), ["periodic"; 6]);
+    assert!(table.text("status").unwrap().iter().all(|status| status == "periodic"));
     let best = speed.iter().copied().fold(0.0, f64::max);
     assert_eq!(found["best"][0]["speed_m_s"].as_f64(), Some(best));
 

@@ -114,7 +114,9 @@ mod tests {
         assert_eq!((texts.get(3), texts.get(5), &texts[4]), (Some(&String::new()), None, &"b".to_owned()));
         let mut some = texts.subset(&[4, 1, 9]);
         assert_eq!(some, Texts::from(vec!["b".to_owned(); 2]));
-        ["c", "b"].map(|text| some.push(text.to_owned()));
+        for text in ["c", "b"] {
+            some.push(text.to_owned());
+        }
         assert!(some != texts && some.iter().eq(["b", "b", "c", "b"]) && texts.iter().eq(&rows));
         assert_eq!(Texts::repeated("b", 2), texts.subset(&[1, 4]));
     }
