@@ -345,14 +345,13 @@ fn a_plan_is_counted_before_it_is_made() {
 /// Files are opened in `froude_records::read` alone: what is listed reads the system, or is no input.
 #[test]
 fn input_files_are_opened_in_one_place() {
-    const ELSEWHERE: [(&str, &str); 10] = [
+    const ELSEWHERE: [(&str, &str); 9] = [
         ("froude-records/src/read.rs", "the one place"),
         ("froude-records/src/unfinished.rs", "locks folders that this program made"),
         ("froude-records/src/write.rs", "synchronises a folder"),
         ("froude-cfd/src/process.rs", "/proc"),
         ("froude-cfd/src/orphans.rs", "/proc"),
         ("froude-panel/src/refine.rs", "/proc/meminfo"),
-        ("froude-rig/src/campaign/lock.rs", "a lock, opened for writing"),
         ("froude-cfd/src/lock.rs", "a lock, opened for writing"),
         ("froude-rig/src/drive/serial.rs", "a port"),
         ("froude-link/src", "a port"),

@@ -33,6 +33,7 @@ pub mod estimate;
 pub mod fast_csv;
 pub mod finding;
 pub mod folder;
+pub mod folder_lock;
 pub mod hash;
 mod header;
 pub mod json;

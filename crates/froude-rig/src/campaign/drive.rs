@@ -11,7 +11,7 @@ use froude_records::write::write_atomically;
 use indexmap::IndexMap;
 
 use super::error::CampaignError;
-use super::lock::FolderLock;
+use super::lock;
 use super::prepare::{Prepared, return_speed_m_s};
 use super::runner::{self, Driven, Enough, Operator, Progress, RunnerError};
 use super::setup;
@@ -43,7 +43,7 @@ pub fn drive(
         let more = prepared.objections.len() - 1;
         return Err(CampaignError::Refused { first: first.clone(), more });
     }
-    let _alone = FolderLock::take(&prepared.folder, &prepared.job.date, prepared.job.start_unix_ns)?;
+    let _alone = lock::take(&prepared.folder, &prepared.job.date, prepared.job.start_unix_ns)?;
     let campaign_sha256 = own_folder(&prepared.folder, &prepared.job.campaign)?;
     // Exchanged and foreign files are for a person to sort out, before anything moves.
     let mark = CampaignMark { name: &prepared.campaign.name, sha256: &campaign_sha256 };

@@ -1,11 +1,10 @@
 //! One drive at a time into a folder of runs.
 //!
-//! Whoever drives holds a lock on a file in the folder, in which it says who it is. The lock is the system's: it ends with the process,
-//! however that ends, so that what lies there afterwards stops nobody. Reading a folder needs no lock.
+//! Whoever drives holds a [`FolderLock`], in whose file it says who it is.
 
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
+
+use froude_records::folder_lock::FolderLock;
 
 /// The file's name in the folder.
 pub const LOCK_FILE: &str = "drive.lock";
@@ -38,54 +37,22 @@ pub enum LockError {
     },
 }
 
-/// A folder that nobody else drives into as long as this lives.
-#[derive(Debug)]
-pub struct FolderLock {
-    file: File,
-}
-
-impl FolderLock {
-    /// Makes the folder where it is missing, and takes it. `date` in words and `start_unix_ns`, ns since 1970, are left for whoever
-    /// comes second.
-    ///
-    /// # Errors
-    ///
-    /// [`LockError`].
-    pub fn take(folder: &Path, date: &str, start_unix_ns: u64) -> Result<Self, LockError> {
-        let path = folder.join(LOCK_FILE);
-        let failed = |e: std::io::Error| LockError::Impossible { path: path.clone(), reason: e.to_string() };
-        std::fs::create_dir_all(folder).map_err(failed)?;
-        let mut file =
-            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let mut by = String::new();
-                // Where a locked file cannot be read, or is not written yet, there is only less to say.
-                let _ = file.read_to_string(&mut by);
-                let by =
-                    if by.trim().is_empty() { "who, it has not said yet".to_owned() } else { by.trim().to_owned() };
-                return Err(LockError::Taken { folder: folder.to_owned(), by });
-            }
-            Err(TryLockError::Error(e)) => return Err(failed(e)),
-        }
-        let who = format!(
-            "process {} on {}, since {date} {} UTC\n",
-            std::process::id(),
-            host(),
-            time_of_day(start_unix_ns / 1_000_000_000)
-        );
-        file.set_len(0).and_then(|()| file.rewind()).and_then(|()| file.write_all(who.as_bytes())).map_err(failed)?;
-        Ok(Self { file })
-    }
-}
-
-impl Drop for FolderLock {
-    /// Nobody drives any more, and the file says so; the lock goes with it.
-    fn drop(&mut self) {
-        // What cannot be emptied names a process that is gone: it stops nobody.
-        let _ = self.file.set_len(0);
-    }
+/// Makes the folder where it is missing, and takes it: nobody else drives into it as long as the lock lives. `date` in words and
+/// `start_unix_ns`, ns since 1970, are left for whoever comes second.
+///
+/// # Errors
+///
+/// [`LockError`].
+pub fn take(folder: &Path, date: &str, start_unix_ns: u64) -> Result<FolderLock, LockError> {
+    let path = folder.join(LOCK_FILE);
+    let failed = |e: std::io::Error| LockError::Impossible { path: path.clone(), reason: e.to_string() };
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    let since = time_of_day(start_unix_ns / 1_000_000_000);
+    let who = format!("process {} on {}, since {date} {since} UTC\n", std::process::id(), host());
+    FolderLock::take(&path, &who, true).map_err(failed)?.map_err(|by| {
+        let by = if by.is_empty() { "who, it has not said yet".to_owned() } else { by };
+        LockError::Taken { folder: folder.to_owned(), by }
+    })
 }
 
 fn time_of_day(unix_s: u64) -> String {
@@ -111,8 +78,8 @@ mod tests {
     fn the_second_is_told_who_is_first_and_comes_in_when_that_one_has_gone() {
         let folder = tempfile::tempdir().unwrap();
         let runs = folder.path().join("deep/runs");
-        let first = FolderLock::take(&runs, "2026-03-01", (86_400 + 7_384) * 1_000_000_000).unwrap();
-        let refused = FolderLock::take(&runs, "2026-03-02", 0).unwrap_err().to_string();
+        let first = take(&runs, "2026-03-01", (86_400 + 7_384) * 1_000_000_000).unwrap();
+        let refused = take(&runs, "2026-03-02", 0).unwrap_err().to_string();
         let who = format!("(process {} on {}, since 2026-03-01 02:03:04 UTC)", std::process::id(), host());
         assert!(refused.contains(&who), "{refused}");
         assert!(refused.starts_with(&runs.display().to_string()), "{refused}");
@@ -122,7 +89,7 @@ mod tests {
         // The longer word of one that was killed leaves nothing behind.
         std::fs::write(runs.join(LOCK_FILE), "process 1 on a computer with a long name, since long ago\nand so on\n")
             .unwrap();
-        let second = FolderLock::take(&runs, "2026-03-02", 0).unwrap();
+        let second = take(&runs, "2026-03-02", 0).unwrap();
         assert!(said().ends_with("since 2026-03-02 00:00:00 UTC\n") && said().lines().count() == 1, "{}", said());
         drop(second);
     }
@@ -132,7 +99,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         std::fs::write(&file, "").unwrap();
-        let error = FolderLock::take(&file.join("runs"), "", 0).unwrap_err().to_string();
+        let error = take(&file.join("runs"), "", 0).unwrap_err().to_string();
         assert!(error.contains("cannot be locked") && error.contains("file/runs"), "{error}");
     }
 }

@@ -3,11 +3,11 @@
 //! A part is its rows as 64-bit numbers with the code of their status, and the SHA-256 of the sweep's key, the part's number and the rows. One that
 //! is cut off or damaged is made again. One whose sum is that of another place (somebody renamed it) is rejected by its name.
 
-use std::fs::{File, TryLockError};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_records::RecordError;
+use froude_records::folder_lock::FolderLock;
 use froude_records::hash::{sha256_of_bytes, sha256_of_file, short_key};
 use froude_records::outcome::Scratch;
 use froude_records::read::if_there;
@@ -46,7 +46,7 @@ pub(super) struct Parts {
     each: usize,
     /// Folders with parts of other sweeps that never came to their end.
     pub(super) others: Vec<PathBuf>,
-    lock: File,
+    lock: FolderLock,
 }
 
 impl Parts {
@@ -59,11 +59,9 @@ impl Parts {
         };
         std::fs::create_dir_all(&folder).map_err(failed(&folder))?;
         let lock_path = folder.join("lock");
-        let lock = File::create(&lock_path).map_err(failed(&lock_path))?;
-        // A disk without locks has none to wait for.
-        if let Err(TryLockError::WouldBlock) = lock.try_lock() {
+        let Ok(lock) = FolderLock::take(&lock_path, "", false).map_err(failed(&lock_path))? else {
             return Err(SweepError::Busy { folder }.into());
-        }
+        };
         let is_other = |path: &PathBuf| {
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
             *path != folder && name.starts_with(PREFIX)
