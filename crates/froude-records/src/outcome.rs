@@ -2,23 +2,15 @@
 //!
 //! A verb builds it once. Terminal, page, JSON and the writer of files know no verb.
 
-<<<<<<< HEAD
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-=======
-use std::path::PathBuf;
->>>>>>> 7b046783 (Lock a folder by one type for drives and sweeps)
 
 use crate::block::{Block, Tree, tree};
 use crate::estimate::EstimateFile;
 use crate::finding::Finding;
-<<<<<<< HEAD
-use crate::page::Report;
-=======
 use crate::folder_lock::FolderLock;
->>>>>>> 7b046783 (Lock a folder by one type for drives and sweeps)
+use crate::page::Report;
 use crate::table::Table;
 
 /// What a verb returns.

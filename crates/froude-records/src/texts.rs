@@ -96,6 +96,12 @@ impl From<Vec<String>> for Texts {
     }
 }
 
+impl<const N: usize> PartialEq<[&str; N]> for &Texts {
+    fn eq(&self, other: &[&str; N]) -> bool {
+        self.iter().eq(other)
+    }
+}
+
 impl PartialEq for Texts {
     fn eq(&self, other: &Self) -> bool {
         self.len() == other.len() && self.iter().eq(other)
