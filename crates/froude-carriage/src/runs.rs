@@ -12,7 +12,7 @@ use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Campaign, Fluid};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{
-    BodyState, CAMPAIGN_COPY, Direction, DoubtKind, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, read_run_meta,
+    BodyState, CAMPAIGN_COPY, DoubtKind, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, read_run_meta,
 };
 use froude_records::text::counted;
 use froude_records::units::Dimension;
@@ -476,12 +476,6 @@ pub fn mounts<'a>(logs: impl IntoIterator<Item = &'a RunLog>) -> Vec<BodyState> 
         }
     }
     out
-}
-
-/// Which way, in words.
-#[must_use]
-pub fn way(direction: Option<Direction>) -> &'static str {
-    direction.map_or("–", Direction::name)
 }
 
 #[cfg(test)]

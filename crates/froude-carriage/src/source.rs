@@ -2,7 +2,6 @@
 
 use froude_identify::method::{Found, Method, MethodError, Need, lacking};
 use froude_identify::source::{ReadFile, SourceResult};
-use froude_records::block::{Section, summary as of_summary};
 use froude_records::campaign::{Campaign, Fluid, Identify, Input, Source};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
@@ -149,8 +148,8 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
     }
     Ok(Found {
         results: out,
-        summary: Some(of_summary(summary)),
-        blocks: blocks.into_iter().map(Section::from).collect(),
+        summary: Some(summary),
+        blocks,
         findings: std::mem::take(&mut report.findings),
         beside: Some(runs.results("drag")),
         is_part: runs.beside > 0,

@@ -32,6 +32,7 @@ pub mod resonance;
 pub mod response;
 pub mod source;
 pub mod tracking;
+mod turned;
 
 use num_complex::Complex64;
 

@@ -9,11 +9,10 @@
 use std::path::Path;
 
 use froude_identify::method::MethodError;
-use froude_records::block::Section;
+use froude_records::block::{Section, TableBuilder};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
 
 use super::source::Servo;
 use super::{AxisModel, force_per_volt_n_v, friction_of, read_log};
@@ -75,18 +74,12 @@ pub fn held_against(
         Finding::new(Severity::Note, "cross-force-error", text)
     });
     let findings = imported.findings.into_iter().chain(findings).collect();
-    let row = |cross: &Cross| {
-        vec![
-            cross.id.clone(),
-            cross.own.map_or_else(|| number::MISSING.to_owned(), number::percent),
-            number::percent(cross.other),
-        ]
-    };
-    let table = TextTable {
-        caption: format!("Force error ‖F − F̂‖/‖F‖ on {name}, which no model was fitted to. F is that of its command."),
-        head: ["estimate", "where it was fitted", "cross force error"].map(str::to_owned).to_vec(),
-        rows: found.iter().map(row).collect(),
-    };
-    let title = format!("{name}: held against the fits");
-    Ok((findings, DocumentSection { title, tables: vec![table], ..DocumentSection::default() }.into()))
+    let caption = format!("Force error ‖F − F̂‖/‖F‖ on {name}, which no model was fitted to. F is that of its command.");
+    let t = TableBuilder::new("cross_force_errors", caption, &found);
+    let table = t.build(vec![
+        t.text("estimate", "estimate", |cross| cross.id.clone()),
+        t.number("own", "where it was fitted", |cross| cross.own).percent(),
+        t.number("cross", "cross force error", |cross| cross.other).percent(),
+    ]);
+    Ok((findings, Section::new(format!("{name}: held against the fits"), [table.into()])))
 }

@@ -11,14 +11,14 @@ use froude_identify::answer::Made;
 use froude_identify::large::MOST_KEPT;
 use froude_identify::method::{Found, MethodError};
 use froude_identify::wild;
+use froude_records::block::{Block, Section};
 use froude_records::chunks::{for_each_chunk, has_more_rows};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
 use froude_records::table::Table;
 use froude_records::units::Dimension;
 
-use super::page::with_declared;
+use super::page::{Pieces, coefficient_table, with_declared};
 use super::{AxisModel, friction_of, one_excitation};
 use crate::runs::implausible;
 use crate::servo::log::{is_even, rate_of};
@@ -147,7 +147,7 @@ pub(super) fn of_table(
         findings: vec![clock.finding(), Finding::new(Severity::Note, "long-log", text), one_excitation()],
         ..Found::default()
     };
-    let mut tables = Vec::new();
+    let mut tables: Vec<Block> = Vec::new();
     for (words, servo) in under_way {
         let report = servo.finish().map_err(MethodError::refused)?;
         let coefficients = coefficients(&report);
@@ -161,12 +161,19 @@ pub(super) fn of_table(
         out.findings.extend(weak);
         let mut estimate = record::long(name, words, (&report, &coefficients), &doubts, gain);
         kind.clone_into(&mut estimate.kind);
-        tables.push(with_declared(coefficient_table(words, &report, &coefficients), Some(&estimate)));
+        let caption = format!(
+            "Rigid model, friction {words} (relative force error {}), {} rows at {} Hz, HAC with a lag of {:.1} s.",
+            number::percent(report.relative_force_error),
+            number::count(report.n_rows),
+            number::plain(report.rate_hz, 4),
+            report.hac_lag_s
+        );
+        let table = coefficient_table(&estimate.method.name, caption, &coefficients, Pieces::Hac);
+        tables.push(with_declared(table, Some(&estimate)).into());
         let name = format!("{name}, {}", estimate.method.name);
         out.results.push(Made { name, estimate, files: super::files_of_table(path, sidecar) }.into());
     }
-    out.summary =
-        Some(DocumentSection { title: "Axis by every model".to_owned(), tables, ..DocumentSection::default() }.into());
+    out.summary = Some(Section::new("Axis by every model", tables));
     Ok(out)
 }
 
@@ -187,32 +194,6 @@ fn coefficients(report: &LongReport) -> Vec<ServoCoefficient> {
         }
     };
     report.names.iter().enumerate().map(of).collect()
-}
-
-fn coefficient_table(words: &str, report: &LongReport, coefficients: &[ServoCoefficient]) -> TextTable {
-    let row = |c: &ServoCoefficient| {
-        vec![
-            c.name.clone(),
-            c.unit.to_owned(),
-            number::short_form(c.value, c.hac_std),
-            number::interval(c.interval),
-            number::significant(c.classical_std, 2),
-            number::significant(c.hac_std, 2),
-        ]
-    };
-    TextTable {
-        caption: format!(
-            "Rigid model, friction {words} (relative force error {}), {} rows at {} Hz, HAC with a lag of {:.1} s.",
-            number::percent(report.relative_force_error),
-            number::count(report.n_rows),
-            number::plain(report.rate_hz, 4),
-            report.hac_lag_s
-        ),
-        head: ["coefficient", "unit", "value", "95 % interval for this excitation (HAC)", "u (white noise)", "u (HAC)"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: coefficients.iter().map(row).collect(),
-    }
 }
 
 #[cfg(test)]

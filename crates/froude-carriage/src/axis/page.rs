@@ -2,55 +2,46 @@
 
 use std::ops::Range;
 
-use froude_records::estimate::Estimate;
+use froude_records::block::{Block, ResultTable, Section, TableBuilder};
+use froude_records::estimate::{Coefficient, Estimate};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Series};
 
 use super::{AxisModels, CONSTANT, Model, Repeatability};
 use crate::runs::mounted;
 use crate::servo::ServoCoefficient;
-use crate::servo::record::law_of;
+use crate::servo::record::{TWO_MASS, law_of};
 use crate::servo::report::effective;
 use crate::servo::two_mass::FlexibleReport;
 
 /// The axis on the page: its models in tables, which is the summary; how each was fitted, with its figure.
 #[must_use]
-pub fn sections(outcome: &AxisModels) -> (DocumentSection, Vec<DocumentSection>) {
-    let mut tables = Vec::new();
+pub fn sections(outcome: &AxisModels) -> (Section, Vec<Section>) {
+    let mut blocks: Vec<Block> = Vec::new();
     for model in &outcome.models {
-        let r = &model.report;
+        let (r, law) = (&model.report, law_of(&model.name));
         let (body, error) = (mounted(&outcome.rigid_mounts), number::percent(r.relative_force_error));
         let caption = format!("Rigid model, friction {}{body} (relative force error {error}).", model.name);
         let pieces = if r.spread.runs.is_some() { Pieces::Clusters } else { Pieces::Blocks };
-        let estimate =
-            outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.method.name == law_of(&model.name));
-        tables.push(with_declared(coefficient_table(caption, &r.coefficients, pieces), estimate));
+        let estimate = outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.method.name == law);
+        let table = coefficient_table(&law, caption, &r.coefficients, pieces);
+        blocks.push(with_declared(table, estimate).into());
         if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == CONSTANT) {
-            tables.push(coefficient_table(
-                "The same at the motor's shaft (MCD Table II). The losses of the gear are included in these numbers."
-                    .to_owned(),
-                &effective(r, motor),
-                pieces,
-            ));
+            let caption =
+                "The same at the motor's shaft (MCD Table II). The losses of the gear are included in these numbers.";
+            blocks.push(coefficient_table(&format!("{law}_at_motor"), caption, &effective(r, motor), pieces).into());
         }
     }
-    tables.extend(outcome.flexible.as_ref().map(|f| flexible_table(f, &mounted(&outcome.two_mass_mounts))));
+    blocks.extend(outcome.flexible.as_ref().map(|f| flexible_table(f, &mounted(&outcome.two_mass_mounts)).into()));
     if !outcome.repeatability.is_empty() {
-        tables.push(repeatability_table(&outcome.repeatability));
+        blocks.push(repeatability_table(&outcome.repeatability).into());
     }
-    let summary = DocumentSection {
-        title: "Axis by every model".to_owned(),
-        paragraphs: outcome.flexible.iter().flat_map(splits).collect(),
-        tables,
-        charts: Vec::new(),
+    blocks.push(Block::words(outcome.flexible.iter().flat_map(splits)));
+    let fit = |model: &Model| {
+        let title = format!("Rigid, friction {}{}", model.name, mounted(&outcome.rigid_mounts));
+        Section::new(title, [Block::words(of_fit(model)), force_chart(model).into()])
     };
-    let fit = |model: &Model| DocumentSection {
-        title: format!("Rigid, friction {}{}", model.name, mounted(&outcome.rigid_mounts)),
-        paragraphs: of_fit(model),
-        tables: Vec::new(),
-        charts: vec![force_chart(model)],
-    };
-    (summary, outcome.models.iter().map(fit).collect())
+    (Section::new("Axis by every model", blocks), outcome.models.iter().map(fit).collect())
 }
 
 /// How a rigid model was fitted, and what its residuals say.
@@ -90,14 +81,16 @@ fn splits(f: &FlexibleReport) -> impl Iterator<Item = String> {
 }
 
 /// What an interval was made of.
-#[derive(Debug, Clone, Copy)]
-enum Pieces {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pieces {
     /// Whole runs.
     Clusters,
     /// Stretches of one excitation.
     Blocks,
     /// Scatter within one excitation, and declared errors.
     All,
+    /// Autocovariances within one excitation.
+    Hac,
 }
 
 impl Pieces {
@@ -107,88 +100,74 @@ impl Pieces {
             Self::Clusters => ["", "clusters"],
             Self::Blocks => [" for this excitation", "blocks"],
             Self::All => [" for this excitation", "scatter and declared"],
+            Self::Hac => [" for this excitation", "HAC"],
         }
     }
 }
 
 /// Coefficients with the published-style standard deviation beside the realistic interval, which is that of `pieces`.
-fn coefficient_table(caption: String, coefficients: &[ServoCoefficient], pieces: Pieces) -> TextTable {
-    let [interval, pieces] = pieces.words();
-    TextTable {
-        caption,
-        head: vec![
-            "coefficient".to_owned(),
-            "unit".to_owned(),
-            "value".to_owned(),
-            format!("95 % interval{interval} ({pieces})"),
-            "u (white noise)".to_owned(),
-            "u (HAC)".to_owned(),
-            format!("u ({pieces})"),
-        ],
-        rows: coefficients
-            .iter()
-            .map(|c| {
-                let digits = |x: f64| number::significant(x, 2);
-                vec![
-                    c.name.clone(),
-                    c.unit.to_owned(),
-                    number::short_form(c.value, c.block_std),
-                    number::interval(c.interval),
-                    digits(c.classical_std),
-                    digits(c.hac_std),
-                    digits(c.block_std),
-                ]
-            })
-            .collect(),
+pub(super) fn coefficient_table(
+    model: &str,
+    caption: impl Into<String>,
+    coefficients: &[ServoCoefficient],
+    pieces: Pieces,
+) -> ResultTable {
+    let [interval, name] = pieces.words();
+    let t = TableBuilder::new(&format!("coefficients/{model}"), caption, coefficients);
+    let mut columns = vec![
+        t.text("coefficient", "coefficient", |c| c.name.clone()),
+        t.text("unit", "unit", |c| c.unit.to_owned()),
+        t.uncertain(["value", ""], "value", |c| c.value, |c| c.block_std),
+        t.interval("interval_95", &format!("95 % interval{interval} ({name})"), |c| c.interval),
+        t.number("standard_white_noise", "u (white noise)", |c| c.classical_std).significant(2),
+    ];
+    if pieces != Pieces::Hac {
+        columns.push(t.number("standard_hac", "u (HAC)", |c| c.hac_std).significant(2));
     }
+    columns.push(t.number("standard_uncertainty", &format!("u ({name})"), |c| c.block_std).significant(2));
+    t.build(columns)
 }
 
 /// The intervals of scatter and declared errors together, where the estimate has any that are declared.
-pub(super) fn with_declared(mut table: TextTable, estimate: Option<&Estimate>) -> TextTable {
+pub(super) fn with_declared(mut table: ResultTable, estimate: Option<&Estimate>) -> ResultTable {
     let Some(estimate) = estimate.filter(|estimate| !estimate.errors.is_empty()) else { return table };
-    table.head.push("95 % interval (scatter and declared)".to_owned());
-    for (row, c) in table.rows.iter_mut().zip(estimate.coefficients.values()) {
-        row.push(c.interval_95.map_or_else(|| number::MISSING.to_owned(), number::interval));
-    }
+    let all: Vec<&Coefficient> = estimate.coefficients.values().collect();
+    let t = TableBuilder::new("", "", &all);
+    let head = "95 % interval (scatter and declared)";
+    table.columns.push(t.interval("interval_95_with_declared", head, |c| c.interval_95));
     table
 }
 
 /// Two masses; behind a gear whose efficiency is not declared every row is marked as apparent.
-fn flexible_table(report: &FlexibleReport, mounted: &str) -> TextTable {
+fn flexible_table(report: &FlexibleReport, mounted: &str) -> ResultTable {
     let caption = format!("Two masses: motor, chain and load from motor-side signals{mounted}.");
-    let mut table = coefficient_table(caption, &report.coefficients, Pieces::All);
+    let mut table = coefficient_table(TWO_MASS, caption, &report.coefficients, Pieces::All);
     if report.is_apparent {
-        for (row, c) in table.rows.iter_mut().zip(&report.coefficients) {
-            // The rotor lies before the gear, and frequencies do not care.
-            if !matches!(c.name.as_str(), "m" | "J_m" | "f_antiresonance" | "f_resonance") {
-                row[0].push_str(" (apparent, through the gear)");
-            }
-        }
+        // The rotor lies before the gear, and frequencies do not care.
+        let is_apparent = |name: &str| !matches!(name, "m" | "J_m" | "f_antiresonance" | "f_resonance");
+        let words = |c: &ServoCoefficient| {
+            format!("{}{}", c.name, if is_apparent(&c.name) { " (apparent, through the gear)" } else { "" })
+        };
+        let t = TableBuilder::new("", "", &report.coefficients);
+        table.columns[0].head.clear();
+        let told = [t.text("", "coefficient", words), t.flag("is_apparent", "", |c| is_apparent(&c.name))];
+        table.columns.splice(1..1, told);
     }
     table
 }
 
 /// Repeats by speed and direction.
-fn repeatability_table(cells: &[Repeatability]) -> TextTable {
-    TextTable {
-        caption: "Mean drive force of the steady windows, with the gear taken as lossless, and its standard deviation from run to run."
-            .to_owned(),
-        head: ["speed [m/s]", "direction", "force [N]", "std [N]", "relative std", "runs"].map(str::to_owned).to_vec(),
-        rows: cells
-            .iter()
-            .map(|c| {
-                let missing = || number::MISSING.to_owned();
-                vec![
-                    number::plain(c.speed_m_s, 3),
-                    if c.direction > 0.0 { "forward" } else { "backward" }.to_owned(),
-                    number::plain(c.force_n, 4),
-                    c.std_n.map_or_else(missing, |s| number::significant(s, 2)),
-                    c.std_n.map_or_else(missing, |s| number::percent(s / c.force_n.abs())),
-                    c.runs.to_string(),
-                ]
-            })
-            .collect(),
-    }
+fn repeatability_table(cells: &[Repeatability]) -> ResultTable {
+    let caption = "Mean drive force of the steady windows, with the gear taken as lossless, and its standard deviation from run to run.";
+    let t = TableBuilder::new("repeats", caption, cells);
+    t.build(vec![
+        t.number("speed_m_s", "speed [m/s]", |c| c.speed_m_s).plain(3),
+        t.text("direction", "direction", |c| if c.direction > 0.0 { "forward" } else { "backward" }.to_owned()),
+        t.number("force_n", "force [N]", |c| c.force_n).plain(4),
+        t.number("std_n", "std [N]", |c| c.std_n).significant(2),
+        t.number("relative_std", "relative std", |c| c.std_n.map(|s| s / c.force_n.abs())).percent(),
+        t.count("runs", "runs", |c| c.runs),
+    ])
 }
 
 fn force_chart(model: &Model) -> Chart {

@@ -5,7 +5,6 @@ use froude_identify::answer::Made;
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::uncertainty::common_key;
 use froude_records::Place;
-use froude_records::block::{Section, summary as of_summary};
 use froude_records::campaign::{Campaign, Input, Shared, Source};
 use froude_records::estimate::OWN;
 use froude_records::finding::{Finding, Severity};
@@ -204,11 +203,5 @@ fn found(
             format!("none of the models asked for can be identified from these runs{why}"),
         ));
     }
-    Ok(Found {
-        results: out,
-        summary: Some(of_summary(summary)),
-        blocks: blocks.into_iter().map(Section::from).collect(),
-        findings,
-        ..Found::default()
-    })
+    Ok(Found { results: out, summary: Some(summary), blocks, findings, ..Found::default() })
 }

@@ -1,59 +1,44 @@
 //! What belongs to all methods of the carriage on the page: the methods side by side, the calibration, the runs.
 
+use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Series};
+use froude_records::run::RunLog;
 use froude_records::text::counted;
 
 use super::Reduction;
+use crate::drag::coefficient::Coefficient;
 use crate::drag::point::Method;
 use crate::drag::report::DragReport;
 use crate::drag::setup::DragSetup;
 
 /// What belongs to all methods on the page: the paper's Table IV with its figure, which is the summary; calibration and runs.
-pub fn sections(reduction: &Reduction) -> (DocumentSection, Vec<DocumentSection>) {
+pub fn sections(reduction: &Reduction) -> (Section, Vec<Section>) {
     let Reduction { runs, setup, calibration, report } = reduction;
-    let drag = DocumentSection {
-        title: "Drag by every method".to_owned(),
-        paragraphs: summary(report, setup),
-        tables: vec![methods_table(report)],
-        charts: vec![force_chart(report)],
-    };
+    let said = Block::words(summary(report, setup));
+    let drag = Section::new("Drag by every method", [methods_table(report).into(), said, force_chart(report).into()]);
     let mut more = Vec::new();
     if let Some(c) = calibration {
-        let mut paragraphs = vec![format!(
+        let value = format!(
             "{} N/V with its interval {} N/V, from {}; the gear's efficiency is {}.",
             number::short_form(c.force_per_volt.force_per_volt_n.value, c.force_per_volt.force_per_volt_n.standard),
             number::interval(c.interval_95),
             counted(c.used, "driving run", "driving runs"),
             number::short_form(c.efficiency.value, c.efficiency.standard),
-        )];
-        paragraphs.extend(c.notes.iter().cloned());
-        more.push(DocumentSection { title: "Calibration".to_owned(), paragraphs, ..DocumentSection::default() });
+        );
+        let said = Block::words(std::iter::once(value).chain(c.notes.iter().cloned()));
+        more.push(Section::new("Calibration", [said]));
     }
-    let rows = runs
-        .logs
-        .iter()
-        .map(|log| {
-            let m = &log.meta;
-            vec![
-                m.id.clone(),
-                m.role.name().to_owned(),
-                m.carriage.pair.map_or_else(|| "–".to_owned(), |p| p.to_string()),
-                m.carriage.target_speed_m_s.map_or_else(|| "–".to_owned(), |v| number::plain(v, 3)),
-                crate::runs::way(m.carriage.direction).to_owned(),
-                number::plain(log.duration_s(), 3),
-            ]
-        })
-        .collect();
-    more.push(DocumentSection {
-        title: "Runs".to_owned(),
-        tables: vec![TextTable {
-            caption: "Complete runs that were read.".to_owned(),
-            head: ["run", "kind", "pair", "speed [m/s]", "direction", "length [s]"].map(str::to_owned).to_vec(),
-            rows,
-        }],
-        ..DocumentSection::default()
-    });
+    let t = TableBuilder::new("runs", "Complete runs that were read.", &runs.logs);
+    let table = t.build(vec![
+        t.text("run", "run", |log| log.meta.id.clone()),
+        t.text("kind", "kind", |log| log.meta.role.name().to_owned()),
+        t.count("pair", "pair", |log| log.meta.carriage.pair.map(|pair| pair as usize)),
+        t.number("speed_m_s", "speed [m/s]", |log| log.meta.carriage.target_speed_m_s).plain(3),
+        t.text("direction", "direction", |log| log.meta.carriage.direction.map(|way| way.name().to_owned())),
+        t.number("duration_s", "length [s]", RunLog::duration_s).plain(3),
+    ]);
+    more.push(Section::new("Runs", [table.into()]));
     (drag, more)
 }
 
@@ -133,43 +118,27 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
 }
 
 /// The methods side by side: the paper's Table IV.
-fn methods_table(report: &DragReport) -> TextTable {
-    let rows = report
+fn methods_table(report: &DragReport) -> ResultTable {
+    let rows: Vec<(&Coefficient, Option<(f64, Option<[f64; 2]>)>, f64)> = report
         .coefficients
         .iter()
         .zip(&report.drag_coefficients)
         .zip(&report.ratios)
-        .map(|((c, drag), ratio)| {
-            let missing = || number::MISSING.to_owned();
-            vec![
-                format!("{} ({})", c.method.words(), c.method.name()),
-                number::plain(c.value, 5),
-                c.interval_95.map_or_else(missing, number::interval),
-                c.relative_half_width().map_or_else(missing, number::percent),
-                drag.map_or_else(missing, |(value, _)| number::plain(value, 4)),
-                drag.and_then(|(_, i)| i).map_or_else(missing, number::interval),
-                number::plain(*ratio, 4),
-                c.pairs.to_string(),
-            ]
-        })
+        .map(|((c, drag), ratio)| (c, *drag, *ratio))
         .collect();
-    TextTable {
-        caption: "D_d by every method that the runs allow; ratio to the force sensor, or to MCD where there is none."
-            .to_owned(),
-        head: [
-            "method",
-            "D_d [N s²/m²]",
-            "95 % interval",
-            "half-width",
-            "C_D [1]",
-            "95 % interval",
-            "ratio",
-            "pairs per speed",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
-    }
+    let caption = "D_d by every method that the runs allow; ratio to the force sensor, or to MCD where there is none.";
+    let t = TableBuilder::new("methods", caption, &rows);
+    t.build(vec![
+        t.text("method", "", |(c, _, _)| c.method.name().to_owned()),
+        t.text("", "method", |(c, _, _)| format!("{} ({})", c.method.words(), c.method.name())),
+        t.number("d_d_n_s2_m2", "D_d [N s²/m²]", |(c, _, _)| c.value).plain(5),
+        t.interval("d_d_interval_95_n_s2_m2", "95 % interval", |(c, _, _)| c.interval_95),
+        t.number("d_d_relative_half_width", "half-width", |(c, _, _)| c.relative_half_width()).percent(),
+        t.number("c_d", "C_D [1]", |(_, drag, _)| drag.map(|(value, _)| value)).plain(4),
+        t.interval("c_d_interval_95", "95 % interval", |(_, drag, _)| drag.and_then(|(_, interval)| interval)),
+        t.number("ratio", "ratio", |(_, _, ratio)| *ratio).plain(4),
+        t.count("pairs", "pairs per speed", |(c, _, _)| c.pairs),
+    ])
 }
 
 /// Force over speed by method, with the recommended curve: the paper's Figure 2.

@@ -3,10 +3,9 @@
 use froude_identify::answer::{Answer, Made};
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::source::ReadFile;
-use froude_records::block::summary;
+use froude_records::block::Section;
 use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::estimate::Estimate;
-use froude_records::page::DocumentSection;
 use froude_records::run::{CAMPAIGN_COPY, Role, TOW};
 use froude_rig::campaign::prepare::configured;
 
@@ -121,13 +120,13 @@ fn named(source: &Source, runs: &Runs, what: &str) -> String {
     if source.name.is_empty() { runs.own_name(what) } else { source.name.clone() }
 }
 
-fn found(runs: Runs, what: &str, estimates: Vec<(Estimate, Vec<ReadFile>)>, section: DocumentSection) -> Found {
+fn found(runs: Runs, what: &str, estimates: Vec<(Estimate, Vec<ReadFile>)>, summary: Section) -> Found {
     let answer = |(estimate, files): (Estimate, Vec<ReadFile>)| -> Answer {
         Made { name: format!("{}, {}", estimate.source, estimate.law.name), estimate, files }.into()
     };
     Found {
         results: estimates.into_iter().map(answer).collect(),
-        summary: Some(summary(section)),
+        summary: Some(summary),
         beside: Some(runs.results(what)),
         is_part: runs.beside > 0,
         findings: runs.findings,

@@ -2,12 +2,11 @@
 
 use froude_identify::answer::{Answer, Made};
 use froude_identify::method::{Found, Method, MethodError, Need};
-use froude_records::block::summary as of_summary;
+use froude_records::block::{Block, Section, TableBuilder};
 use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
 use froude_records::run::{Role, RunLog, TOW};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
@@ -85,14 +84,7 @@ impl Method for KnownWeights {
         });
         let beside = calibration.is_some().then(|| runs.results(NAME));
         let summary = section(calibration.as_ref(), &setup, &results, &jogs);
-        Ok(Found {
-            results,
-            summary: Some(of_summary(summary)),
-            findings,
-            beside,
-            is_part: runs.beside > 0,
-            ..Found::default()
-        })
+        Ok(Found { results, summary: Some(summary), findings, beside, is_part: runs.beside > 0, ..Found::default() })
     }
 }
 
@@ -171,43 +163,38 @@ fn uncalibrated(source: &Source, runs: &Runs) -> Vec<Finding> {
 }
 
 /// What was found, beside what was declared, and the jogs.
-fn section(c: Option<&Calibration>, setup: &DragSetup, results: &[Answer], jogs: &[Jog]) -> DocumentSection {
-    let row = |estimate: &Estimate| {
-        let coefficient = &estimate.coefficients[record::FORCE_PER_VOLT];
-        let text = |x: Option<f64>| x.map_or_else(|| number::MISSING.to_owned(), |x| number::significant(x, 4));
-        vec![
-            estimate.method.words.clone(),
-            text(coefficient.value),
-            text(coefficient.standard_uncertainty),
-            coefficient.interval_95.map_or_else(|| number::MISSING.to_owned(), number::interval),
-        ]
-    };
-    let head = |cells: &[&str]| cells.iter().map(|cell| (*cell).to_owned()).collect();
-    let mut tables = Vec::new();
+fn section(c: Option<&Calibration>, setup: &DragSetup, results: &[Answer], jogs: &[Jog]) -> Section {
+    let mut blocks: Vec<Block> = Vec::new();
     if c.is_some() {
-        tables.push(TextTable {
-            caption: "Force per volt of the command, the motor driving the gear (not back-driven).".to_owned(),
-            head: head(&["from", "force per volt [N/V]", "standard uncertainty [N/V]", "95 % interval [N/V]"]),
-            rows: results.iter().flat_map(Answer::estimates).map(row).collect(),
-        });
+        let estimates: Vec<&Estimate> = results.iter().flat_map(Answer::estimates).collect();
+        let caption = "Force per volt of the command, the motor driving the gear (not back-driven).";
+        let t = TableBuilder::new("force_per_volt", caption, &estimates);
+        let of = |estimate: &Estimate| estimate.coefficients[record::FORCE_PER_VOLT].clone();
+        let table = t.build(vec![
+            t.text("from", "from", |e| e.method.words.clone()),
+            t.number("value_n_v", "force per volt [N/V]", |e| of(e).value),
+            t.number("standard_uncertainty_n_v", "standard uncertainty [N/V]", |e| of(e).standard_uncertainty),
+            t.interval("interval_95_n_v", "95 % interval [N/V]", |e| of(e).interval_95),
+        ]);
+        blocks.push(table.into());
     }
     if !jogs.is_empty() {
-        let row = |j: &Jog| {
-            let verdict = match j.verdict {
-                Verdict::Right => "correct".to_owned(),
-                Verdict::Reversed { after_m } => format!("REVERSED, seen after {:.2} mm", 1e3 * after_m),
-                Verdict::NoMotion { .. } => "not known: it did not move".to_owned(),
-            };
-            vec![j.id.clone(), number::plain(j.command_v, 3), number::plain(1e3 * j.way_m, 3), verdict]
+        let verdict = |j: &Jog| match j.verdict {
+            Verdict::Right => "correct".to_owned(),
+            Verdict::Reversed { after_m } => format!("REVERSED, seen after {:.2} mm", 1e3 * after_m),
+            Verdict::NoMotion { .. } => "not known: it did not move".to_owned(),
         };
-        tables.push(TextTable {
-            caption: "Jogs.".to_owned(),
-            head: head(&["run", "mean command [V]", "distance [mm]", "polarity"]),
-            rows: jogs.iter().map(row).collect(),
-        });
+        let t = TableBuilder::new("jogs", "Jogs.", jogs);
+        let table = t.build(vec![
+            t.text("run", "run", |j| j.id.clone()),
+            t.number("command_v", "mean command [V]", |j| j.command_v).plain(3),
+            t.number("distance_m", "distance [mm]", |j| j.way_m).plain(3),
+            t.text("polarity", "polarity", verdict),
+        ]);
+        blocks.push(table.into());
     }
-    let paragraphs = c.map_or_else(Vec::new, |c| sentences(c, setup));
-    DocumentSection { title: "Force per volt".to_owned(), paragraphs, tables, charts: Vec::new() }
+    blocks.extend(c.map(|c| Block::words(sentences(c, setup))));
+    Section::new("Force per volt", blocks)
 }
 
 fn sentences(c: &Calibration, setup: &DragSetup) -> Vec<String> {

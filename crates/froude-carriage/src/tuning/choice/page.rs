@@ -2,71 +2,62 @@
 
 use std::f64::consts::TAU;
 
+use froude_records::block::{Block, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 
 use super::Tuned;
 
 use crate::tuning::candidate::Candidate;
 use crate::tuning::gains::Demand;
 use crate::tuning::margins::open_loop;
+use crate::tuning::turned::turned;
 
 /// Scatter of the relay's period, as a part of it, below which it counts as none: the tick hides it.
 const LEAST_SCATTER: f64 = 1e-4;
 
 /// Gains, margins, what a count of the encoder does to the command, and the ramps; a column for each candidate.
 #[must_use]
-pub fn candidates_table(outcome: &Tuned) -> TextTable {
-    type Of = fn(&Candidate) -> Option<f64>;
-    let quantities: [(&str, Of); 19] = [
-        ("K_p [V/rad]", |c| Some(c.gains.proportional_v_rad)),
-        ("K_d [V s/rad]", |c| Some(c.gains.derivative_v_s_rad)),
-        ("K_i [V/(rad s)]", |c| Some(c.gains.integral_v_rad_s)),
-        ("derivative filter [Hz]", |c| Some(c.gains.derivative_filter_hz)),
-        ("K_p [V/count]", |c| Some(c.counts.proportional)),
-        ("K_d [V s/count]", |c| Some(c.counts.derivative)),
-        ("K_i [V/(count tick)]", |c| Some(c.counts.integral)),
-        ("command step of one count [V]", |c| Some(c.volts_per_count)),
-        ("crossover [Hz]", |c| c.margins.crossover_hz),
-        ("phase margin [°]", |c| c.margins.phase_rad.map(f64::to_degrees)),
-        ("gain margin [1]", |c| c.margins.gain),
-        ("gain margin downwards [1]", |c| c.margins.gain_reduction),
-        ("delay margin [ms]", |c| c.margins.delay_s.map(|s| 1e3 * s)),
-        ("maximum sensitivity [1]", |c| Some(c.margins.largest_sensitivity)),
-        ("phase margin with the heaviest body [°]", |c| c.heaviest?.phase_rad.map(f64::to_degrees)),
-        ("integral drives oscillation below [Hz]", |c| Some(c.gains.feeding_hz())),
-        ("following error in ramps [mm]", |c| c.following_error_m.map(|m| 1e3 * m)),
-        ("peak motor speed in homing [mm/s]", |c| c.homing_m_s.map(|v| 1e3 * v)),
-        ("requirements not met", |c| Some(c.objections.len() as f64)),
-    ];
-    let cell = |x: Option<f64>| x.map_or_else(|| number::MISSING.to_owned(), |x| number::significant(x, 3));
+pub fn candidates_table(outcome: &Tuned) -> [Block; 2] {
     let demand = Demand::default();
-    let names = outcome.candidates.iter().map(|c| c.name.clone());
-    TextTable {
-        caption: format!(
-            "Gains of the controller (eq. 6 of the MCD paper) in SI units, then K_p and K_d per encoder count and K_i per count and tick. Margins are those of the bare carriage, on the response measured \
-             from {:.1} to {:.0} Hz; one without a value has no crossing within that band. Following error and motor speed are those of the campaign's hardest ramps, bare and with the heaviest body, run through \
-             the two masses that the response shows. Required: bare, a phase margin of {:.0}°, gain margins of {} and 1/{}, a maximum sensitivity of {} at most; with the heaviest body, stability.",
-            outcome.band_hz[0],
-            outcome.band_hz[1],
-            demand.phase_rad.to_degrees(),
-            demand.gain,
-            demand.gain,
-            demand.sensitivity
-        ),
-        head: std::iter::once("quantity".to_owned()).chain(names).collect(),
-        rows: quantities
-            .iter()
-            .map(|(name, of)| match *name {
-                "requirements not met" => std::iter::once((*name).to_owned())
-                    .chain(outcome.candidates.iter().map(|c| c.objections.len().to_string()))
-                    .collect(),
-                _ => {
-                    std::iter::once((*name).to_owned()).chain(outcome.candidates.iter().map(|c| cell(of(c)))).collect()
-                }
-            })
-            .collect(),
-    }
+    let caption = format!(
+        "Gains of the controller (eq. 6 of the MCD paper) in SI units, then K_p and K_d per encoder count and K_i per count and tick. Margins are those of the bare carriage, on the response measured \
+         from {:.1} to {:.0} Hz; one without a value has no crossing within that band. Following error and motor speed are those of the campaign's hardest ramps, bare and with the heaviest body, run through \
+         the two masses that the response shows. Required: bare, a phase margin of {:.0}°, gain margins of {} and 1/{}, a maximum sensitivity of {} at most; with the heaviest body, stability.",
+        outcome.band_hz[0],
+        outcome.band_hz[1],
+        demand.phase_rad.to_degrees(),
+        demand.gain,
+        demand.gain,
+        demand.sensitivity
+    );
+    let t = TableBuilder::new("candidates", caption, &outcome.candidates);
+    let number = |key, head, of: fn(&Candidate) -> Option<f64>| t.number(key, head, of).significant(3);
+    turned(
+        "quantity",
+        t.build(vec![
+            t.text("candidate", "candidate", |c| c.name.clone()),
+            number("proportional_v_rad", "K_p [V/rad]", |c| Some(c.gains.proportional_v_rad)),
+            number("derivative_v_s_rad", "K_d [V s/rad]", |c| Some(c.gains.derivative_v_s_rad)),
+            number("integral_v_rad_s", "K_i [V/(rad s)]", |c| Some(c.gains.integral_v_rad_s)),
+            number("derivative_filter_hz", "derivative filter [Hz]", |c| Some(c.gains.derivative_filter_hz)),
+            number("proportional_v_count", "K_p [V/count]", |c| Some(c.counts.proportional)),
+            number("derivative_v_s_count", "K_d [V s/count]", |c| Some(c.counts.derivative)),
+            number("integral_v_count_tick", "K_i [V/(count tick)]", |c| Some(c.counts.integral)),
+            number("step_of_count_v", "command step of one count [V]", |c| Some(c.volts_per_count)),
+            number("crossover_hz", "crossover [Hz]", |c| c.margins.crossover_hz),
+            number("phase_margin_rad", "phase margin [°]", |c| c.margins.phase_rad),
+            number("gain_margin", "gain margin [1]", |c| c.margins.gain),
+            number("gain_margin_downwards", "gain margin downwards [1]", |c| c.margins.gain_reduction),
+            number("delay_margin_s", "delay margin [ms]", |c| c.margins.delay_s),
+            number("largest_sensitivity", "maximum sensitivity [1]", |c| Some(c.margins.largest_sensitivity)),
+            number("phase_margin_heaviest_rad", "phase margin with the heaviest body [°]", |c| c.heaviest?.phase_rad),
+            number("feeding_below_hz", "integral drives oscillation below [Hz]", |c| Some(c.gains.feeding_hz())),
+            number("following_error_m", "following error in ramps [mm]", |c| c.following_error_m),
+            number("homing_m_s", "peak motor speed in homing [mm/s]", |c| c.homing_m_s),
+            t.count("objections", "requirements not met", |c| c.objections.len()),
+        ]),
+    )
 }
 
 /// Objections to each candidate, where its margins come from, and what to write into the campaign.
@@ -130,7 +121,7 @@ fn drives_load(c: &Candidate) -> Option<f64> {
 
 /// The section of the page: table, sentences and the open loop.
 #[must_use]
-pub fn section(outcome: &Tuned) -> DocumentSection {
+pub fn section(outcome: &Tuned) -> Section {
     let mut panels = [
         ChartPanel { y_label: "|L| [1]".to_owned(), y_scale: Scale::Logarithmic, ..ChartPanel::default() },
         ChartPanel { y_label: "phase of L [°]".to_owned(), ..ChartPanel::default() },
@@ -162,17 +153,15 @@ pub fn section(outcome: &Tuned) -> DocumentSection {
         }
         Err(error) => format!("The relay gave no limit cycle: {error}."),
     };
-    DocumentSection {
-        title: "Gains".to_owned(),
-        paragraphs: std::iter::once(cycle).chain(sentences(outcome)).collect(),
-        tables: vec![candidates_table(outcome)],
-        charts: vec![Chart {
-            name: "bode".to_owned(),
-            title: "Open loop".to_owned(),
-            caption: "Open loop L = C·P: the controller's own response times the measured one of the drive.".to_owned(),
-            x_label: "frequency [Hz]".to_owned(),
-            x_scale: Scale::Logarithmic,
-            panels: panels.to_vec(),
-        }],
-    }
+    let chart = Chart {
+        name: "bode".to_owned(),
+        title: "Open loop".to_owned(),
+        caption: "Open loop L = C·P: the controller's own response times the measured one of the drive.".to_owned(),
+        x_label: "frequency [Hz]".to_owned(),
+        x_scale: Scale::Logarithmic,
+        panels: panels.to_vec(),
+    };
+    let said = Block::words(std::iter::once(cycle).chain(sentences(outcome)));
+    let [shown, table] = candidates_table(outcome);
+    Section::new("Gains", [shown, table, said, chart.into()])
 }

@@ -2,12 +2,14 @@
 
 use std::f64::consts::TAU;
 
+use froude_records::block::{Block, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 use froude_records::run::Declared;
 
 use super::{CarriageModes, StateModes};
-use crate::tuning::resonance::TwoMassModes;
+use crate::tuning::resonance::{Mode, TwoMassModes};
+use crate::tuning::turned::turned;
 
 /// Free mode without the gear's loss, Hz, and its standard uncertainty; `None` where no efficiency is declared.
 #[must_use]
@@ -17,48 +19,43 @@ pub fn free_without_loss(modes: &TwoMassModes, efficiency: Option<Declared>) -> 
 
 /// Modes by state of the body.
 #[must_use]
-pub fn modes_table(outcome: &CarriageModes) -> TextTable {
-    let missing = || number::MISSING.to_owned();
-    let mut rows: Vec<Vec<String>> = [
-        "load mode f_l (anti-resonance) [Hz]",
-        "its damping ratio [1]",
-        "free mode f_r (resonance), apparent [Hz]",
-        "its damping ratio [1]",
-        "free mode, corrected for the gear's loss [Hz]",
-        "load over motor inertia r, apparent [1]",
-        "r, corrected for the gear's loss [1]",
-        "unexplained part of the response, RMS",
-        "unexplained part of the response, median",
-    ]
-    .map(|name| vec![name.to_owned()])
-    .to_vec();
-    for s in &outcome.states {
-        let cells = s.modes.as_ref().map_or_else(
-            |_| vec![missing(); rows.len()],
-            |m| {
-                let without = free_without_loss(m, outcome.efficiency);
-                vec![
-                    number::short_form(m.load.frequency_hz, m.load.frequency_std_hz),
-                    number::short_form(m.load.damping, m.load.damping_std),
-                    number::short_form(m.free.frequency_hz, m.free.frequency_std_hz),
-                    number::short_form(m.free.damping, m.free.damping_std),
-                    without.map_or_else(missing, |(hz, std)| number::short_form(hz, std)),
-                    number::plain(m.inertia_ratio, 3),
-                    outcome.efficiency.map_or_else(missing, |e| number::plain(e.value * m.inertia_ratio, 3)),
-                    number::percent(m.relative_residual),
-                    number::percent(m.median_residual),
-                ]
-            },
-        );
-        rows.iter_mut().zip(cells).for_each(|(row, cell)| row.push(cell));
-    }
+pub fn modes_table(outcome: &CarriageModes) -> [Block; 2] {
+    let caption = "Modes seen from the motor: that of the load with the motor held (the dip of the response, to shape for), and that of both masses free (its peak).";
+    let t = TableBuilder::new("modes", caption, &outcome.states);
+    let of = |s: &StateModes| s.modes.as_ref().ok().copied();
+    let uncertain = |keys, head, value: &dyn Fn(TwoMassModes) -> Option<(f64, f64)>| {
+        t.uncertain(keys, head, |s| Some(value(of(s)?)?.0), |s| Some(value(of(s)?)?.1))
+    };
+    let frequency = |mode: Mode| Some((mode.frequency_hz, mode.frequency_std_hz));
+    let damping = |mode: Mode| Some((mode.damping, mode.damping_std));
     let body = |s: &StateModes| if s.body == "none" { "bare".to_owned() } else { s.body.clone() };
-    TextTable {
-        caption: "Modes seen from the motor: that of the load with the motor held (the dip of the response, to shape for), and that of both masses free (its peak)."
-            .to_owned(),
-        head: std::iter::once("mode".to_owned()).chain(outcome.states.iter().map(body)).collect(),
-        rows,
-    }
+    turned(
+        "mode",
+        t.build(vec![
+            t.text("body", "body", body),
+            uncertain(["load_hz", "load_standard_hz"], "load mode f_l (anti-resonance) [Hz]", &|m| frequency(m.load)),
+            uncertain(["load_damping", "load_damping_standard"], "its damping ratio [1]", &|m| damping(m.load)),
+            uncertain(["free_hz", "free_standard_hz"], "free mode f_r (resonance), apparent [Hz]", &|m| {
+                frequency(m.free)
+            }),
+            uncertain(["free_damping", "free_damping_standard"], "its damping ratio [1]", &|m| damping(m.free)),
+            uncertain(
+                ["free_corrected_hz", "free_corrected_standard_hz"],
+                "free mode, corrected for the gear's loss [Hz]",
+                &|m| free_without_loss(&m, outcome.efficiency),
+            ),
+            t.number("inertia_ratio", "load over motor inertia r, apparent [1]", |s| Some(of(s)?.inertia_ratio))
+                .plain(3),
+            t.number("inertia_ratio_corrected", "r, corrected for the gear's loss [1]", |s| {
+                Some(outcome.efficiency?.value * of(s)?.inertia_ratio)
+            })
+            .plain(3),
+            t.number("rms_residual", "unexplained part of the response, RMS", |s| Some(of(s)?.relative_residual))
+                .percent(),
+            t.number("median_residual", "unexplained part of the response, median", |s| Some(of(s)?.median_residual))
+                .percent(),
+        ]),
+    )
 }
 
 /// What to put into the campaign, and why not 13 Hz.
@@ -114,7 +111,7 @@ pub fn sentences(outcome: &CarriageModes) -> Vec<String> {
 
 /// The section of the page: table, sentences and the responses.
 #[must_use]
-pub fn section(outcome: &CarriageModes) -> DocumentSection {
+pub fn section(outcome: &CarriageModes) -> Section {
     let series = |s: &StateModes| Series {
         name: s.body.clone(),
         mark: Mark::Line,
@@ -122,11 +119,7 @@ pub fn section(outcome: &CarriageModes) -> DocumentSection {
         y: s.plant.iter().map(|p| p.plant_rad_v.norm() * (TAU * p.frequency_hz).powi(2)).collect(),
         ..Series::default()
     };
-    DocumentSection {
-        title: "Modes".to_owned(),
-        paragraphs: sentences(outcome),
-        tables: vec![modes_table(outcome)],
-        charts: vec![Chart {
+    let chart = Chart {
             name: "resonance".to_owned(),
             title: "Acceleration response of the motor".to_owned(),
             caption: "Acceleration of the motor per volt: the dip is the load swinging on a still motor, the peak both masses free."
@@ -138,6 +131,7 @@ pub fn section(outcome: &CarriageModes) -> DocumentSection {
                 y_scale: Scale::Logarithmic,
                 series: outcome.states.iter().map(series).collect(),
             }],
-        }],
-    }
+    };
+    let [shown, table] = modes_table(outcome);
+    Section::new("Modes", [shown, table, Block::words(sentences(outcome)), chart.into()])
 }
