@@ -4,12 +4,12 @@ use froude_mesh::measure::Measure;
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::family::Family;
 use froude_panel::problem::Frame;
-use froude_panel::refine::{Forecast, Refined, Wanted, plan, refine};
+use froude_panel::refine::{Forecast, Wanted, plan, refine};
+use froude_records::block::{Block, TableBuilder, facts};
 use froude_records::number;
-use froude_records::page::TextTable;
 
 use super::exports::{self, extras};
-use super::facets::{self, Facets, correct};
+use super::facets::{self, correct};
 use super::frame::{Axes, Orientation, Point, inertia_m5, sentence};
 use super::load::{Loaded, load};
 use super::options::Asked;
@@ -100,11 +100,10 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
             }
         }
     }
-    let mut tables =
-        vec![hydrostatics(&cases[0].refined, loaded.shape.is_none(), cases[0].facets.as_ref(), density_kg_m3, &frame)];
+    let mut tables = Vec::from(hydrostatics(&cases[0], loaded.shape.is_none(), density_kg_m3, &frame));
     let (shape, refined) = (loaded.shape.as_ref(), &cases[0].refined);
-    tables.extend(cross_checks::table(shape, &coarse, refined, density_kg_m3, &frame));
-    tables.extend(facets::table(&cases[0], density_kg_m3, job.is_smooth));
+    tables.extend(cross_checks::table(shape, &coarse, refined, density_kg_m3, &frame).map(Block::from));
+    tables.extend(facets::table(&cases[0], density_kg_m3, job.is_smooth).map(Block::from));
     if let (Some(tank), Some(surface_m)) = (job.tank_m, job.surface_m) {
         findings.push(limits::clearance(&coarse, tank, surface_m));
     }
@@ -157,47 +156,52 @@ fn extent_along(mesh: &Mesh, axis: usize) -> f64 {
     high - low
 }
 
-/// Volume, centre of buoyancy, displaced mass and its inertia.
-pub(crate) fn hydrostatics(
-    refined: &Refined,
-    is_mesh: bool,
-    facets: Option<&Facets>,
-    density_kg_m3: f64,
-    frame: &Frame,
-) -> TextTable {
-    let finest = refined.steps.last().map(|s| s.measure);
-    let known = |value: f64, digits: usize, scale: f64| match facets {
-        Some(facets) => with_uncertainty(value, scale * facets.volume_uncertainty_m3),
-        None => number::plain(value, digits),
+/// Volume, centre of buoyancy, displaced mass and its inertia: in words, and as numbers.
+fn hydrostatics(case: &Case, is_mesh: bool, density_kg_m3: f64, frame: &Frame) -> [Block; 2] {
+    let Case { refined, facets, .. } = case;
+    let volume_m3 = refined.volume_m3;
+    let expanded_m3 = facets.as_ref().map(|facets| facets.volume_uncertainty_m3);
+    let known = |scale: f64| match expanded_m3 {
+        Some(expanded_m3) => with_uncertainty([scale * volume_m3, scale * expanded_m3]),
+        None => number::plain(scale * volume_m3, 6),
     };
     let of = match facets {
         Some(facets) => {
-            let of_facets = number::plain(refined.volume_m3 - facets.volume_m3, 6);
+            let of_facets = number::plain(volume_m3 - facets.volume_m3, 6);
             format!("of the smooth body; that of the facets is {of_facets} m³")
         }
         None if is_mesh => "exactly that of the facets".to_owned(),
         None => "exact for the given dimensions".to_owned(),
     };
     let mut rows = vec![
-        vec!["volume".to_owned(), format!("{} m³, {of}", known(refined.volume_m3, 6, 1.0))],
-        vec!["displaced mass".to_owned(), format!("{} kg", known(density_kg_m3 * refined.volume_m3, 6, density_kg_m3))],
+        ("volume", format!("{} m³, {of}", known(1.0))),
+        ("displaced mass", format!("{} kg", known(density_kg_m3))),
     ];
+    let finest = refined.steps.last().map(|s| s.measure);
+    let inertia_kg_m2 =
+        |m: Measure| inertia_m5(m.inertia_m5(), m.volume_m3, m.centroid_m, frame).map(|j| density_kg_m3 * j);
     if let Some(m) = finest {
-        let list = |v: Vec3, digits| v.map(|x| number::plain(if x.abs() < 1e-12 { 0.0 } else { x }, digits)).join(", ");
-        rows.push(vec!["wetted area".to_owned(), format!("{} m²", number::plain(m.area_m2, 6))]);
-        rows.push(vec![
-            "centre of buoyancy, in the axes of the mesh".to_owned(),
-            format!("({}) m", list(m.centroid_m, 5)),
-        ]);
-        let inertia = inertia_m5(m.inertia_m5(), m.volume_m3, m.centroid_m, frame).map(|j| density_kg_m3 * j);
-        rows.push(vec![
-            "inertia of the displaced water about the stated point, xx, yy, zz".to_owned(),
-            format!("({}) kg m²", list(inertia, 5)),
-        ]);
+        let list = |v: Vec3| v.map(|x| number::plain(if x.abs() < 1e-12 { 0.0 } else { x }, 5)).join(", ");
+        rows.push(("wetted area", format!("{} m²", number::plain(m.area_m2, 6))));
+        rows.push(("centre of buoyancy, in the axes of the mesh", format!("({}) m", list(m.centroid_m))));
+        let inertia = list(inertia_kg_m2(m));
+        rows.push(("inertia of the displaced water about the stated point, xx, yy, zz", format!("({inertia}) kg m²")));
     }
-    TextTable {
-        caption: "Hydrostatics; area, centre and inertia are those of the finest mesh with its flat facets.".to_owned(),
-        head: vec![String::new(), "value".to_owned()],
-        rows,
-    }
+    let caption = "Hydrostatics; area, centre and inertia are those of the finest mesh with its flat facets.";
+    let t = TableBuilder::new("", caption, &rows);
+    let shown = t.build(vec![
+        t.text("", "quantity", |(name, _)| (*name).to_owned()),
+        t.text("", "value", |(_, value)| value.clone()),
+    ]);
+    let f = facts("hydrostatics", "", &finest);
+    let numbers = f.build(vec![
+        f.number("volume_m3", "", |_| volume_m3),
+        f.number("expanded_95/volume_m3", "", |_| expanded_m3),
+        f.number("displaced_mass_kg", "", |_| density_kg_m3 * volume_m3),
+        f.number("expanded_95/displaced_mass_kg", "", |_| expanded_m3.map(|m3| density_kg_m3 * m3)),
+        f.number("wetted_area_m2", "", |m| m.map(|m| m.area_m2)),
+        f.numbers("centre_of_buoyancy_m", "", |m| m.map(|m| m.centroid_m.to_vec())),
+        f.numbers("inertia_kg_m2", "", |m| m.map(|m| inertia_kg_m2(m).to_vec())),
+    ]);
+    [shown.into(), numbers.into()]
 }

@@ -7,11 +7,11 @@ use froude_mesh::{Mesh, Vec3};
 use froude_panel::matrix::AddedMass;
 use froude_panel::problem::Frame;
 use froude_panel::refine::Refined;
+use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::body::Shape;
 use froude_records::number;
-use froude_records::page::TextTable;
 
-use super::record::diagonal_head;
+use super::record::{diagonal_head, diagonal_key};
 
 /// An ellipsoid in the body's box whose volume differs by more than this part is no yardstick.
 const LIKE: f64 = 0.3;
@@ -26,12 +26,9 @@ pub fn table(
     refined: &Refined,
     density_kg_m3: f64,
     frame: &Frame,
-) -> Option<TextTable> {
-    let line = |name: &str, diagonal: [Option<f64>; 6]| {
-        let cells = diagonal.map(|a| a.map_or_else(|| "–".to_owned(), |a| number::plain(density_kg_m3 * a, 5)));
-        std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>()
-    };
-    let mut rows = vec![line("this result", core::array::from_fn(|i| Some(refined.value[i][i])))];
+) -> Option<ResultTable> {
+    let mut rows: Vec<(String, [Option<f64>; 6])> =
+        vec![("this result".to_owned(), core::array::from_fn(|i| Some(refined.value[i][i])))];
     let (low, high) = bounds(mesh);
     let half: Vec3 = core::array::from_fn(|a| 0.5 * (high[a] - low[a]));
     let centre: Vec3 = core::array::from_fn(|a| 0.5 * (high[a] + low[a]));
@@ -48,29 +45,30 @@ pub fn table(
             let [length, breadth, height] = half.map(|h| number::plain(2.0 * h, 4));
             format!("ellipsoid in the same box, {length} × {breadth} × {height} m (Lamb)")
         };
-        rows.push(line(&name, core::array::from_fn(|i| Some(moved[i][i]))));
+        rows.push((name, core::array::from_fn(|i| Some(moved[i][i]))));
     }
     if shape.is_some()
         && let Ok(strips) = strip_added_mass(&stations(mesh))
     {
         let matrix = AddedMass { matrix: strips, asymmetry: 0.0, frame: Frame::at([0.0; 3]) }.seen_from(frame).matrix;
-        rows.push(line(
-            "strips of elliptic sections (Newman)",
-            core::array::from_fn(|i| (i > 0).then_some(matrix[i][i])),
-        ));
+        let name = "strips of elliptic sections (Newman)".to_owned();
+        rows.push((name, core::array::from_fn(|i| (i > 0).then_some(matrix[i][i]))));
     }
     if let Some(Shape::Cylinder { length_m, section }) = shape
         && section.major_m == section.minor_m
         && let Ok(across) = circular_cylinder_added_mass_m3(section.major_m, *length_m)
     {
-        rows.push(line("circular cylinder (DNV-RP-C205)", [None, Some(across), Some(across), None, None, None]));
+        let name = "circular cylinder (DNV-RP-C205)".to_owned();
+        rows.push((name, [None, Some(across), Some(across), None, None, None]));
     }
     let caption = "Cross-checks in unbounded water. These are other bodies: the more the shape differs, the more the result may differ.";
-    (rows.len() > 1).then(|| TextTable {
-        caption: caption.to_owned(),
-        head: std::iter::once(String::new()).chain((0..6).map(diagonal_head)).collect(),
-        rows,
-    })
+    let t = TableBuilder::new("cross_checks", caption, &rows);
+    let of = |i: usize| {
+        t.number(&diagonal_key(i), &diagonal_head(i), move |(_, diagonal)| diagonal[i].map(|a| density_kg_m3 * a))
+            .plain(5)
+    };
+    let columns = std::iter::once(t.text("body", "body", |(name, _)| name.clone())).chain((0..6).map(of));
+    (rows.len() > 1).then(|| t.build(columns.collect()))
 }
 
 fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {

@@ -17,14 +17,15 @@ use froude_mesh::{Mesh, Vec3};
 use froude_panel::mirror::{Kind, Mirror};
 use froude_panel::problem::{Frame, Problem, Solution};
 use froude_panel::refine::{Refined, RefinedParts, Wanted, forecast, memory_bytes};
+use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::page::TextTable;
 
 use super::frame::inertia_m5;
 use super::load::WARP;
-use super::record::diagonal_name;
+use super::record::{diagonal_name, unit};
 use crate::outcome::Case;
+use crate::uncertain::{signed_percent, told};
 
 /// Angle between facets from which an edge is an edge of the body, rad: seven segments to a circle still count as round.
 const CREASE_RAD: f64 = 52.0 * core::f64::consts::PI / 180.0;
@@ -251,46 +252,34 @@ pub(super) fn is_sharp(is_smooth: bool) -> Result<&'static str, Finding> {
 }
 
 /// What the facets change, entry by entry.
-pub(super) fn table(case: &Case, density_kg_m3: f64, is_smooth: bool) -> Option<TextTable> {
+pub(super) fn table(case: &Case, density_kg_m3: f64, is_smooth: bool) -> Option<ResultTable> {
     let facets = case.facets.as_ref()?;
-    let rows = (0..6).map(|i| {
-        let (value, of_all) = (case.refined.value[i][i], case.refined.uncertainty[i][i]);
-        let [apart, of_facets] = [facets.correction[i][i], facets.uncertainty[i][i]];
-        let polyhedron = value - apart;
-        let of_panels = (of_all * of_all - of_facets * of_facets).max(0.0).sqrt();
-        let of_facets = of_all - of_panels;
-        vec![
-            diagonal_name(i),
-            number::plain(density_kg_m3 * polyhedron, 6),
-            percent_of(of_panels, polyhedron).replace('+', ""),
-            percent_of(apart, polyhedron),
-            percent_of(of_facets, polyhedron).replace('+', ""),
-        ]
-    });
-    Some(TextTable {
-        caption: format!(
-            "The matrix is that of the smooth body with the corners of the mesh: polyhedron plus difference. Edges of more than {:.0}°, and those that belong to no curve of three turns or more, count as edges of \
-             the body. The two uncertainties add up. {}",
-            CREASE_RAD.to_degrees(),
-            if is_smooth { IS_SMOOTH } else { "--smooth and --polyhedron state which body is meant." }
-        ),
-        head: [
-            "",
-            "polyhedron [kg, kg m²]",
-            "uncertainty of the panels",
-            "smooth body minus polyhedron",
-            "its uncertainty",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    })
-}
-
-fn percent_of(part: f64, whole: f64) -> String {
-    if whole.abs() > 0.0 && part.is_finite() {
-        format!("{:+.2} %", 100.0 * part / whole.abs())
-    } else {
-        "–".to_owned()
-    }
+    let polyhedron = |i: usize| case.refined.value[i][i] - facets.correction[i][i];
+    let of_panels = |i: usize| {
+        let (all, facets) = (case.refined.uncertainty[i][i], facets.uncertainty[i][i]);
+        (all * all - facets * facets).max(0.0).sqrt()
+    };
+    let part = |i: usize, x: f64| {
+        let whole = polyhedron(i).abs();
+        (whole > 0.0 && x.is_finite()).then(|| x / whole)
+    };
+    let unsigned = |part: f64| signed_percent(part).replace('+', "");
+    let caption = format!(
+        "The matrix is that of the smooth body with the corners of the mesh: polyhedron plus difference. Edges of more than {:.0}°, and those that belong to no curve of three turns or more, count as edges of \
+         the body. The two uncertainties add up. {}",
+        CREASE_RAD.to_degrees(),
+        if is_smooth { IS_SMOOTH } else { "--smooth and --polyhedron state which body is meant." }
+    );
+    let t = TableBuilder::new("facets", caption, &[0, 1, 2, 3, 4, 5]);
+    let mut columns = vec![
+        t.text("entry", "entry", |i| diagonal_name(*i)),
+        t.text("unit", "", |i| unit(*i, *i).to_owned()),
+        t.number("polyhedron", "polyhedron [kg, kg m²]", |i| density_kg_m3 * polyhedron(*i)).plain(6),
+    ];
+    columns.extend(told(&t, "panels", "uncertainty of the panels", |i| part(*i, of_panels(*i)), unsigned));
+    let head = "smooth body minus polyhedron";
+    columns.extend(told(&t, "difference", head, |i| part(*i, facets.correction[*i][*i]), signed_percent));
+    let of_facets = |i: &usize| part(*i, case.refined.uncertainty[*i][*i] - of_panels(*i));
+    columns.extend(told(&t, "facets", "its uncertainty", of_facets, unsigned));
+    Some(t.build(columns))
 }

@@ -5,12 +5,13 @@
 use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_hydro::sloshing::rectangular_tank_modes_rad_s;
 use froude_mesh::Mesh;
+use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::page::TextTable;
 
-use super::record::diagonal_name;
+use super::record::{diagonal_name, unit};
 use crate::outcome::Case;
+use crate::uncertain::{signed_percent, told};
 
 /// ω²d/g below which the lid, and above which φ = 0, is a fair picture.
 const SLOW: f64 = 0.1;
@@ -18,29 +19,23 @@ const FAST: f64 = 10.0;
 
 /// Diagonals side by side; `None` with one case.
 #[must_use]
-pub fn table(cases: &[Case], density_kg_m3: f64) -> Option<TextTable> {
+pub fn table(cases: &[Case], density_kg_m3: f64) -> Option<ResultTable> {
     let (first, others) = cases.split_first().filter(|(_, others)| !others.is_empty())?;
-    let rows = (0..6)
-        .map(|i| {
-            let deep = first.refined.value[i][i];
-            let mut row = vec![diagonal_name(i), number::plain(density_kg_m3 * deep, 6)];
-            for case in others {
-                let value = case.refined.value[i][i];
-                row.push(number::plain(density_kg_m3 * value, 6));
-                row.push(format!("{:+.2} %", 100.0 * (value / deep - 1.0)));
-            }
-            row
-        })
-        .collect();
-    let mut head = vec![String::new(), "unbounded [kg, kg m²]".to_owned()];
+    let of = |case: &Case, i: usize| case.refined.value[i][i];
+    let caption = "Zero- and infinite-frequency limits of the water's surface. They are not bounds: at frequencies between them, waves (in a tank, sloshing) may give values outside.";
+    let t = TableBuilder::new("limits", caption, &[0, 1, 2, 3, 4, 5]);
+    let mass = |case, head| t.number(Case::key(case), head, |i| density_kg_m3 * of(case, *i)).plain(6);
+    let mut columns = vec![
+        t.text("entry", "entry", |i| diagonal_name(*i)),
+        t.text("unit", "", |i| unit(*i, *i).to_owned()),
+        mass(first, "unbounded [kg, kg m²]"),
+    ];
     for case in others {
-        head.extend([case.title.clone(), "change".to_owned()]);
+        columns.push(mass(case, &case.title));
+        let change = |i: &usize| of(case, *i) / of(first, *i) - 1.0;
+        columns.extend(told(&t, &format!("change/{}", case.key()), "change", change, signed_percent));
     }
-    Some(TextTable {
-        caption: "Zero- and infinite-frequency limits of the water's surface. They are not bounds: at frequencies between them, waves (in a tank, sloshing) may give values outside.".to_owned(),
-        head,
-        rows,
-    })
+    Some(t.build(columns))
 }
 
 /// How far the body is from walls, bottom and surface: correction of a test depends on it.

@@ -3,9 +3,9 @@
 use froude_identify::method::Export;
 use froude_panel::problem::Frame;
 use froude_panel::refine::Refined;
+use froude_records::block::Block;
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
-use froude_records::page::TextTable;
 
 use crate::facets::Facets;
 
@@ -22,6 +22,18 @@ pub struct Case {
     pub refined: Refined,
     /// What the facets of a mesh changed in it.
     pub facets: Option<Facets>,
+}
+
+impl Case {
+    /// Its surroundings as a key.
+    #[must_use]
+    pub const fn key(&self) -> &'static str {
+        match self.is_lid {
+            None => "unbounded",
+            Some(true) => "rigid_lid",
+            Some(false) => "free_surface",
+        }
+    }
 }
 
 /// What came out.
@@ -42,7 +54,7 @@ pub struct BodyOutcome {
     /// What is known about body and mesh, a sentence each.
     pub notes: Vec<String>,
     /// Cross-checks and hydrostatics.
-    pub tables: Vec<TextTable>,
+    pub tables: Vec<Block>,
     /// Doubts.
     pub findings: Vec<Finding>,
     /// A record a matrix.

@@ -1,17 +1,18 @@
 //! The report of an added mass: matrix, convergence, configurations.
 
-use froude_panel::refine::Refined;
-use froude_records::estimate::Estimate;
+use froude_panel::refine::{Refined, Step};
+use froude_records::block::{Block, ResultTable, Section, TableBuilder, facts};
+use froude_records::estimate::{Coefficient, Estimate};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
+use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 
 use super::facets::Facets;
 use super::limits;
 use super::links::{Configuration, LinksOutcome, no_fits};
-use super::record::{MOTIONS, diagonal_head, diagonal_name, entry_name};
+use super::record::{MOTIONS, diagonal_head, diagonal_key, diagonal_name, entry_name};
 use super::several::SeveralOutcome;
 use crate::outcome::BodyOutcome;
-use crate::uncertain::with_uncertainty;
+use crate::uncertain::{expanded, told, with_uncertainty};
 
 /// Part of the largest of its kind below which an entry is that of a symmetry, and of rounding.
 const NOTHING: f64 = 1e-6;
@@ -28,79 +29,61 @@ fn motions(refined: &Refined) -> impl Iterator<Item = usize> + '_ {
 
 /// The matrix in kg, kg m, kg m², row by row.
 #[must_use]
-pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
-    let rows = (0..6)
-        .map(|i| {
-            let cells = (0..6).map(|j| {
-                let (value, u) = (density_kg_m3 * refined.value[i][j], density_kg_m3 * refined.uncertainty[i][j]);
-                // Below its uncertainty, and zero by symmetry to rounding.
-                if value.abs() <= u
-                    && value.abs() < NOTHING * density_kg_m3 * (kind(refined, i) * kind(refined, j)).sqrt()
-                {
-                    "0".to_owned()
-                } else {
-                    with_uncertainty(value, u)
-                }
-            });
-            std::iter::once(MOTIONS[i].to_owned()).chain(cells).collect()
-        })
-        .collect();
-    TextTable {
-        caption: "Added mass A: the load on the body is F = −A·v̇, force in the first three rows and moment in the last three. kg, kg m, \
-                  kg m²; ± is the uncertainty of panels and facets, 95 %."
-            .to_owned(),
-        head: std::iter::once("").chain(MOTIONS).map(str::to_owned).collect(),
-        rows,
+pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> ResultTable {
+    let caption = "Added mass A: the load on the body is F = −A·v̇, force in the first three rows and moment in the last three. kg, kg m, \
+                   kg m²; ± is the uncertainty of panels and facets, 95 %.";
+    let t = TableBuilder::new("matrix", caption, &[0, 1, 2, 3, 4, 5]);
+    let mut columns = vec![t.text("load", "load", |i: &usize| MOTIONS[*i].to_owned())];
+    for j in 0..6 {
+        let of = |i: &usize| [refined.value[*i][j], refined.uncertainty[*i][j]].map(|a| density_kg_m3 * a);
+        let cell = |i: &usize| {
+            let [value, u] = of(i);
+            // Below its uncertainty, and zero by symmetry to rounding.
+            let nothing = NOTHING * density_kg_m3 * (kind(refined, *i) * kind(refined, j)).sqrt();
+            if value.abs() <= u && value.abs() < nothing { "0".to_owned() } else { with_uncertainty([value, u]) }
+        };
+        let [value, u, _] = expanded(&t, MOTIONS[j], "", of);
+        columns.extend([value, u, t.text("", MOTIONS[j], cell)]);
     }
+    t.build(columns)
 }
 
 /// Diagonal without dimension: over ρV (ρVL² for rotations), and over ρLⁿ as WAMIT prints it.
 #[must_use]
-pub fn dimensionless_table(refined: &Refined, length_m: f64) -> TextTable {
+pub fn dimensionless_table(refined: &Refined, length_m: f64) -> ResultTable {
     let v = refined.volume_m3;
-    let rows = (0..6)
-        .map(|i| {
-            let [of_volume, of_length] =
-                if i < 3 { [v, length_m.powi(3)] } else { [v * length_m.powi(2), length_m.powi(5)] };
-            let of = |size: f64| with_uncertainty(refined.value[i][i] / size, refined.uncertainty[i][i] / size);
-            vec![diagonal_name(i), of(of_volume), of(of_length)]
-        })
-        .collect();
-    TextTable {
-        caption: format!(
-            "Diagonal without dimension; V = {} m³, L = {} m.",
-            number::plain(v, 6),
-            number::plain(length_m, 6)
-        ),
-        head: ["", "A/(ρV), A/(ρVL²) [1]", "A/(ρL³), A/(ρL⁵) [1], as WAMIT with ULEN = L"].map(str::to_owned).to_vec(),
-        rows,
-    }
+    let caption =
+        format!("Diagonal without dimension; V = {} m³, L = {} m.", number::plain(v, 6), number::plain(length_m, 6));
+    let t = TableBuilder::new("dimensionless", caption, &[0, 1, 2, 3, 4, 5]);
+    let over = |size: [f64; 2]| {
+        move |i: &usize| [refined.value[*i][*i], refined.uncertainty[*i][*i]].map(|a| a / size[*i / 3])
+    };
+    let of_volume = over([v, v * length_m.powi(2)]);
+    let of_length = over([length_m.powi(3), length_m.powi(5)]);
+    let mut columns = vec![t.text("entry", "entry", |i| diagonal_name(*i))];
+    columns.extend(expanded(&t, "of_volume", "A/(ρV), A/(ρVL²) [1]", of_volume));
+    columns.extend(expanded(&t, "of_length", "A/(ρL³), A/(ρL⁵) [1], as WAMIT with ULEN = L", of_length));
+    t.build(columns)
 }
 
 /// Meshes, work and what they gave.
 #[must_use]
-pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
-    let rows = refined
-        .steps
-        .iter()
-        .map(|s| {
-            let a = &s.added_mass.matrix;
-            let mut row = vec![s.panels.to_string(), s.unknowns.to_string(), s.iterations.to_string()];
-            let is_zero = |i: usize| a[i][i].abs() < 1e-12 * kind(refined, i);
-            row.extend((0..6).map(|i| number::plain(if is_zero(i) { 0.0 } else { density_kg_m3 * a[i][i] }, 6)));
-            row.push(format!("{:.1e}", s.added_mass.asymmetry));
-            row
-        })
-        .collect();
-    let head = ["panels", "unknowns", "iterations"].map(str::to_owned).into_iter();
-    let masses = (0..6).map(diagonal_head);
-    TextTable {
-        caption: "Meshes, the coarsest first. The last column is the largest raw asymmetry |A_ij − A_ji|/√(A_ii A_jj): an indicator, not an estimate \
-                  of the error."
-            .to_owned(),
-        head: head.chain(masses).chain(["asymmetry [1]".to_owned()]).collect(),
-        rows,
-    }
+pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> ResultTable {
+    let caption = "Meshes, the coarsest first. The last column is the largest raw asymmetry |A_ij − A_ji|/√(A_ii A_jj): an indicator, not an estimate \
+                   of the error.";
+    let t = TableBuilder::new("meshes", caption, &refined.steps);
+    let mut columns = vec![
+        t.count("panels", "panels", |s| s.panels),
+        t.count("unknowns", "unknowns", |s| s.unknowns),
+        t.count("iterations", "iterations", |s| s.iterations),
+    ];
+    columns.extend((0..6).map(|i| {
+        let of = |s: &Step| Some(s.added_mass.matrix[i][i]).filter(|a| a.abs() >= 1e-12 * kind(refined, i));
+        t.number(&diagonal_key(i), &diagonal_head(i), |s| density_kg_m3 * of(s).unwrap_or(0.0)).plain(6)
+    }));
+    let words = |asymmetry: f64| format!("{asymmetry:.1e}");
+    columns.extend(told(&t, "asymmetry", "asymmetry [1]", |s| s.added_mass.asymmetry, words));
+    t.build(columns)
 }
 
 /// Distance of each mesh's diagonal from the value given, over panels.
@@ -174,62 +157,44 @@ pub fn convergence_words(refined: &Refined) -> Vec<String> {
 
 /// The configurations as Table 6 has them.
 #[must_use]
-pub fn links_table(configurations: &[Configuration], density_kg_m3: f64) -> TextTable {
-    let rows = configurations
-        .iter()
-        .map(|c| {
-            let r = &c.refined;
-            let mass = |i: usize| with_uncertainty(density_kg_m3 * r.value[i][i], density_kg_m3 * r.uncertainty[i][i]);
-            let part = |i: usize| with_uncertainty(r.value[i][i] / r.volume_m3, r.uncertainty[i][i] / r.volume_m3);
-            let slender = number::plain(r.value[1][1] / c.length_m.powi(3), 4);
-            vec![
-                c.name.clone(),
-                number::plain(1e3 * r.volume_m3, 5),
-                mass(0),
-                mass(1),
-                mass(2),
-                part(0),
-                part(1),
-                part(2),
-                slender,
-            ]
-        })
-        .collect();
-    TextTable {
-        caption: "Added mass of the configurations (HnLT: head, n links, tail), deeply submerged; C_A = μ/(ρV) (USR eq. 22), and the sway mass over ρL³ as WAMIT prints \
-                  it. ± is the numerical uncertainty, 95 %."
-            .to_owned(),
-        head: ["", "V [10⁻³ m³]", "μ_x [kg]", "μ_y [kg]", "μ_z [kg]", "C_Ax [1]", "C_Ay [1]", "C_Az [1]", "μ_y/(ρL³) [1]"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows,
+pub fn links_table(configurations: &[Configuration], density_kg_m3: f64) -> ResultTable {
+    let caption = "Added mass of the configurations (HnLT: head, n links, tail), deeply submerged; C_A = μ/(ρV) (USR eq. 22), and the sway mass over ρL³ as WAMIT prints \
+                   it. ± is the numerical uncertainty, 95 %.";
+    let t = TableBuilder::new("configurations", caption, configurations);
+    let mut columns = vec![t.text("configuration", "body", |c| c.name.clone())];
+    let litres = |m3: f64| number::plain(1e3 * m3, 5);
+    columns.extend(told(&t, "volume_m3", "V [10⁻³ m³]", |c| c.refined.volume_m3, litres));
+    let of = |c: &Configuration, i: usize| [c.refined.value[i][i], c.refined.uncertainty[i][i]];
+    for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
+        let mass = |c: &Configuration| of(c, i).map(|a| density_kg_m3 * a);
+        columns.extend(expanded(&t, &diagonal_key(i), &format!("μ_{axis} [kg]"), mass));
     }
+    for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
+        let part = |c: &Configuration| of(c, i).map(|a| a / c.refined.volume_m3);
+        columns.extend(expanded(&t, &format!("c_a{axis}"), &format!("C_A{axis} [1]"), part));
+    }
+    let slender = |c: &Configuration| of(c, 1)[0] / c.length_m.powi(3);
+    columns.push(t.number("sway_over_length", "μ_y/(ρL³) [1]", slender).plain(4));
+    t.build(columns)
 }
 
 /// Least squares over the configurations.
 #[must_use]
-pub fn fits_table(fits: &[Estimate]) -> TextTable {
-    let rows = fits
-        .iter()
-        .flat_map(|e| {
-            e.coefficients.iter().map(|(name, c)| {
-                vec![
-                    e.law.name.clone(),
-                    name.clone(),
-                    c.unit.clone(),
-                    number::coefficient(c),
-                    if e.recommended { "recommended".to_owned() } else { String::new() },
-                ]
-            })
-        })
-        .collect();
-    TextTable {
-        caption: "Least squares over the configurations (Table 7: displaced_volume). The standard uncertainty is that of the scatter about \
-                  the law; the masses themselves are known far better."
-            .to_owned(),
-        head: ["model", "coefficient", "unit", "value", ""].map(str::to_owned).to_vec(),
-        rows,
-    }
+pub fn fits_table(fits: &[Estimate]) -> ResultTable {
+    let rows: Vec<(&Estimate, &String, &Coefficient)> =
+        fits.iter().flat_map(|e| e.coefficients.iter().map(move |(name, c)| (e, name, c))).collect();
+    let caption = "Least squares over the configurations (Table 7: displaced_volume). The standard uncertainty is that of the scatter about \
+                   the law; the masses themselves are known far better.";
+    let t = TableBuilder::new("fits", caption, &rows);
+    t.build(vec![
+        t.text("model", "model", |(e, _, _)| e.law.name.clone()),
+        t.text("coefficient", "coefficient", |(_, name, _)| (*name).clone()),
+        t.text("unit", "unit", |(_, _, c)| c.unit.clone()),
+        t.uncertain(["value", "standard_uncertainty"], "", |(_, _, c)| c.value, |(_, _, c)| c.standard_uncertainty),
+        t.text("", "value", |(_, _, c)| number::coefficient(c)),
+        t.text("", "choice", |(e, _, _)| if e.recommended { "recommended" } else { "" }.to_owned()),
+        t.flag("recommended", "", |(e, _, _)| e.recommended),
+    ])
 }
 
 fn links_chart(configurations: &[Configuration], density_kg_m3: f64) -> Chart {
@@ -254,77 +219,65 @@ fn links_chart(configurations: &[Configuration], density_kg_m3: f64) -> Chart {
 
 /// What is said of a table of configurations: at the head, and of each.
 #[must_use]
-pub fn links(outcome: &LinksOutcome) -> (DocumentSection, Vec<DocumentSection>) {
+pub fn links(outcome: &LinksOutcome) -> (Section, Vec<Section>) {
     let LinksOutcome { name, density_kg_m3, place, configurations, fits, .. } = outcome;
     let rho = *density_kg_m3;
-    let mut head = DocumentSection {
-        title: "Configurations".to_owned(),
-        paragraphs: vec![format!("{name}, density {rho} kg/m³. {place}")],
-        tables: vec![links_table(configurations, rho)],
-        charts: vec![links_chart(configurations, rho)],
+    let said = std::iter::once(format!("{name}, density {rho} kg/m³. {place}")).chain(no_fits(configurations.len()));
+    let mut head: Vec<Block> = vec![links_table(configurations, rho).into()];
+    head.extend(fits.iter().map(|fits| fits_table(&fits.estimates).into()));
+    head.extend([Block::words(said), links_chart(configurations, rho).into()]);
+    let of = |c: &Configuration| {
+        let f = facts("", "", &c.name);
+        let blocks = vec![
+            f.build(vec![f.text("configuration", "", String::clone)]).into(),
+            Block::words(convergence_words(&c.refined)),
+            matrix_table(&c.refined, rho).into(),
+            steps_table(&c.refined, rho).into(),
+        ];
+        Section { key: "details[]".to_owned(), ..Section::new(c.name.clone(), blocks) }
     };
-    head.paragraphs.extend(no_fits(configurations.len()));
-    head.tables.extend(fits.iter().map(|fits| fits_table(&fits.estimates)));
-    let mut blocks: Vec<DocumentSection> = configurations
-        .iter()
-        .map(|c| DocumentSection {
-            title: c.name.clone(),
-            paragraphs: convergence_words(&c.refined),
-            tables: vec![matrix_table(&c.refined, rho), steps_table(&c.refined, rho)],
-            charts: Vec::new(),
-        })
-        .collect();
-    if let (Some(block), Some(last)) = (blocks.last_mut(), configurations.last()) {
-        block.charts.push(convergence_chart(&last.refined, None));
+    let mut details: Vec<Section> = configurations.iter().map(of).collect();
+    if let (Some(section), Some(last)) = (details.last_mut(), configurations.last()) {
+        section.blocks.push(convergence_chart(&last.refined, None).into());
     }
-    (head, blocks)
+    (Section::new("Configurations", head), details)
 }
 
 /// What is said of one body.
 #[must_use]
-pub fn body(outcome: &BodyOutcome) -> DocumentSection {
+pub fn body(outcome: &BodyOutcome) -> Section {
     let rho = outcome.density_kg_m3;
-    let mut out = DocumentSection {
-        title: "Added mass".to_owned(),
-        paragraphs: vec![format!("{}, density {rho} kg/m³.", outcome.name), outcome.place.clone()],
-        tables: limits::table(&outcome.cases, rho).into_iter().collect(),
-        charts: Vec::new(),
-    };
+    let mut said = vec![format!("{}, density {rho} kg/m³.", outcome.name), outcome.place.clone()];
+    let mut tables: Vec<Block> = limits::table(&outcome.cases, rho).map(Block::from).into_iter().collect();
+    let mut charts: Vec<Block> = Vec::new();
     let is_one = outcome.cases.len() == 1;
     for (i, case) in outcome.cases.iter().enumerate() {
-        let of_case = |table: TextTable| {
-            let caption = if is_one {
-                table.caption
-            } else {
-                format!("{} ({}). {}", case.title, case.surroundings, table.caption)
-            };
-            TextTable { caption, ..table }
+        let head = format!("{} ({}). ", case.title, case.surroundings);
+        let of_case = |table: ResultTable| {
+            let (key, caption) = (format!("{}/{}", case.key(), table.key), format!("{head}{}", table.caption));
+            Block::from(if is_one { table } else { ResultTable { key, caption, ..table } })
         };
-        let tables = [
+        let own = [
             matrix_table(&case.refined, rho),
             dimensionless_table(&case.refined, outcome.length_m),
             steps_table(&case.refined, rho),
         ];
-        out.tables.extend(tables.map(of_case));
-        let words = convergence_words(&case.refined);
-        out.paragraphs.push(format!("{} ({}). {}", case.title, case.surroundings, words.join(" ")));
+        tables.extend(own.map(of_case));
+        said.push(format!("{head}{}", convergence_words(&case.refined).join(" ")));
         let chart = convergence_chart(&case.refined, case.facets.as_ref());
         let name = if is_one { chart.name } else { format!("{}-{}", chart.name, i + 1) };
-        out.charts.push(Chart { name, title: format!("{}: {}", case.title, chart.title), ..chart });
+        charts.push(Chart { name, title: format!("{}: {}", case.title, chart.title), ..chart }.into());
     }
-    out.tables.extend(outcome.tables.iter().cloned());
-    out.paragraphs.extend(outcome.notes.iter().cloned());
-    out
+    tables.extend(outcome.tables.iter().cloned());
+    said.extend(outcome.notes.iter().cloned());
+    tables.push(Block::words(said));
+    Section::new("Added mass", tables.into_iter().chain(charts))
 }
 
 /// What is said of several parts.
 #[must_use]
-pub fn several(outcome: &SeveralOutcome) -> DocumentSection {
+pub fn several(outcome: &SeveralOutcome) -> Section {
     let head = [format!("{}, density {} kg/m³.", outcome.name, outcome.density_kg_m3), outcome.place.clone()];
-    DocumentSection {
-        title: "Added mass, part by part".to_owned(),
-        paragraphs: head.into_iter().chain(outcome.notes.iter().cloned()).collect(),
-        tables: outcome.tables.clone(),
-        charts: Vec::new(),
-    }
+    let said = Block::words(head.into_iter().chain(outcome.notes.iter().cloned()));
+    Section::new("Added mass, part by part", outcome.tables.iter().cloned().chain([said]))
 }

@@ -99,6 +99,12 @@ pub fn diagonal_head(i: usize) -> String {
     format!("{} {} [{}]", entry_name((i, i)), MOTIONS[i], if i < 3 { "kg" } else { "kg m²" })
 }
 
+/// The same as a key: `sway_kg`.
+#[must_use]
+pub fn diagonal_key(i: usize) -> String {
+    format!("{}_{}", MOTIONS[i], if i < 3 { "kg" } else { "kg_m2" })
+}
+
 /// The same without its unit, as the name of a row: `A22 sway`.
 #[must_use]
 pub fn diagonal_name(i: usize) -> String {

@@ -18,11 +18,11 @@ use froude_panel::matrix::AddedMass;
 use froude_panel::problem::{Frame, Problem, Solution};
 use froude_panel::refine::{Levels, RefineError, RefinedParts, Stop, refine_parts};
 use froude_panel::study::Size;
+use froude_records::block::{Block, ResultTable, TableBuilder};
 use froude_records::body::{Shape, read_body};
 use froude_records::estimate::{Coefficient, Estimate, Interval, Law, Measured, MethodUsed, ReferencePoint, Status};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::page::TextTable;
 use froude_records::text::counted;
 use indexmap::IndexMap;
 
@@ -31,10 +31,11 @@ use super::facets;
 use super::frame::{Axes, sentence};
 use super::load::{is_body_file, load, of_a_mesh_only};
 use super::options::Asked;
-use super::record::{MOTIONS, diagonal_head, entry_name_of_parts, signs, unit};
+use super::record::{MOTIONS, diagonal_head, diagonal_key, entry_name_of_parts, signs, unit};
 use crate::error::AddedMassError;
 use crate::files::AddedMassFile;
 use crate::options::Apart;
+use crate::uncertain::{expanded, told};
 use crate::water::Water;
 
 /// What came out.
@@ -53,7 +54,7 @@ pub struct SeveralOutcome {
     /// Their numerical uncertainty.
     pub uncertainty: Vec<Vec<f64>>,
     /// Tables for the reader.
-    pub tables: Vec<TextTable>,
+    pub tables: Vec<Block>,
     /// Sentences.
     pub notes: Vec<String>,
     /// Doubts.
@@ -109,17 +110,17 @@ pub fn several(
         }
     }
     let RefinedParts { value, uncertainty, panels, finest, .. } = refined;
-    let mut tables = vec![diagonal_table(&loaded.parts, &value, &uncertainty, density_kg_m3)];
+    let mut tables: Vec<Block> = vec![diagonal_table(&loaded.parts, &value, &uncertainty, density_kg_m3).into()];
     notes.extend(words_of_parts(job, matches!(apart, Apart::Links { .. })));
-    tables.extend(coupling_table(&loaded.parts, &value, density_kg_m3));
+    tables.extend(coupling_table(&loaded.parts, &value, density_kg_m3).map(Block::from));
     let together = whole(
         &Solution { matrix: value.clone(), ..finest.clone() },
         &Frame { axes: axes_of(job), ..Frame::at([0.0; 3]) },
     );
-    tables.push(whole_table(&together, density_kg_m3));
+    tables.push(whole_table(&together, density_kg_m3).into());
     if let Apart::Links { .. } = apart {
         let form = diagonal_form(&Solution { matrix: value.clone(), ..finest });
-        tables.push(diagonal_form_table(&form, density_kg_m3));
+        tables.push(diagonal_form_table(&form, density_kg_m3).into());
         notes.push(
             "Equation 4 of the USR paper gives each link an added mass across itself, none along, and no coupling of one link with another; with \
              links of one size it is one number. It is fitted here to the plain links while all parts sway alike, each in its own axes."
@@ -384,72 +385,58 @@ fn too_close(problem: &Problem) -> Option<Finding> {
     Some(Finding::new(Severity::Warning, "parts-touch", message))
 }
 
-fn diagonal_table(parts: &[String], value: &[Vec<f64>], uncertainty: &[Vec<f64>], density_kg_m3: f64) -> TextTable {
-    let rows = parts
-        .iter()
-        .enumerate()
-        .map(|(p, name)| {
-            let cell = |i: usize| {
-                crate::uncertain::with_uncertainty(
-                    density_kg_m3 * value[6 * p + i][6 * p + i],
-                    density_kg_m3 * uncertainty[6 * p + i][6 * p + i],
-                )
-            };
-            std::iter::once(name.clone()).chain((0..6).map(cell)).collect()
-        })
-        .collect();
-    TextTable {
-        caption:
-            "Each part moving alone, the others held: added mass in its own motions. ± is the numerical uncertainty."
-                .to_owned(),
-        head: std::iter::once(String::new()).chain((0..6).map(diagonal_head)).collect(),
-        rows,
+fn diagonal_table(parts: &[String], value: &[Vec<f64>], uncertainty: &[Vec<f64>], density_kg_m3: f64) -> ResultTable {
+    let caption =
+        "Each part moving alone, the others held: added mass in its own motions. ± is the numerical uncertainty.";
+    let rows: Vec<usize> = (0..parts.len()).collect();
+    let t = TableBuilder::new("parts", caption, &rows);
+    let mut columns = vec![t.text("part", "part", |p| parts[*p].clone())];
+    for i in 0..6 {
+        let of = |p: &usize| [value, uncertainty].map(|all| density_kg_m3 * all[6 * p + i][6 * p + i]);
+        columns.extend(expanded(&t, &diagonal_key(i), &diagonal_head(i), of));
     }
+    t.build(columns)
 }
 
 /// Parts of which all pairs are reported.
 const MOST_PARTS: usize = 12;
 
-fn coupling_table(parts: &[String], value: &[Vec<f64>], density_kg_m3: f64) -> Option<TextTable> {
-    (parts.len() <= MOST_PARTS).then(|| TextTable {
-        caption: "A22 of each pair: the force across a part (row) from the sway of a part (column), kg.".to_owned(),
-        head: std::iter::once(String::new()).chain(parts.iter().cloned()).collect(),
-        rows: parts
-            .iter()
-            .enumerate()
-            .map(|(p, name)| {
-                let cell = |q: usize| number::plain(density_kg_m3 * value[6 * p + 1][6 * q + 1], 4);
-                std::iter::once(name.clone()).chain((0..parts.len()).map(cell)).collect()
-            })
-            .collect(),
-    })
+fn coupling_table(parts: &[String], value: &[Vec<f64>], density_kg_m3: f64) -> Option<ResultTable> {
+    let caption = "A22 of each pair: the force across a part (row) from the sway of a part (column), kg.";
+    let rows: Vec<usize> = (0..parts.len()).collect();
+    let t = TableBuilder::new("sway_coupling", caption, &rows);
+    let of = |(q, name): (usize, &String)| {
+        let key = format!("{}_kg", name.replace(' ', "_"));
+        t.number(&key, name, |p| density_kg_m3 * value[6 * p + 1][6 * q + 1]).plain(4)
+    };
+    let first = t.text("part", "part", |p| parts[*p].clone());
+    let columns = std::iter::once(first).chain(parts.iter().enumerate().map(of));
+    (parts.len() <= MOST_PARTS).then(|| t.build(columns.collect()))
 }
 
-fn whole_table(together: &AddedMass, density_kg_m3: f64) -> TextTable {
-    let row = (0..6).map(|i| number::plain(density_kg_m3 * together.matrix[i][i], 6));
-    TextTable {
-        caption: "All parts as one rigid body, from the matrix, about the origin of the mesh (of a robot the middle of the straight chain, whose \
-                  tail stays where it was; its axes are the tail's): kg, kg m²."
-            .to_owned(),
-        head: std::iter::once(String::new()).chain(MOTIONS.map(str::to_owned)).collect(),
-        rows: vec![std::iter::once("whole".to_owned()).chain(row).collect()],
-    }
+fn whole_table(together: &AddedMass, density_kg_m3: f64) -> ResultTable {
+    let caption = "All parts as one rigid body, from the matrix, about the origin of the mesh (of a robot the middle of the straight chain, whose \
+                   tail stays where it was; its axes are the tail's): kg, kg m².";
+    let rows = [together.matrix];
+    let t = TableBuilder::new("whole", caption, &rows);
+    let of = |i: usize| t.number(&diagonal_key(i), MOTIONS[i], |a| density_kg_m3 * a[i][i]).plain(6);
+    let columns = std::iter::once(t.text("", "body", |_| "whole".to_owned())).chain((0..6).map(of));
+    t.build(columns.collect())
 }
 
-fn diagonal_form_table(form: &DiagonalForm, density_kg_m3: f64) -> TextTable {
-    let percent = |x: f64| format!("{:.1} %", 100.0 * x);
+fn diagonal_form_table(form: &DiagonalForm, density_kg_m3: f64) -> ResultTable {
     let rows =
-        [("all alike", form.alike), ("neighbours opposed", form.alternating), ("a travelling wave", form.travelling)]
-            .map(|(name, e)| vec![name.to_owned(), percent(e.largest), percent(e.rms)])
-            .to_vec();
-    TextTable {
-        caption: format!(
-            "Error of the diagonal form of equation 4 with {} kg a link (the mean force on a link when all sway alike), by how the links sway.",
-            number::plain(density_kg_m3 * form.per_link_m3, 5)
-        ),
-        head: ["", "largest error of a link's force", "root mean square"].map(str::to_owned).to_vec(),
-        rows,
-    }
+        [("all alike", form.alike), ("neighbours opposed", form.alternating), ("a travelling wave", form.travelling)];
+    let caption = format!(
+        "Error of the diagonal form of equation 4 with {} kg a link (the mean force on a link when all sway alike), by how the links sway.",
+        number::plain(density_kg_m3 * form.per_link_m3, 5)
+    );
+    let t = TableBuilder::new("diagonal_form", caption, &rows);
+    let percent = |x: f64| format!("{:.1} %", 100.0 * x);
+    let mut columns = vec![t.text("sway", "sway", |(name, _)| (*name).to_owned())];
+    columns.extend(told(&t, "largest_error", "largest error of a link's force", |(_, e)| e.largest, percent));
+    columns.extend(told(&t, "rms_error", "root mean square", |(_, e)| e.rms, percent));
+    t.build(columns)
 }
 
 fn record(

@@ -3,7 +3,6 @@
 use froude_identify::answer::{Answer, Made};
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::source::{ReadFile, SourceResult};
-use froude_records::block::{Section, summary};
 use froude_records::campaign::{Campaign, Input, Source, SourceKind};
 use froude_records::estimate::Estimate;
 
@@ -67,8 +66,8 @@ fn found(asked: &Asked, water: &Water, source: &Source, progress: &dyn Fn(&str))
             .map(|fits| Answer::from(SourceResult { files: files.to_vec(), ..of_kind(fits, source.kind) }));
         return Ok(Found {
             results: fits.into_iter().chain(done.estimates.into_iter().map(computed)).collect(),
-            summary: Some(summary(head)),
-            blocks: blocks.into_iter().map(Section::from).collect(),
+            summary: Some(head),
+            blocks,
             exports: done.exports,
             findings: done.findings,
             ..Found::default()
@@ -77,7 +76,7 @@ fn found(asked: &Asked, water: &Water, source: &Source, progress: &dyn Fn(&str))
     if let Some(apart) = asked.apart {
         let done = several(asked, apart, water, &source.name, progress)?;
         return Ok(Found {
-            summary: Some(summary(page::several(&done))),
+            summary: Some(page::several(&done)),
             results: vec![computed(done.estimate)],
             exports: done.exports,
             findings: done.findings,
@@ -86,7 +85,7 @@ fn found(asked: &Asked, water: &Water, source: &Source, progress: &dyn Fn(&str))
     }
     let done = body(asked, water, &source.name, progress)?;
     Ok(Found {
-        summary: Some(summary(page::body(&done))),
+        summary: Some(page::body(&done)),
         results: done.estimates.into_iter().map(computed).collect(),
         exports: done.exports,
         findings: done.findings,
