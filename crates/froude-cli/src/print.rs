@@ -1,10 +1,9 @@
 //! Results as a person reads them, and as JSON.
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table};
-use froude::records::block::{Block, laid_out};
+use froude::records::block::{Block, LaidOut, laid_out};
 use froude::records::finding::{Finding, Severity};
 use froude::records::outcome::{Exit, Outcome};
-use froude::records::page::TextTable;
 use froude::records::text::{visible, visible_json};
 
 use crate::failure::Failure;
@@ -114,13 +113,13 @@ pub fn wrapped(text: &str) -> String {
 }
 
 /// Control characters are escaped before a text is wrapped: a carriage return would count as a space.
-fn printable(text: TextTable) -> TextTable {
+fn printable(text: LaidOut) -> LaidOut {
     let all = |cells: Vec<String>| cells.iter().map(|cell| visible(cell).into_owned()).collect::<Vec<_>>();
-    TextTable { caption: String::new(), head: all(text.head), rows: text.rows.into_iter().map(all).collect() }
+    LaidOut { caption: String::new(), head: all(text.head), rows: text.rows.into_iter().map(all).collect() }
 }
 
 /// A table that is too wide for its words, in several that each begin with the columns that name its rows.
-fn panels(text: TextTable, names: usize, widest: usize) -> Vec<TextTable> {
+fn panels(text: LaidOut, names: usize, widest: usize) -> Vec<LaidOut> {
     let least = |i: usize| {
         let cells = std::iter::once(&text.head).chain(&text.rows).filter_map(|row| row.get(i));
         2 + cells.flat_map(|cell| words(cell)).map(|word| word.chars().count()).max().unwrap_or(0)
@@ -145,13 +144,13 @@ fn panels(text: TextTable, names: usize, widest: usize) -> Vec<TextTable> {
     let part = |panel: Vec<usize>| {
         let of =
             |row: &Vec<String>| (0..names).chain(panel.iter().copied()).filter_map(|i| row.get(i).cloned()).collect();
-        TextTable { caption: String::new(), head: of(&text.head), rows: text.rows.iter().map(of).collect() }
+        LaidOut { caption: String::new(), head: of(&text.head), rows: text.rows.iter().map(of).collect() }
     };
     out.into_iter().map(part).collect()
 }
 
 /// A table as wide as the line; numbers to the right. No word is broken: a table of long words is wider.
-fn fitted(text: &TextTable, widest: usize) -> Table {
+fn fitted(text: &LaidOut, widest: usize) -> Table {
     let widths = widths(text, widest);
     let wrapped = |row: &[String]| -> Vec<String> {
         row.iter().enumerate().map(|(i, cell)| wrap(cell, widths.get(i).copied().unwrap_or(usize::MAX))).collect()
@@ -184,7 +183,7 @@ const LONGEST_CELL: usize = 1000;
 const LONGEST_NAME: usize = 24;
 
 /// A width for each column: that of its longest word, and what is left of the line to the columns that would be wrapped most.
-fn widths(text: &TextTable, widest: usize) -> Vec<usize> {
+fn widths(text: &LaidOut, widest: usize) -> Vec<usize> {
     let columns = || 0..text.head.len();
     let cells = |i: usize| std::iter::once(&text.head).chain(&text.rows).filter_map(move |row| row.get(i));
     let length = |t: &str| t.chars().count();
@@ -250,7 +249,7 @@ fn wrap(text: &str, width: usize) -> String {
 mod tests {
     use super::*;
 
-    fn preflight() -> TextTable {
+    fn preflight() -> LaidOut {
         let texts = |cells: &[&str]| cells.iter().map(|c| (*c).to_owned()).collect::<Vec<_>>();
         let head = [
             "kind",
@@ -264,7 +263,7 @@ mod tests {
         ];
         let row = ["excitation", "0.100", "backward", "123.4", "112.3", "12.34", "1.23", "0.123"];
         let named = ["calibration 10 N", "measured response", "backward", "123.4", "112.3", "12.34", "1.23", "0.123"];
-        TextTable { caption: String::new(), head: texts(&head), rows: vec![texts(&row), texts(&named)] }
+        LaidOut { caption: String::new(), head: texts(&head), rows: vec![texts(&row), texts(&named)] }
     }
 
     #[test]

@@ -16,7 +16,7 @@ mod tests;
 pub use builder::{TableBuilder, facts};
 pub use json::Tree;
 pub(crate) use json::tree;
-pub use laid_out::{laid_out, summary};
+pub use laid_out::{LaidOut, laid_out};
 
 use crate::estimate::Estimate;
 use crate::page::{Chart, Field, Map};

@@ -1,4 +1,4 @@
-//! Blocks of a page: sections with paragraphs, tables whose cells are written already, charts of any two quantities.
+//! What a page is made from: figures of any two quantities, and the report on a record.
 //!
 //! Whoever has a result says every word and every number of it here; a page or a terminal shows them. Nothing is computed or drawn.
 
@@ -9,30 +9,6 @@ mod source;
 pub use observation::{Abscissa, Against, Curve, Point};
 pub use report::{InputFile, Report};
 pub use source::{BudgetRow, SelectionRow, SourceSection};
-
-/// A section.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct DocumentSection {
-    /// Heading.
-    pub title: String,
-    /// Text before the tables.
-    pub paragraphs: Vec<String>,
-    /// Tables.
-    pub tables: Vec<TextTable>,
-    /// Figures.
-    pub charts: Vec<Chart>,
-}
-
-/// A table whose cells are written already, with the digits that their uncertainty allows.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct TextTable {
-    /// Caption.
-    pub caption: String,
-    /// Column heads, units included.
-    pub head: Vec<String>,
-    /// Rows, a cell per head; the first cell names the row.
-    pub rows: Vec<Vec<String>>,
-}
 
 /// How an axis runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,12 +1,22 @@
 //! Tables as rows of written cells, for the page and the terminal.
 
-use super::{Block, ResultColumn, ResultTable, Section, TableBuilder};
+use super::{ResultColumn, ResultTable};
 use crate::number::MISSING;
-use crate::page::{DocumentSection, TextTable};
+
+/// A table whose cells are written, with the digits that their uncertainty allows.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LaidOut {
+    /// Caption.
+    pub caption: String,
+    /// Column heads, units included.
+    pub head: Vec<String>,
+    /// Rows, a cell per head; the first cell names the row.
+    pub rows: Vec<Vec<String>>,
+}
 
 /// A table as people read it; `None` where programs alone read it.
 #[must_use]
-pub fn laid_out(table: &ResultTable) -> Option<TextTable> {
+pub fn laid_out(table: &ResultTable) -> Option<LaidOut> {
     let shown: Vec<&ResultColumn> = table.shown().collect();
     if shown.is_empty() {
         return None;
@@ -14,7 +24,7 @@ pub fn laid_out(table: &ResultTable) -> Option<TextTable> {
     let unit = |column: &ResultColumn| column.unit.as_ref().map_or_else(String::new, |unit| unit.text.clone());
     if table.are_facts {
         let fact = |column: &&ResultColumn| Some(vec![column.head.clone(), column.text(0)?, unit(column)]);
-        return Some(TextTable {
+        return Some(LaidOut {
             caption: table.caption.clone(),
             head: ["quantity", "value", "unit"].map(str::to_owned).to_vec(),
             rows: shown.iter().filter_map(fact).collect(),
@@ -31,7 +41,7 @@ pub fn laid_out(table: &ResultTable) -> Option<TextTable> {
         Some(rows) => rows.iter().map(|&i| row(i)).collect(),
         None => (0..table.n_rows).map(row).collect(),
     };
-    Some(TextTable { caption: table.caption.clone(), head: shown.iter().map(head).collect(), rows })
+    Some(LaidOut { caption: table.caption.clone(), head: shown.iter().map(head).collect(), rows })
 }
 
 impl ResultTable {
@@ -39,33 +49,4 @@ impl ResultTable {
     pub fn shown(&self) -> impl Iterator<Item = &ResultColumn> {
         self.columns.iter().filter(|column| !column.head.is_empty())
     }
-}
-
-/// A table whose cells are written already, for people alone.
-impl From<TextTable> for ResultTable {
-    fn from(TextTable { caption, head, rows }: TextTable) -> Self {
-        let t = TableBuilder::new("", caption, &rows);
-        let column = |(i, head): (usize, &String)| t.text("", head, move |row: &Vec<String>| row.get(i).cloned());
-        t.build(head.iter().enumerate().map(column).collect())
-    }
-}
-
-/// A section that is written already, for people alone.
-impl From<DocumentSection> for Section {
-    fn from(DocumentSection { title, paragraphs, tables, charts }: DocumentSection) -> Self {
-        let tables = tables.into_iter().map(|table| ResultTable::from(table).into());
-        Self::new(
-            title,
-            [Block::words(paragraphs)].into_iter().chain(tables).chain(charts.into_iter().map(Block::Chart)),
-        )
-    }
-}
-
-/// The same, with its tables before its sentences.
-#[must_use]
-pub fn summary(section: DocumentSection) -> Section {
-    let mut out = Section::from(section);
-    let is_words = |block: &Block| matches!(block, Block::Text { .. });
-    out.blocks.sort_by_key(|block| (matches!(block, Block::Chart(_)), is_words(block)));
-    out
 }
