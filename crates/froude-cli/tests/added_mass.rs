@@ -381,7 +381,8 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
             "froude-files.json",
             "links.csv",
             "observations-potential-flow.csv",
-            "report.html"
+            "report.html",
+            "result.json"
         ]
     );
     for name in ["links.csv", "campaign.toml", "estimate.json", "report.html", "observations-potential-flow.csv"] {
@@ -448,7 +449,7 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
     }
     assert_eq!(
         names(&at.join("two")),
-        ["campaign.toml", "estimate.json", "figures", "froude-files.json", "links.csv", "report.html"]
+        ["campaign.toml", "estimate.json", "figures", "froude-files.json", "links.csv", "report.html", "result.json"]
     );
 }
 
@@ -468,6 +469,7 @@ fn exports_hold_the_matrix_of_the_record() {
         "froude-files.json",
         "pressure.vtp",
         "report.html",
+        "result.json",
     ];
     assert_eq!(names(&at.join("up")), files);
     let limits = |folder: &str| {
@@ -1519,6 +1521,7 @@ fn a_mesh_of_a_campaign_is_a_source_beside_others_and_the_verb_gives_the_same() 
         "panels-added-mass.csv",
         "panels-pressure.vtp",
         "report.html",
+        "result.json",
     ];
     assert_eq!(names(&at.join("c-results")), there);
     for name in ["added-mass.1", "added-mass.csv", "pressure.vtp"] {

@@ -139,7 +139,7 @@ fn results_of_an_earlier_run_are_gone_when_new_ones_come() {
     succeeds(at, &["identify", "b.csv", "--out", "results", "--models", "quadratic"]);
     assert_eq!(
         names(&at.join("results")),
-        ["estimate.json", "figures", "froude-files.json", "observations-b.csv", "report.html"]
+        ["estimate.json", "figures", "froude-files.json", "observations-b.csv", "report.html", "result.json"]
     );
     let new = names(&at.join("results/figures"));
     assert!(new.iter().all(|name| !old.contains(name)), "{old:?} and {new:?}");

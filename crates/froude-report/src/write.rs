@@ -53,9 +53,13 @@ pub fn write_folder(outcome: &Outcome, out: &Path) -> Result<(), WriteError> {
 }
 
 fn all_figures(outcome: &Outcome, folder: &Path) -> Result<(), WriteError> {
+    let of_report = outcome.report.as_deref().map(crate::figures).transpose()?;
+    if of_report.as_ref().is_some_and(Vec::is_empty) {
+        return Ok(());
+    }
     std::fs::create_dir(folder).map_err(|e| RecordError::output(folder, &e))?;
-    let Some(report) = &outcome.report else { return figures(&outcome.blocks, folder) };
-    for figure in crate::figures(report)? {
+    let Some(drawn) = of_report else { return figures(&outcome.blocks, folder) };
+    for figure in drawn {
         write_atomically(&folder.join(figure.file_name), figure.svg.as_bytes())?;
     }
     Ok(())

@@ -139,6 +139,8 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Identified, Error>
     told.records = vec![file.clone()];
     told.report = Some(Box::new(report));
     write_folder(&told, &out)?;
+    // A report may have no figure.
+    told.files.retain(|file| file.path.exists());
     Ok(Identified { file, sources, told })
 }
 

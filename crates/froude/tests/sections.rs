@@ -31,7 +31,7 @@ fn a_mistake_in_the_section_of_a_method_is_passed_over_by_no_verb() {
     std::fs::create_dir(folder.path().join("runs")).unwrap();
     let path = folder.path().join("c.toml");
     let driven = std::fs::read_to_string(examples().join("towing-carriage/campaign.toml")).unwrap();
-    let line = driven.lines().count();
+    let line = 1 + driven.lines().count();
     for (method, section, (below, column), problem) in [
         (
             "decay_envelope",
