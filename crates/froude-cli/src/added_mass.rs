@@ -30,7 +30,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Failure> {
     let replaced = before.and_then(|(place, out)| replaces_another_frame(&out, &place, &outcome.file));
     match replaced {
         Some(text) if json => note!("{text}"),
-        Some(text) => say!("{}", print::wrapped(&text)),
+        Some(text) => say!("{}", froude::report::terminal::wrapped(&text)),
         None => {}
     }
     print::answer(&outcome.outcome(), json)

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use froude::records::units::UnitError;
+use froude::swim::verb::typed::NotUnderstood;
 
 use crate::signals::STOPPED;
 
@@ -83,17 +84,8 @@ pub enum Failure {
     },
 
     /// An option that is no such quantity.
-    #[error("{option} {text:?} {problem}; write {example}")]
-    Quantity {
-        /// The option.
-        option: &'static str,
-        /// What was written.
-        text: String,
-        /// What is wrong with it.
-        problem: String,
-        /// How to write it.
-        example: &'static str,
-    },
+    #[error(transparent)]
+    Quantity(NotUnderstood),
 
     /// Runs that state no rig.
     #[error("the runs do not state which rig they come from")]

@@ -4,10 +4,9 @@ mod sweep;
 
 use std::path::PathBuf;
 
-use froude::records::units::{Dimension, parse_quantity};
 use froude::report::write::write_folder;
 use froude::swim::gait::{Envelope, Gait};
-use froude::swim::gait_file::angular_frequency;
+use froude::swim::verb::typed::{angle, frequency, step};
 use froude::swim::verb::{Drawing, Job, Moves, Pitching, Typed, swim as run};
 
 use crate::args::SwimArgs;
@@ -25,7 +24,7 @@ pub fn swim(args: SwimArgs, json: bool) -> Result<(), Failure> {
         draws: drawing(&args),
         robot: args.robot,
         motor: args.motor,
-        step_s: args.step.as_deref().map(step).transpose()?,
+        step_s: args.step.as_deref().map(step).transpose().map_err(Failure::Quantity)?,
         out: args.out,
         periods: args.periods as usize,
         date: Some(crate::today()),
@@ -43,7 +42,9 @@ pub fn swim(args: SwimArgs, json: bool) -> Result<(), Failure> {
 
 /// The wave of the joints that pitch; what is left out says nothing.
 fn pitching(args: &SwimArgs) -> Result<Pitching, Failure> {
-    let angle_of = |option, text: &Option<String>| text.as_deref().map(|text| angle(option, text)).transpose();
+    let angle_of = |option, text: &Option<String>| {
+        text.as_deref().map(|text| angle(option, text)).transpose().map_err(Failure::Quantity)
+    };
     Ok(Pitching {
         amplitude_rad: angle_of("--pitch-amplitude", &args.pitch_amplitude)?,
         ahead_rad: angle_of("--pitch-ahead", &args.pitch_ahead)?,
@@ -55,10 +56,12 @@ fn moves(args: &SwimArgs) -> Result<Moves, Failure> {
     if let Some(track) = &args.track {
         return Ok(Moves::Track(track.clone()));
     }
-    let angle_of = |option, text: &Option<String>| text.as_deref().map(|text| angle(option, text)).transpose();
+    let angle_of = |option, text: &Option<String>| {
+        text.as_deref().map(|text| angle(option, text)).transpose().map_err(Failure::Quantity)
+    };
     let typed = Typed {
         amplitude_rad: angle_of("--amplitude", &args.amplitude)?,
-        frequency_rad_s: args.frequency.as_deref().map(frequency).transpose()?,
+        frequency_rad_s: args.frequency.as_deref().map(frequency).transpose().map_err(Failure::Quantity)?,
         phase_rad: angle_of("--phase", &args.phase)?,
         turn_rad: angle_of("--turn", &args.turn)?,
     };
@@ -80,40 +83,4 @@ fn moves(args: &SwimArgs) -> Result<Moves, Failure> {
 /// What is to be drawn.
 fn drawing(args: &SwimArgs) -> Option<Drawing> {
     args.draws.map(|n| Drawing { n: n as usize, seed: args.seed })
-}
-
-fn angle(option: &'static str, text: &str) -> Result<f64, Failure> {
-    quantity(option, text, Dimension::ANGLE, "an angle with its unit: '30 deg'")
-}
-
-/// s, above zero.
-fn step(text: &str) -> Result<f64, Failure> {
-    let (option, example) = ("--step", "a time with its unit: '2 ms'");
-    let found = quantity(option, text, Dimension::TIME, example)?;
-    if found > 0.0 && found.is_finite() {
-        return Ok(found);
-    }
-    Err(Failure::Quantity { option, text: text.to_owned(), problem: "is not above zero".to_owned(), example })
-}
-
-/// rad/s, from an angular speed or from cycles a second.
-fn frequency(text: &str) -> Result<f64, Failure> {
-    let (option, example) = ("--frequency", "an angular speed or a frequency with its unit: '80 deg/s' or '0.22 Hz'");
-    quantity(option, text, Dimension::ANGULAR_SPEED, example)?;
-    let wrong = |problem| Failure::Quantity { option, text: text.to_owned(), problem, example };
-    let quantity = parse_quantity(text).map_err(|e| wrong(format!("cannot be read: {e}")))?;
-    angular_frequency(&quantity).map_err(wrong)
-}
-
-fn quantity(option: &'static str, text: &str, dimension: Dimension, example: &'static str) -> Result<f64, Failure> {
-    let wrong = |problem: String| Failure::Quantity { option, text: text.to_owned(), problem, example };
-    if text.trim().parse::<f64>().is_ok() {
-        return Err(wrong("has no unit".to_owned()));
-    }
-    let found = parse_quantity(text).map_err(|e| wrong(format!("cannot be read: {e}")))?;
-    // A pure number is an angle by its dimension, and hardly ever by what was meant.
-    if found.unit.dimension != dimension || found.unit.text == "1" {
-        return Err(wrong(format!("is {}", found.unit.dimension.describe())));
-    }
-    Ok(found.value_si)
 }

@@ -12,47 +12,24 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
 /// Every one of `known` that is as near as the nearest, in their order.
 fn all_nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     const LONGEST: usize = 64;
-    let letters: Vec<char> = name.chars().take(LONGEST + 1).collect();
-    if letters.is_empty() || letters.len() > LONGEST {
+    let letters = name.chars().take(LONGEST + 1).count();
+    if letters == 0 || letters > LONGEST {
         return Vec::new();
     }
     let near: Vec<(usize, &str)> = known
         .into_iter()
         .filter(|candidate| candidate.len() <= LONGEST)
         .map(|candidate| {
-            let distance = if candidate.eq_ignore_ascii_case(name) {
-                0
-            } else {
-                edits(&letters, &candidate.chars().collect::<Vec<_>>())
-            };
-            (distance, candidate)
+            let is_same = candidate.eq_ignore_ascii_case(name);
+            (if is_same { 0 } else { strsim::osa_distance(name, candidate) }, candidate)
         })
         .filter(|(distance, candidate)| {
-            let longest = letters.len().max(candidate.len());
-            *distance <= (longest / 3).max(1) && *distance < letters.len().max(2)
+            let longest = letters.max(candidate.len());
+            *distance <= (longest / 3).max(1) && *distance < letters.max(2)
         })
         .collect();
     let least = near.iter().map(|(distance, _)| *distance).min();
     near.into_iter().filter(|(distance, _)| Some(*distance) == least).map(|(_, candidate)| candidate).collect()
-}
-
-/// Edits from `a` to `b` (optimal string alignment).
-fn edits(a: &[char], b: &[char]) -> usize {
-    let mut before_last: Vec<usize> = Vec::new();
-    let mut last: Vec<usize> = (0..=b.len()).collect();
-    for i in 1..=a.len() {
-        let mut row = vec![i];
-        for j in 1..=b.len() {
-            let replaced = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            let mut best = replaced.min(last[j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                best = best.min(before_last[j - 2] + 1);
-            }
-            row.push(best);
-        }
-        before_last = std::mem::replace(&mut last, row);
-    }
-    last[b.len()]
 }
 
 /// `did you mean …?` or the list of known names, for the end of a message.

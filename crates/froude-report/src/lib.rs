@@ -43,6 +43,7 @@ mod statistics;
 mod style;
 mod symbol;
 mod tables;
+pub mod terminal;
 pub mod write;
 
 pub use error::ReportError;

@@ -14,6 +14,7 @@ mod space;
 mod space_figures;
 mod sweep;
 mod told;
+pub mod typed;
 mod uncertain;
 mod water;
 
