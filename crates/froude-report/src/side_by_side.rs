@@ -106,10 +106,11 @@ fn loads(c: &Comparison) -> Vec<Block> {
         if is_one_unit { format!(", {}", one.unit) } else { String::new() }
     );
     let t = TableBuilder::new("", caption, &places);
-    let mut columns = vec![t.text("", "load", |(_, r)| r.component.clone()).symbol()];
-    if !is_one_unit {
-        columns.push(t.text("", "unit", |(_, r)| r.unit.clone()));
-    }
+    let mut columns = vec![if is_one_unit {
+        t.text("", "load", |(_, r)| r.component.clone()).symbol()
+    } else {
+        t.text("", "load", |(_, r)| format!("{} [{}]", r.component, r.unit))
+    }];
     if c.loads.iter().any(|r| r.n_links.is_some()) {
         columns.push(t.number("", "links", |(_, r)| r.n_links).plain(3));
     }

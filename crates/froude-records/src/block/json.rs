@@ -39,7 +39,8 @@ enum Value<'a> {
 pub(crate) fn tree(outcome: &Outcome) -> Tree<'_> {
     let mut root = Tree::default();
     root.put_all(&outcome.blocks);
-    for file in &outcome.files {
+    // Beside a record lie files whose folder may be moved; a program finds them by their names.
+    for file in outcome.files.iter().filter(|_| outcome.records.is_empty()) {
         match file.content {
             Content::Figures => root.put(file.key, Value::Figures(&file.path, names_of_figures(&outcome.blocks))),
             _ => root.put(file.key, Value::Path(&file.path)),
