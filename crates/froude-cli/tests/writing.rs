@@ -158,7 +158,8 @@ fn the_list_of_results_has_every_file_with_its_fingerprint() {
     assert_eq!(files["estimate.json"], own.as_str());
     let figures = names(&at.join("t-results/figures"));
     assert!(!figures.is_empty() && figures.iter().all(|f| files.contains_key(&format!("figures/{f}"))), "{files:?}");
-    assert_eq!(files.len(), 3 + figures.len(), "{files:?}");
+    // Record, result, report, observations.
+    assert_eq!(files.len(), 4 + figures.len(), "{files:?}");
 }
 
 #[test]

@@ -41,7 +41,7 @@ pub fn blocks(c: &Comparison) -> Vec<Block> {
 /// Whether the estimates agree, a sentence for each pair.
 #[must_use]
 pub fn verdicts(c: &Comparison) -> Block {
-    Block::words(c.verdicts.iter().map(|verdict| verdict.words() + "."))
+    Block::words(c.verdicts.iter().map(|verdict| format!("  {}.", verdict.words())))
 }
 
 /// The coefficients that two estimates share, and what is said of them together.
@@ -86,7 +86,7 @@ fn coefficients(c: &Comparison, rows: &[CoefficientComparison]) -> Vec<Block> {
             _ => Some(format!("no joint χ²: {}", j.note)),
         });
     }
-    vec![t.build(columns).into(), Block::words(said)]
+    vec![t.build(columns).into(), notes(said)]
 }
 
 /// Predicted loads: a row for each place, a column for each estimate.
@@ -101,10 +101,7 @@ fn loads(c: &Comparison) -> Vec<Block> {
     // Forces and moments in one table: each row says its unit.
     let is_one_unit = c.loads.iter().all(|r| r.unit == one.unit);
     let what = if is_one_unit { "force" } else { "forces and moments" };
-    let caption = format!(
-        "Predicted {what} over the common range{}",
-        if is_one_unit { format!(", {}", one.unit) } else { String::new() }
-    );
+    let caption = format!("Predicted {what} over the common range");
     let t = TableBuilder::new("", caption, &places);
     let mut columns = vec![if is_one_unit {
         t.text("", "load", |(_, r)| r.component.clone()).symbol()
@@ -118,7 +115,8 @@ fn loads(c: &Comparison) -> Vec<Block> {
     columns.push(t.number("", "angle [deg]", |(_, r)| r.angle_rad).places(1));
     let more_names = columns.len() - 1;
     let states = |side: &Side| side.standard_uncertainty.is_some();
-    let head = |id: &str, is_stated: bool| if is_stated { format!("{id}, ± U") } else { id.to_owned() };
+    let unit = if is_one_unit { format!(" [{}]", one.unit) } else { String::new() };
+    let head = |id: &str, is_stated: bool| format!("{id}{}{unit}", if is_stated { ", ± U" } else { "" });
     let own = rows_of(others[0]);
     columns.push(
         t.text("", &head(first, own.iter().any(|r| states(&r.first))), |(i, _)| own.get(*i).map(|r| load(&r.first))),
@@ -144,12 +142,17 @@ fn loads(c: &Comparison) -> Vec<Block> {
         said.extend(notes.map(|why| format!("no E_n of {id} against {first}: {why}")));
     }
     if places.len() <= MOST_PLACES {
-        return vec![all.into(), Block::words(said)];
+        return vec![all.into(), notes(said)];
     }
     let title = format!("all {} places of the common range", number::count(places.len()));
     let caption = format!("{}, at its ends and middle", all.caption);
     let few = ResultTable { caption, shown_rows: Some(corners(&places)), ..all.clone() };
-    vec![few.into(), Block::words(said), Section { is_detail: true, ..Section::new(title, [all.into()]) }.into()]
+    vec![few.into(), notes(said), Section { is_detail: true, ..Section::new(title, [all.into()]) }.into()]
+}
+
+/// What is said of a table.
+fn notes(said: Vec<String>) -> Block {
+    Block::words(said.into_iter().map(|text| format!("  {text}")))
 }
 
 /// The places at the least, middle and largest speed and angle.

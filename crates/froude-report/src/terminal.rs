@@ -23,9 +23,7 @@ fn add(all: &[Block], has_details: bool, out: &mut Vec<String>) {
         match block {
             Block::Text { texts, .. } if !texts.is_empty() => {
                 gap(out);
-                for text in texts {
-                    out.push(text.clone());
-                }
+                out.extend(texts.iter().map(|text| if text.starts_with("  ") { hanging(text) } else { text.clone() }));
             }
             Block::Table(table) => {
                 let Some(text) = laid_out(table).filter(|table| !table.rows.is_empty()) else { continue };
@@ -78,6 +76,11 @@ pub fn wrapped(text: &str) -> String {
 fn printable(text: LaidOut) -> LaidOut {
     let all = |cells: Vec<String>| cells.iter().map(|cell| visible(cell).into_owned()).collect::<Vec<_>>();
     LaidOut { caption: String::new(), head: all(text.head), rows: text.rows.into_iter().map(all).collect() }
+}
+
+/// What is said of something above: it stands two spaces in, and its further lines four.
+fn hanging(text: &str) -> String {
+    format!("  {}", wrap(text, WIDEST - 4).replace('\n', "\n    "))
 }
 
 /// A table that is too wide for its words, in several that each begin with the columns that name its rows.
