@@ -31,36 +31,36 @@ fn a_mistake_in_the_section_of_a_method_is_passed_over_by_no_verb() {
     std::fs::create_dir(folder.path().join("runs")).unwrap();
     let path = folder.path().join("c.toml");
     let driven = std::fs::read_to_string(examples().join("towing-carriage/campaign.toml")).unwrap();
-    let line = 1 + driven.lines().count();
+    let line = driven.lines().count();
     for (method, section, (below, column), problem) in [
         (
             "decay_envelope",
             "[source.decay]\naxis = \"heave\"\ninertai = \"12 kg\"\nstiffness = \"180 N/m\"",
-            (7, 1),
+            (8, 1),
             "unknown key `inertai` in [source.decay]; did you mean `inertia`?",
         ),
         (
             "rotation",
             "[source.rotation]\naxis = \"upright\"\ninertia = \"1 m\"",
-            (7, 11),
-            "`inertia` is \"1 m\": expected kg*m^2, found a length (m)",
+            (8, 11),
+            "`inertia` is \"1 m\": expected a quantity in kg m^2, found a length (m)",
         ),
         (
             "steady",
-            "[source.steady]\ntow = { still = \"5 s\", sted = \"10 s\" }",
-            (6, 23),
-            "unknown key `sted` in [source.steady.tow]; did you mean `steady`?",
+            "[source.steady]\ntow = { still = \"5 s\", stedy = \"10 s\" }",
+            (7, 24),
+            "unknown key `stedy` in [source.steady.tow]; did you mean `steady`?",
         ),
         (
             "weight_tow",
             "[[source.plan]]\nwieght = \"1 N\"",
-            (6, 1),
+            (7, 1),
             "unknown key `wieght` in [[source.plan]]; did you mean `weight`?",
         ),
         (
             "accelerated_tow",
             "[[source.plan]]\nspeed = \"0.3 m/s\"\nacceleration = [\"0 m/s^2\"]",
-            (7, 16),
+            (8, 16),
             "`acceleration` must be larger than zero; the sign is that of the speed",
         ),
     ] {
