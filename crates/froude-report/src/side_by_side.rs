@@ -1,7 +1,11 @@
 //! Estimates side by side: coefficients, whole vectors, predicted loads. The numbers are those of the record.
 
+use std::collections::BTreeMap;
+
 use froude_records::block::{Block, ResultTable, Section, TableBuilder};
-use froude_records::comparison::{CoefficientComparison, Comparison, LoadComparison, Side, coverage_note};
+use froude_records::comparison::{
+    CoefficientComparison, Comparison, JointComparison, LoadComparison, Side, coverage_note,
+};
 use froude_records::number::{self, MISSING};
 use froude_records::text::counted;
 
@@ -23,11 +27,12 @@ pub fn blocks(c: &Comparison) -> Vec<Block> {
     let of_pair = |r: &CoefficientComparison| [r.model.clone(), r.first.source.clone(), r.second.source.clone()];
     let (shown, further): (Vec<_>, Vec<_>) =
         c.coefficients.chunk_by(|a, b| of_pair(a) == of_pair(b)).partition(is_shown);
-    let mut out: Vec<Block> = shown.into_iter().flat_map(|pair| coefficients(c, pair)).collect();
+    let joint = c.joint.iter().map(|j| ([j.model.as_str(), &j.first, &j.second], j)).collect();
+    let mut out: Vec<Block> = shown.into_iter().flat_map(|pair| coefficients(&joint, pair)).collect();
     if !further.is_empty() {
         let n = further.iter().map(|pair| pair.len()).sum();
         let title = counted(n, "further pair of coefficients", "further pairs of coefficients");
-        let blocks = further.into_iter().flat_map(|pair| coefficients(c, pair));
+        let blocks = further.into_iter().flat_map(|pair| coefficients(&joint, pair));
         out.push(Block::words([format!(
             "{title}; froude compare --all prints {}.",
             if n == 1 { "it" } else { "them" }
@@ -44,8 +49,11 @@ pub fn verdicts(c: &Comparison) -> Block {
     Block::words(c.verdicts.iter().map(|verdict| format!("  {}.", verdict.words())))
 }
 
+/// The joint comparison of each model in two estimates.
+type Joint<'a> = BTreeMap<[&'a str; 3], &'a JointComparison>;
+
 /// The coefficients that two estimates share, and what is said of them together.
-fn coefficients(c: &Comparison, rows: &[CoefficientComparison]) -> Vec<Block> {
+fn coefficients(joint: &Joint<'_>, rows: &[CoefficientComparison]) -> Vec<Block> {
     let [one, other] = [&rows[0].first.source, &rows[0].second.source];
     let is_stated = rows.iter().any(|r| [&r.first, &r.second].iter().any(|side| side.standard_uncertainty.is_some()));
     let head = |number: &str, id: &str| {
@@ -73,7 +81,7 @@ fn coefficients(c: &Comparison, rows: &[CoefficientComparison]) -> Vec<Block> {
         said.extend((one != other).then(|| coverage_note(other, rows.iter().map(|r| &r.second))));
     }
     said.extend(reasons(rows.iter().map(|r| &r.note)).iter().map(|why| format!("no E_n: {why}")));
-    for j in c.joint.iter().filter(|j| [&j.first, &j.second] == [one, other] && j.model == rows[0].model) {
+    if let Some(j) = joint.get(&[rows[0].model.as_str(), one, other]) {
         said.extend(match (j.chi_squared, j.dof, j.p) {
             (Some(chi2), Some(dof), Some(p)) => Some(format!(
                 "jointly: χ² = {} with {}, {}",
