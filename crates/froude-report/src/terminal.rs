@@ -87,7 +87,7 @@ fn hanging(text: &str) -> String {
 fn panels(text: LaidOut, names: usize, widest: usize) -> Vec<LaidOut> {
     let least = |i: usize| {
         let cells = std::iter::once(&text.head).chain(&text.rows).filter_map(|row| row.get(i));
-        2 + cells.flat_map(|cell| words(cell)).map(|word| word.chars().count()).max().unwrap_or(0)
+        3 + cells.flat_map(|cell| words(cell)).map(|word| word.chars().count()).max().unwrap_or(0)
     };
     let columns = text.head.len();
     let named: usize = (0..names.min(columns)).map(least).sum();
@@ -98,7 +98,7 @@ fn panels(text: LaidOut, names: usize, widest: usize) -> Vec<LaidOut> {
             Some(panel) => panel.push(i),
             None => {
                 out.push(vec![i]);
-                left = widest.saturating_sub(named);
+                left = (widest + 1).saturating_sub(named);
             }
         }
         left = left.saturating_sub(own);
@@ -155,8 +155,8 @@ fn widths(text: &LaidOut, widest: usize) -> Vec<usize> {
     let whole: Vec<usize> = columns().map(|i| cells(i).map(|c| length(c)).max().unwrap_or(0)).collect();
     let mut out: Vec<usize> =
         columns().map(|i| cells(i).flat_map(|c| words(c)).map(|w| length(&w)).max().unwrap_or(0)).collect();
-    // A space on either side of each column.
-    let mut left = widest.saturating_sub(out.iter().sum::<usize>() + 2 * out.len());
+    // A space on either side of each column, and one between them.
+    let mut left = (widest + 1).saturating_sub(out.iter().sum::<usize>() + 3 * out.len());
     // What names the row stays on one line, where it is a name and not a sentence.
     if let (Some(first), Some(&name)) = (out.first_mut(), whole.first())
         && name <= LONGEST_NAME
