@@ -66,7 +66,7 @@ pub fn findings(findings: &[Finding]) -> Vec<String> {
     std::iter::once("Findings".to_owned()).chain(findings.iter().map(line)).collect()
 }
 
-/// A text in lines of at most [`WIDEST`] characters.
+/// A text in lines of at most 120 characters.
 #[must_use]
 pub fn wrapped(text: &str) -> String {
     wrap(text, WIDEST)
