@@ -182,14 +182,8 @@ fn compared_columns_carry_the_name_of_their_source_and_fit_on_a_page() {
     assert!(forces.contains("Student's t, effective degrees of freedom"), "{forces}");
     // The demo's published sets belong to a body with links, and there are many of them.
     let published = example("mamba/published");
-    let path = |n: &str| published.join(n).to_str().unwrap().to_owned();
-    let sets = [
-        path("cfd.json"),
-        path("circulation_tank_restricted.json"),
-        path("towing_rig.json"),
-        path("table10_as_printed.json"),
-    ];
-    let args: Vec<&str> = ["compare", "--all"].into_iter().chain(sets.iter().map(String::as_str)).collect();
+    let sets = ["cfd.json", "circulation_tank_restricted.json", "towing_rig.json", "table10_as_printed.json"];
+    let args: Vec<&str> = ["compare", "--all"].into_iter().chain(sets).collect();
     let said = String::from_utf8_lossy(&froude(&published, &args).stdout).into_owned();
     let heads: Vec<&str> = said.lines().filter(|l| l.contains("load") && l.contains("links")).collect();
     assert!(heads.len() > 1, "wrapped by block:\n{said}");
