@@ -111,7 +111,7 @@ impl Prepared {
             t.number("coast_m", "coast [m]", |row| row.forecast.coast_m).places(3),
             t.number("margin_m", "margin [m]", |row| row.forecast.margin_m).places(3),
             t.number("drag_n", "drag [N]", |row| row.forecast.drag_n).places(3),
-            t.number("differences_to_see_it", "differences to see it", pairs).places(0),
+            t.number("differences_to_see_it", "repeats to see it", pairs).places(0),
             t.count("alike", "runs", |row| row.alike),
         ]);
         table.shown_rows = Some(first);
