@@ -10,6 +10,7 @@ mod builder;
 mod cell;
 mod json;
 mod laid_out;
+mod schema;
 #[cfg(test)]
 mod tests;
 
@@ -17,6 +18,7 @@ pub use builder::{TableBuilder, facts};
 pub use json::Tree;
 pub(crate) use json::tree;
 pub use laid_out::{LaidOut, laid_out};
+pub use schema::Schema;
 
 use crate::estimate::Estimate;
 use crate::page::{Chart, Field, Map};

@@ -362,7 +362,8 @@ fn is_formula(cell: &str) -> bool {
 }
 
 /// A cell in quotes where it needs them; an empty one too, so that no row is a blank line.
-fn quoted(cell: String) -> String {
+#[must_use]
+pub fn quoted(cell: String) -> String {
     let needs = cell.is_empty()
         || cell.trim() != cell
         || cell.starts_with(['#', '\u{feff}'])

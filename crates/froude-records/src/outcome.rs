@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::block::{Block, Tree, tree};
+use crate::block::{Block, Schema, Tree, tree};
 use crate::estimate::EstimateFile;
 use crate::finding::Finding;
 use crate::folder_lock::FolderLock;
@@ -140,6 +140,12 @@ impl Outcome {
     #[must_use]
     pub fn result(&self) -> Tree<'_> {
         tree(self)
+    }
+
+    /// The JSON Schema of its blocks.
+    #[must_use]
+    pub fn schema(&self) -> Schema {
+        Schema::of(&tree(self))
     }
 
     /// The first file of a kind.

@@ -28,6 +28,7 @@
 
 mod canvas;
 pub mod chart;
+pub mod csv;
 mod error;
 pub mod field;
 mod figures;

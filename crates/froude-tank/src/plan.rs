@@ -46,7 +46,10 @@ pub(crate) fn intervals(expected: &[Expected], law: &str) -> ResultTable {
         t.number("value", "value", |e| e.value),
         t.number("standard_uncertainty", "", |e| e.combined.standard),
         t.number("half_width_95", "U", |e| e.combined.arms[1]).significant(2),
-        t.number("", "U, relative", |e| (e.value != 0.0).then(|| (e.combined.arms[1] / e.value).abs())).percent(),
+        t.number("relative_half_width_95", "U, relative", |e| {
+            (e.value != 0.0).then(|| (e.combined.arms[1] / e.value).abs())
+        })
+        .percent(),
         t.text("mostly_from", "", |e| e.mostly.0.clone()),
         t.number("mostly_from_standard", "", |e| e.mostly.1),
         t.text("", "mostly from", |e| format!("{} ({})", e.mostly.0, significant(e.mostly.1, 2))),

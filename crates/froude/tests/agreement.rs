@@ -1,146 +1,35 @@
 //! What people and programs read of every verb that returns blocks is the same: each number of a table stands in the JSON at its key, in the SI unit that
-//! the key ends in, and rounds to what is shown.
+//! the key ends in, and rounds to what is shown; and the published schema of the verb is that of its blocks.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use froude::carriage::drive::{DriveJob, drive, prepare};
+use froude::carriage::tune::tune;
+use froude::demo;
 use froude::identify::prediction;
 use froude::inspect::inspect;
-use froude::pipeline::{self, identify};
-use froude::records::block::{Block, Cells, ResultColumn, ResultTable, laid_out};
-use froude::records::outcome::Outcome;
+use froude::methods::added_mass::options::Asked;
+use froude::methods::added_mass::verb::{check, put_right};
+use froude::pipeline::{self, Input, Purpose, identify};
+use froude::plan::plan;
+use froude::records::added_mass_options::GivenOption;
 use froude::report::write::{write_files, write_folder};
+use froude::rig::campaign::runner::{Operator, Progress};
+use froude::rig::campaign::stop::StopSwitch;
+use froude::rig::carriage::plan::PlannedRun;
+use froude::rig::drive::Sample;
 use froude::swim::front::Objective;
 use froude::swim::gait::{Envelope, Gait};
 use froude::swim::sweep::Axis;
 use froude::swim::verb::{Job, Moves, Pitching, Ranges, SweepJob, look, optimise, sweep, swim};
-use serde_json::Value;
+use froude::twin::simulate;
 
-/// How a key ends whose numbers are shown in a unit.
-const ENDS: [(&str, &str); 17] = [
-    ("1", ""),
-    ("deg", "_rad"),
-    ("deg/s", "_rad_s"),
-    ("kg", "_kg"),
-    ("mm", "_m"),
-    ("m", "_m"),
-    ("l", "_m3"),
-    ("kg m²", "_kg_m2"),
-    ("kg/s", "_kg_s"),
-    ("kg/m", "_kg_m"),
-    ("N m/rad", "_n_m_rad"),
-    ("N", "_n"),
-    ("N m", "_n_m"),
-    ("m/s", "_m_s"),
-    ("W", "_w"),
-    ("J/m", "_j_m"),
-    ("s", "_s"),
-];
+mod held;
+use held::{holds, of_verb};
 
-fn robot(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name).join("robot.toml")
-}
-
-/// A value by its path in a document.
-fn at<'v>(document: &'v Value, path: &str) -> &'v Value {
-    path.split('/')
-        .filter(|name| !name.is_empty())
-        .fold(document, |value, name| value.get(name).unwrap_or_else(|| panic!("no {name} of {path} in {value}")))
-}
-
-fn column_agrees(place: &Value, table: &ResultTable, column: &ResultColumn) {
-    let unit = column.unit.as_ref().map(|unit| unit.text.as_str());
-    if let (Some(unit), Cells::Number(_) | Cells::Interval(_)) = (unit, &column.cells) {
-        let (_, end) = ENDS.iter().find(|(of, _)| *of == unit).unwrap_or_else(|| panic!("{unit} of {}", column.key));
-        assert!(column.key.ends_with(end), "{} is shown in {unit}", column.key);
-    }
-    for row in 0..table.n_rows {
-        let object = if table.are_facts { place } else { &place[row] };
-        let value = at(object, &column.key);
-        match (&column.cells, column.text(row)) {
-            (_, None) => {
-                assert!(value.is_null() || value.as_array().is_some_and(Vec::is_empty), "{}: {value}", column.key);
-            }
-            (Cells::Number(all), Some(_)) => assert_eq!(value.as_f64(), Some(all[row]), "{}", column.key),
-            (Cells::Count(all), Some(_)) => assert_eq!(value.as_u64(), all[row].map(|n| n as u64), "{}", column.key),
-            (Cells::Interval(all), Some(_)) => {
-                assert_eq!(value[1].as_f64(), all[row].map(|ends| ends[1]), "{}", column.key);
-            }
-            (Cells::Text(_), Some(text)) => assert_eq!(value.as_str(), Some(text.as_str()), "{}", column.key),
-            (_, Some(_)) => assert!(!value.is_null(), "{}", column.key),
-        }
-    }
-}
-
-/// All numbers of a document.
-fn numbers(document: &Value, into: &mut BTreeSet<u64>) {
-    match document {
-        Value::Number(x) => drop(x.as_f64().map(|x| into.insert(x.to_bits()))),
-        Value::Array(all) => all.iter().for_each(|value| numbers(value, into)),
-        Value::Object(all) => all.values().for_each(|value| numbers(value, into)),
-        Value::Null | Value::Bool(_) | Value::String(_) => {}
-    }
-}
-
-/// What has no key is text, or stands in the record; every other cell is in the document.
-fn agrees(blocks: &[Block], place: &Value, recorded: &BTreeSet<u64>) {
-    let mut items: BTreeMap<&str, usize> = BTreeMap::new();
-    for block in blocks {
-        match block {
-            Block::Table(table) => {
-                for column in table.columns.iter().filter(|column| column.key.is_empty()) {
-                    let shown = match &column.cells {
-                        Cells::Number(all) => all.clone(),
-                        Cells::Interval(all) => all.iter().flatten().flatten().copied().collect(),
-                        Cells::Text(_) | Cells::Texts(_) => continue,
-                        _ => panic!("{} has no key", column.head),
-                    };
-                    for x in shown.into_iter().filter(|x| x.is_finite()) {
-                        assert!(recorded.contains(&x.to_bits()), "{x} of {} is in no record", column.head);
-                    }
-                }
-                let mut keyed = table.columns.iter().filter(|column| !column.key.is_empty()).peekable();
-                if keyed.peek().is_some() && (table.n_rows > 0 || table.are_facts) {
-                    let place = at(place, &table.key);
-                    keyed.for_each(|column| column_agrees(place, table, column));
-                }
-                if let Some(text) = laid_out(table) {
-                    assert!(text.rows.iter().all(|row| row.len() == text.head.len()));
-                }
-            }
-            Block::Text { key, texts } if !key.is_empty() => {
-                let said = at(place, key).as_array().unwrap();
-                assert!(texts.iter().all(|text| said.iter().any(|said| said == text)), "{key}");
-            }
-            Block::Section(section) => match section.key.strip_suffix("[]") {
-                Some(key) => {
-                    let item = items.entry(key).or_default();
-                    agrees(&section.blocks, &at(place, key)[*item], recorded);
-                    *item += 1;
-                }
-                None => agrees(&section.blocks, at(place, &section.key), recorded),
-            },
-            Block::Estimates(estimates) => {
-                assert_eq!(at(place, "estimates").as_array().unwrap().len(), estimates.len());
-            }
-            Block::Text { .. } | Block::Chart(_) | Block::Map(_) | Block::Field(_) => {}
-        }
-    }
-}
-
-fn holds(outcome: &Outcome) {
-    let read = |text: String| -> Value { serde_json::from_str(&text).unwrap() };
-    let document = read(serde_json::to_string(&outcome.result()).unwrap());
-    let mut recorded = BTreeSet::new();
-    numbers(&read(serde_json::to_string(&outcome.json()).unwrap()), &mut recorded);
-    agrees(&outcome.blocks, &document, &recorded);
-    for file in &outcome.files {
-        if let Some(path) = document[file.key].as_str() {
-            assert_eq!(Some(path), file.path.to_str(), "{}", file.key);
-        }
-        assert!(file.path.exists(), "{}", file.path.display());
-    }
+fn example(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name)
 }
 
 fn gait() -> Gait {
@@ -151,12 +40,10 @@ fn gait() -> Gait {
 #[test]
 fn robots_and_swimmers() {
     let folder = tempfile::tempdir().unwrap();
+    let (mut looks, mut swims) = (Vec::new(), Vec::new());
     for name in ["mamba-swim", "mamba-3d"] {
-        let robot = robot(name);
-        if !robot.is_file() {
-            continue;
-        }
-        holds(&look(&robot).unwrap());
+        let robot = example(name).join("robot.toml");
+        looks.push(look(&robot).unwrap());
         let out = folder.path().join(name);
         let job = Job {
             robot,
@@ -172,41 +59,12 @@ fn robots_and_swimmers() {
         };
         let found = swim(&job, &|_, _| {}).unwrap();
         write_folder(&found, &out).unwrap();
-        holds(&found);
+        swims.push(found);
     }
-}
-
-/// What is fitted, compared, predicted, planned and looked at.
-#[test]
-fn identify_and_what_reads_its_records() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name);
-    let rows =
-        "speed [m/s],f_x [N]\n0.1,-0.05\n0.2,-0.19\n0.3,-0.46\n0.4,-0.79\n0.5,-1.26\n0.6,-1.78\n0.7,-2.47\n0.8,-3.19\n";
-    std::fs::write(path("monday.csv"), rows).unwrap();
-    std::fs::write(path("tuesday.csv"), rows.replace("-1.26", "-1.24").replace("-0.46", "-0.44")).unwrap();
-    for day in ["monday", "tuesday"] {
-        let found = identify(&pipeline::Job::new(path(&format!("{day}.csv"))), &|_| {}).unwrap();
-        assert_eq!(found.path("result"), Some(&*path(&format!("{day}-results/result.json"))));
-        holds(&found.outcome());
-    }
-    let [monday, tuesday] = ["monday", "tuesday"].map(|day| path(&format!("{day}-results/estimate.json")));
-    let records = pipeline::Input::Records(vec![monday.clone(), tuesday]);
-    holds(&identify(&pipeline::Job::of(records), &|_| {}).unwrap().outcome());
-    let (record, table) = (monday.clone(), path("tuesday.csv"));
-    let job = prediction::Job { record, table, sidecar: None, laws: Vec::new(), out: None };
-    holds(&prediction::predict(&job).unwrap());
-    for file in [monday, path("tuesday.csv")] {
-        holds(&inspect(&file, None).unwrap().outcome());
-    }
-}
-
-#[test]
-fn sweeps_and_fronts() {
-    let folder = tempfile::tempdir().unwrap();
+    of_verb("robot-inspect", &looks.iter().collect::<Vec<_>>());
     let amplitude = Some(Axis { low: 20_f64.to_radians(), high: 30_f64.to_radians(), n: 2 });
     let job = SweepJob {
-        robot: robot("mamba-swim"),
+        robot: example("mamba-swim/robot.toml"),
         moves: Moves::Wave(gait()),
         ranges: Ranges { amplitude, ..Ranges::default() },
         motor: None,
@@ -217,6 +75,146 @@ fn sweeps_and_fronts() {
     let objectives = [Objective::Speed, Objective::Power];
     for found in [sweep(&job, &|_, _| {}).unwrap(), optimise(&job, objectives, &|_, _| {}).unwrap()] {
         write_files(&found).unwrap();
-        holds(&found);
+        swims.push(found);
+    }
+    of_verb("swim", &swims.iter().collect::<Vec<_>>());
+}
+
+const ROWS: &str =
+    "speed [m/s],f_x [N]\n0.1,-0.05\n0.2,-0.19\n0.3,-0.46\n0.4,-0.79\n0.5,-1.26\n0.6,-1.78\n0.7,-2.47\n0.8,-3.19\n";
+
+#[test]
+fn identify_and_what_reads_its_records() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("monday.csv"), ROWS).unwrap();
+    std::fs::write(path("tuesday.csv"), ROWS.replace("-1.26", "-1.24").replace("-0.46", "-0.44")).unwrap();
+    for day in ["monday", "tuesday"] {
+        let found = identify(&pipeline::Job::new(path(&format!("{day}.csv"))), &|_| {}).unwrap();
+        assert_eq!(found.path("result"), Some(&*path(&format!("{day}-results/result.json"))));
+        holds(&found.outcome());
+    }
+    let [monday, tuesday] = ["monday", "tuesday"].map(|day| path(&format!("{day}-results/estimate.json")));
+    let records = Input::Records(vec![monday.clone(), tuesday]);
+    holds(&identify(&pipeline::Job::of(records), &|_| {}).unwrap().outcome());
+    let (record, table) = (monday, path("tuesday.csv"));
+    let job = prediction::Job { record, table, sidecar: None, laws: Vec::new(), out: None };
+    of_verb("predict", &[&prediction::predict(&job).unwrap()]);
+}
+
+#[test]
+fn campaigns_planned_and_simulated() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut plans, mut twins) = (Vec::new(), Vec::new());
+    for name in ["mamba-decay", "mamba-oscillation", "mamba-steady", "mamba-weights"] {
+        let to = folder.path().join(name);
+        copy(&example(name), &to);
+        plans.push(plan(&to.join("campaign.toml")).unwrap());
+        twins.push(simulate(&to.join("campaign.toml"), false).unwrap());
+    }
+    of_verb("plan", &plans.iter().collect::<Vec<_>>());
+    of_verb("simulate", &twins.iter().collect::<Vec<_>>());
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap().map(Result::unwrap) {
+        if entry.file_type().unwrap().is_dir() {
+            copy(&entry.path(), &to.join(entry.file_name()));
+        } else {
+            std::fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
+        }
     }
 }
+
+#[test]
+fn added_mass_of_a_shape_and_of_a_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = folder.path().join("box.obj");
+    // A tetrahedron, with one corner given twice.
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 5 3\n";
+    std::fs::write(&mesh, text).unwrap();
+    let repaired = folder.path().join("repaired.obj");
+    let asked = Asked::read(&mesh, &[]).unwrap();
+    let checked = [check(&asked).unwrap(), put_right(&asked, &mesh, None, &repaired).unwrap()];
+    of_verb("added-mass-check", &checked.iter().collect::<Vec<_>>());
+    let body = folder.path().join("body.toml");
+    std::fs::copy(example("mamba-necked/body.toml"), &body).unwrap();
+    let links = GivenOption { name: "links".to_owned(), text: "2".to_owned(), place: None };
+    let job = pipeline::Job::of(Input::Mesh { path: body, options: vec![links] });
+    holds(&identify(&job, &|_| {}).unwrap().outcome());
+}
+
+#[test]
+fn the_demo() {
+    let folder = tempfile::tempdir().unwrap();
+    holds(&demo::run(&folder.path().join("demo"), None, &|_| {}).unwrap());
+}
+
+/// Confirms, and looks at nothing.
+struct Nobody;
+
+impl Operator for Nobody {
+    fn confirm(&mut self, _: &str, _: &dyn Fn() -> bool) -> bool {
+        true
+    }
+}
+
+impl Progress for Nobody {
+    fn run_begins(&mut self, _: &PlannedRun, _: usize, _: usize) {}
+
+    fn sample(&mut self, _: &PlannedRun, _: &Sample, _: f64) {}
+
+    fn say(&mut self, _: &str) {}
+}
+
+/// The towing carriage, driven in short; and all that can be looked at.
+#[test]
+fn a_carriage_and_what_is_inspected() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = folder.path().join("campaign.toml");
+    let mut text = std::fs::read_to_string(example("towing-carriage/campaign.toml")).unwrap();
+    for (from, to) in SHORT {
+        assert!(text.contains(from), "the example has no {from}");
+        text = text.replace(from, to);
+    }
+    std::fs::write(&campaign, text).unwrap();
+    let job = DriveJob { campaign: campaign.clone(), out: None, start_unix_ns: 0, date: "2026-11-22".to_owned() };
+    let prepared = prepare(&job).unwrap();
+    let driven = drive(&prepared, &StopSwitch::default(), &mut Nobody, &mut Nobody).unwrap();
+    of_verb("run", &[&prepared.outcome(), &driven.outcome(&prepared.folder)]);
+
+    let runs = || Input::Runs { paths: vec![prepared.folder.clone()], campaign: None };
+    for purpose in [None, Some(Purpose::Servo), Some(Purpose::Calibration)] {
+        let out = Some(folder.path().join(format!("{purpose:?}")));
+        holds(&identify(&pipeline::Job { out, purpose, ..pipeline::Job::of(runs()) }, &|_| {}).unwrap().outcome());
+    }
+    holds(&tune(&job, &StopSwitch::default(), &mut Nobody, &mut Nobody).unwrap().outcome());
+
+    let table = folder.path().join("monday.csv");
+    std::fs::write(&table, ROWS).unwrap();
+    identify(&pipeline::Job::new(&table), &|_| {}).unwrap();
+    let record = folder.path().join("monday-results/estimate.json");
+    let log = std::fs::read_dir(&prepared.folder).unwrap().map(|entry| entry.unwrap().path());
+    let log = log.filter(|path| path.extension().is_some_and(|e| e == "mcap")).min().unwrap();
+    let all = [table, record, campaign, log, prepared.folder.clone()];
+    let looked: Vec<_> = all.iter().map(|file| inspect(file, None).unwrap().outcome()).collect();
+    of_verb("inspect", &looked.iter().collect::<Vec<_>>());
+}
+
+/// Two pairs at one speed, jogs and pulses, with short waits.
+const SHORT: [(&str, &str); 10] = [
+    (r#"settling = { dry = "5 s", wet = "120 s" }"#, r#"settling = { dry = "1 s", wet = "1 s" }"#),
+    (r#"still = "5 s""#, r#"still = "2 s""#),
+    (r#"speeds = ["0.05 m/s", "0.15 m/s", "0.25 m/s", "0.35 m/s", "0.45 m/s", "0.55 m/s"]"#, r#"speeds = ["0.5 m/s"]"#),
+    ("repeats = 5  ", "repeats = 2  "),
+    ("[carriage.warm_up]\nduration = \"1 min\"\nspeed = \"0.3 m/s\"\n", ""),
+    (
+        "[carriage.friction_sweep]\nspeeds = [\"0.02 m/s\", \"0.05 m/s\", \"0.1 m/s\", \"0.2 m/s\", \"0.35 m/s\", \"0.55 m/s\"]\nrepeats = 2\n",
+        "",
+    ),
+    ("weights = [\"1.5 N\", \"10 N\"]", "weights = [\"1.5 N\"]"),
+    ("repeats = 6\n", "repeats = 1\n"),
+    ("duration = \"20 s\"", "duration = \"2 s\""),
+    (r#"log_rate = "1 kHz""#, r#"log_rate = "250 Hz""#),
+];

@@ -5,16 +5,20 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use froude::cfd::store::Store;
-use froude::cfd::verb::{collect, plan, status};
+use froude::cfd::verb::{self, Engine, Running, collect, plan, report, retry, status, suggest};
 use froude::pipeline::{Job, identify};
 use froude::records::estimate::Estimate;
 use froude::records::outcome::Outcome as Answer;
+use froude::report::write::write_folder;
 use froude_cfd::engine::local;
 use froude_cfd::foam_mesh::FoamMesh;
 use froude_cfd::outcome::{Outcome, Status};
 use froude_cfd::wall::{MeshQuality, WallLayers};
 use froude_cfd::work::{Solve, Task};
 use serde_json::Value;
+
+mod held;
+use held::of_verb;
 
 const BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
      link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }\nends = { length = \"31 mm\" }\n";
@@ -118,6 +122,25 @@ fn part(estimate: &Estimate, name: &str) -> f64 {
         .map(|e| (e.sensitivity[0][0].powi(2) * e.covariance[0][0]).sqrt())
         .sum();
     own / value
+}
+
+/// What each verb says of a campaign that is computed.
+#[test]
+fn what_is_said_of_a_campaign_is_what_programs_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = computed(folder.path(), STUDY);
+    let idle = AtomicBool::new(false);
+    of_verb("cfd-plan", &[&plan(&path, None, 2, &idle, &|_| ()).unwrap()]);
+    of_verb("cfd-status", &[&status(&path, None).unwrap()]);
+    of_verb("cfd-collect", &[&collect(&path, None).unwrap()]);
+    of_verb("cfd-suggest", &[&suggest(&path, None, 3).unwrap()]);
+    of_verb("cfd-retry", &[&retry(&path, None, &[]).unwrap()]);
+    let job = verb::Job { campaign: path.clone(), source: None, engine: Engine::Local { jobs: 1, ranks: 1 } };
+    of_verb("cfd-run", &[&verb::run(&job, &idle, &Running::new(&|_| (), &|_| ())).unwrap()]);
+    let out = folder.path().join("page");
+    let page = report(&path, None, &[], &out, None, &|_| ()).unwrap();
+    write_folder(&page, &out).unwrap();
+    of_verb("cfd-report", &[&page]);
 }
 
 /// An error of q % of all forces that all cases share is one of q % of a coefficient that they are proportional to.

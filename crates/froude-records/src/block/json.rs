@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
-use super::{Block, Cells, ResultTable};
+use super::{Block, Cells, ResultColumn, ResultTable};
 use crate::estimate::Estimate;
 use crate::finding::Finding;
 use crate::outcome::{Content, Outcome, names_of_figures};
@@ -14,18 +14,18 @@ use crate::outcome::{Content, Outcome, names_of_figures};
 /// A place in a JSON document: a value, a list where it has items, else an object.
 #[derive(Debug, Default)]
 pub struct Tree<'a> {
-    name: &'a str,
-    value: Option<Value<'a>>,
-    items: Vec<Self>,
-    fields: Vec<Self>,
+    pub(super) name: &'a str,
+    pub(super) value: Option<Value<'a>>,
+    pub(super) items: Vec<Self>,
+    pub(super) fields: Vec<Self>,
 }
 
 /// A value that lies in a block.
 #[derive(Debug)]
-enum Value<'a> {
+pub(super) enum Value<'a> {
     /// An object for each row, with the columns of all these tables.
     Rows(Vec<&'a ResultTable>),
-    Cell(&'a Cells, usize),
+    Cell(&'a ResultColumn, usize),
     Number(Option<f64>),
     Texts(Vec<&'a String>),
     Path(&'a Path),
@@ -88,9 +88,9 @@ impl<'a> Tree<'a> {
         }
     }
 
-    fn put_row(&mut self, table: &'a ResultTable, row: usize) {
+    pub(super) fn put_row(&mut self, table: &'a ResultTable, row: usize) {
         for column in &table.columns {
-            self.put(&column.key, Value::Cell(&column.cells, row));
+            self.put(&column.key, Value::Cell(column, row));
             if let Some((key, all)) = &column.standard {
                 self.put(key, Value::Number(all.get(row).copied()));
             }
@@ -137,7 +137,7 @@ impl Serialize for Tree<'_> {
                     object
                 }))
             }
-            Some(Value::Cell(cells, row)) => cells.serialize_cell(*row, to),
+            Some(Value::Cell(column, row)) => column.cells.serialize_cell(*row, to),
             Some(Value::Number(x)) => x.filter(|x| x.is_finite()).serialize(to),
             Some(Value::Texts(texts)) => texts.serialize(to),
             Some(Value::Path(path)) => to.collect_str(&path.display()),
