@@ -8,20 +8,21 @@ use froude::pipeline::{Input, Job};
 use crate::args::AddedMassArgs;
 use crate::failure::Failure;
 use crate::out::{note, say};
-use crate::print;
+use crate::print::{self, Form};
 
-pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Failure> {
+pub fn added_mass(args: AddedMassArgs, form: Form) -> Result<(), Failure> {
     renamed(&args)?;
     if let Some(target) = &args.repair {
         let asked = Asked::read(&args.input, &args.options.0)?;
         let weld_m = args.weld.as_deref().map(weld_m).transpose()?;
-        return print::answer(&put_right(&asked, &args.input, weld_m, target)?, json);
+        return print::answer(&put_right(&asked, &args.input, weld_m, target)?, form);
     }
     if args.weld.is_some() {
-        return Err(Failure::WeldWithoutRepair);
+        let why = "--weld is for a repair: add --repair FILE, the mesh to be written (.obj or .stl)";
+        return Err(Failure::refused(why));
     }
     if args.check {
-        return print::answer(&check(&Asked::read(&args.input, &args.options.0)?)?, json);
+        return print::answer(&check(&Asked::read(&args.input, &args.options.0)?)?, form);
     }
     let job = Job { out: args.out, ..Job::of(Input::Mesh { path: args.input, options: args.options.0 }) };
     // Two matrices of one body in two frames look alike.
@@ -29,23 +30,24 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Failure> {
     let outcome = crate::identified(job)?;
     let replaced = before.and_then(|(place, out)| replaces_another_frame(&out, &place, &outcome.file));
     match replaced {
-        Some(text) if json => note!("{text}"),
+        Some(text) if form != Form::Lines => note!("{text}"),
         Some(text) => say!("{}", froude::report::terminal::wrapped(&text)),
         None => {}
     }
-    print::answer(&outcome.outcome(), json)
+    print::answer(&outcome.outcome(), form)
 }
 
 /// What an option was called before says what it is called now.
 fn renamed(args: &AddedMassArgs) -> Result<(), Failure> {
     if let Some(z) = &args.z {
         let up = if z == "down" { "--up -z" } else { "--up z" };
-        let instead = format!("{up} for how the mesh lies, and --axes ned or enu for the axes of the result");
-        return Err(Failure::Renamed { old: "--z", new: "--up", instead });
+        return Err(Failure::refused(format_args!(
+            "--z is now --up: write {up} for how the mesh lies, and --axes ned or enu for the axes of the result"
+        )));
     }
     if let Some(origin) = &args.origin {
         let at = if origin.trim() == "buoyancy" { "cb".to_owned() } else { format!("{origin:?}") };
-        return Err(Failure::Renamed { old: "--origin", new: "--at", instead: format!("--at {at}") });
+        return Err(Failure::refused(format_args!("--origin is now --at: write --at {at}")));
     }
     Ok(())
 }

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Command, Parser, Subcommand};
 use froude::records::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
 
-/// What stands below the help.
 const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input; 130 stopped by Ctrl-C, where the same command goes on.";
 
 /// Froude turns tank tests, tows and potential flow into drag and added-mass coefficients with realistic uncertainties, and drives the towing carriage.
@@ -15,12 +14,13 @@ pub struct Cli {
     /// Print the result as JSON on standard output.
     #[arg(long, global = true)]
     pub json: bool,
-    /// What to do.
+    /// Print the tables of the result as CSV on standard output, in SI and with all digits.
+    #[arg(long, global = true, conflicts_with = "json")]
+    pub csv: bool,
     #[command(subcommand)]
     pub verb: Verb,
 }
 
-/// The verbs.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// Run the main job on embedded data: real tow-tank runs and the snake robot's twin.
@@ -129,7 +129,6 @@ pub enum Verb {
     /// Look at a robot before it swims: masses, volumes, trim, added mass and drag of each module, and what does not fit together.
     #[command(after_help = "Example: froude robot inspect robot.toml")]
     Robot {
-        /// What to do.
         #[command(subcommand)]
         job: RobotJob,
     },
@@ -138,33 +137,33 @@ pub enum Verb {
         after_help = "Examples:\n  froude cfd plan campaign.toml\n  froude cfd run campaign.toml --jobs 2\n  froude identify campaign.toml"
     )]
     Cfd {
-        /// What to do.
         #[command(subcommand)]
         job: CfdJob,
     },
     /// Characterise a towing carriage: calibrate, identify and tune it, and find drag from its motor current.
     #[command(after_help = "Example: froude carriage drag campaign-runs")]
     Carriage {
-        /// What to do.
         #[command(subcommand)]
         job: CarriageJob,
     },
-    /// Print the JSON Schema of estimate.json.
-    #[command(after_help = "Example: froude schema > estimate.schema.json")]
-    Schema,
+    /// Print the JSON Schema of estimate.json, or of what a verb prints with --json.
+    #[command(after_help = "Examples:\n  froude schema > estimate.schema.json\n  froude schema plan")]
+    Schema {
+        /// The verb.
+        #[arg(default_value = "identify", value_parser = froude::records::schema::RESULTS.map(|(verb, _)| verb))]
+        verb: String,
+    },
 }
 
-/// A campaign with computed cases.
 #[derive(Debug, clap::Args)]
 pub struct CfdCampaign {
-    /// The campaign, with a source of `kind = "cfd"` that names a folder for its `cases`.
+    /// The campaign, with a source of `kind = "cfd"` that names a folder for its `cases`, or one of `method = "forced_oscillation"`, that has a [source.cfd].
     pub campaign: PathBuf,
-    /// Which source, where several have cases.
+    /// Which source, where several are computed.
     #[arg(long)]
     pub source: Option<String>,
 }
 
-/// What computes a campaign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum EngineName {
     /// This machine, one processor a case.
@@ -175,13 +174,11 @@ pub enum EngineName {
     Slurm,
 }
 
-/// What `froude cfd` does.
 #[derive(Debug, Subcommand)]
 pub enum CfdJob {
     /// Make the meshes and write the cases, with their cells, hours and disk; nothing runs.
     #[command(after_help = "Example: froude cfd plan campaign.toml")]
     Plan {
-        /// Which campaign.
         #[command(flatten)]
         of: CfdCampaign,
         /// Cases side by side, for the hours [default: one for each processor].
@@ -193,7 +190,6 @@ pub enum CfdJob {
         after_help = "Examples:\n  froude cfd run campaign.toml --jobs 2\n  froude cfd run campaign.toml --engine slurm --time 60"
     )]
     Run {
-        /// Which campaign.
         #[command(flatten)]
         of: CfdCampaign,
         /// What computes.
@@ -221,21 +217,18 @@ pub enum CfdJob {
     /// Show how far a campaign is: a row per case, those that fail first.
     #[command(after_help = "Example: froude cfd status campaign.toml")]
     Status {
-        /// Which campaign.
         #[command(flatten)]
         of: CfdCampaign,
     },
     /// Write the table of computed forces, which identify reads by itself too.
     #[command(after_help = "Example: froude cfd collect campaign.toml")]
     Collect {
-        /// Which campaign.
         #[command(flatten)]
         of: CfdCampaign,
     },
     /// Say which settings to compute next: those beside settings that the others foretell worst, as blocks of a plan.
     #[command(after_help = "Example: froude cfd suggest campaign.toml --count 8")]
     Suggest {
-        /// Which campaign.
         #[command(flatten)]
         of: CfdCampaign,
         /// New settings at most.
@@ -245,11 +238,8 @@ pub enum CfdJob {
     /// Compute the planned runs of a forced oscillation, as logs that identify takes like those of a tank; run again, it goes on with those that have none.
     #[command(after_help = "Example: froude cfd swing campaign.toml && froude identify campaign.toml")]
     Swing {
-        /// The campaign, with a source of `method = "forced_oscillation"` that has a [source.cfd].
-        campaign: PathBuf,
-        /// Which source, where several swing.
-        #[arg(long)]
-        source: Option<String>,
+        #[command(flatten)]
+        of: CfdCampaign,
         /// Runs side by side [default: one for each processor].
         #[arg(long, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
         jobs: Option<usize>,
@@ -259,7 +249,6 @@ pub enum CfdJob {
         after_help = "Examples:\n  froude cfd report campaign.toml\n  froude cfd report campaign.toml --case H5LT-u0.4-a45 --case H5LT-u0.4-a90"
     )]
     Report {
-        /// Which campaign.
         #[command(flatten)]
         of: CfdCampaign,
         /// A case whose flow is shown, once for each [default: the middle configuration at its highest speed, at 0, 45 and 90 degrees].
@@ -272,7 +261,6 @@ pub enum CfdJob {
     /// Put cases that failed or diverged back among those to compute.
     #[command(after_help = "Example: froude cfd retry campaign.toml H3LT-u0.4-a30")]
     Retry {
-        /// Which campaign.
         #[command(flatten)]
         of: CfdCampaign,
         /// Names of cases [default: all that failed or diverged].
@@ -290,7 +278,6 @@ pub enum CfdJob {
     },
 }
 
-/// What `froude robot` does.
 #[derive(Debug, Subcommand)]
 pub enum RobotJob {
     /// Show masses, volumes, trim, added mass and drag of each module, the forces of the whole, and what does not fit together.
@@ -301,7 +288,6 @@ pub enum RobotJob {
     },
 }
 
-/// What `froude carriage` does.
 #[derive(Debug, Subcommand)]
 pub enum CarriageJob {
     /// Identify inertia, friction, flexibility and repeatability from runs, or inertia and friction from any servo log (CSV with a sidecar).
@@ -365,7 +351,6 @@ pub enum CarriageJob {
     Resonance(Experiment),
 }
 
-/// An experiment on the rig of a campaign.
 #[derive(Debug, clap::Args)]
 pub struct Experiment {
     /// The campaign, with its `rig` and `carriage` sections.
@@ -378,7 +363,6 @@ pub struct Experiment {
     pub yes: bool,
 }
 
-/// What `froude swim` takes.
 #[derive(Debug, Clone, clap::Args)]
 pub struct SwimArgs {
     /// The robot (.toml): modules, drag and added mass by records; or a .urdf with a .toml of the same name for the water.
@@ -439,7 +423,6 @@ pub struct SwimArgs {
     pub periods: u32,
 }
 
-/// What `froude added-mass` takes.
 #[derive(Debug, clap::Args)]
 pub struct AddedMassArgs {
     /// A body file (.toml), or a closed mesh: STL, OBJ, PLY, WAMIT .gdf, Nemoh .dat, Gmsh .msh.

@@ -8,29 +8,30 @@ use froude::carriage::tune::{find_resonance, tune};
 use froude::fit::budget::Uncertain;
 use froude::pipeline::{Input, Job, Purpose};
 use froude::records::block::Block;
+use froude::records::outcome::Outcome;
 use froude::records::units::{Dimension, parse_quantity};
 use froude::rig::carriage::plan::Step;
 
 use crate::args::{CarriageJob, Experiment};
 use crate::failure::Failure;
 use crate::mistaken::{self, Takes};
-use crate::print;
+use crate::print::{self, Form};
 use crate::stage::Stage;
 
 /// `froude run`.
-pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_json: bool) -> Result<(), Failure> {
+pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, form: Form) -> Result<(), Failure> {
     let job = drive_job(campaign, out);
-    let prepared = prepare(&job).map_err(|error| mistaken::RUN.explain(error, &[job.campaign]))?;
+    let prepared = mistaken::RUN.or(prepare(&job), &[job.campaign])?;
     let stage = if check { None } else { Some(Stage::set(&prepared, yes, prepared.steps.len())?) };
     let Some(Stage { switch, mut person, mut bar }) = stage else {
-        return print::answer(&prepared.outcome(), is_json);
+        return print::answer(&prepared.outcome(), form);
     };
-    if !is_json {
-        print::blocks(&prepared.blocks());
+    if form == Form::Lines {
+        print::blocks(&prepared.blocks(), false);
     }
     let driven = drive(&prepared, &switch, &mut person, &mut bar);
     bar.end();
-    print::answer(&driven?.outcome(&prepared.folder), is_json)
+    print::answer(&driven?.outcome(&prepared.folder), form)
 }
 
 fn drive_job(campaign: PathBuf, out: Option<PathBuf>) -> DriveJob {
@@ -39,41 +40,37 @@ fn drive_job(campaign: PathBuf, out: Option<PathBuf>) -> DriveJob {
 }
 
 /// `froude carriage …`.
-pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Failure> {
+pub fn job(job: CarriageJob, form: Form) -> Result<(), Failure> {
     match job {
         CarriageJob::Identify { input, sidecar, validate, out } => {
             let is_same = |path: &PathBuf| validate.as_ref().is_some_and(|other| same_file(path, other));
             if let Some(path) = input.iter().find(|path| is_same(path)) {
-                return Err(Failure::ValidatesItself { path: path.clone() });
+                let why = "the log that is fitted says nothing of another motion; name another log";
+                return Err(Failure::refused(format_args!("--validate {}: {why}", path.display())));
             }
             let job = Job { sidecar, validation: validate, purpose: Some(Purpose::Servo), ..servo(&input, out)? };
-            crate::identify(job, is_json, false).map_err(|error| mistaken::SERVO.explain(error, &input))
+            mistaken::SERVO.or(crate::identify(job, form, false), &input)
         }
         CarriageJob::Drag { runs, campaign, out } => {
             let job = Job { out, ..Job::of(Input::Runs { paths: runs.clone(), campaign }) };
-            crate::identify(job, is_json, false).map_err(|error| mistaken::DRAG.explain(error, &runs))
+            mistaken::DRAG.or(crate::identify(job, form, false), &runs)
         }
         CarriageJob::Calibrate { runs, campaign, out, measured, measured_standard, counted } => {
-            let explain = |error| mistaken::CALIBRATE.explain(error, &runs);
             let scale = measured.map(|measured| encoder_scale(&runs, &measured, &measured_standard, &counted));
-            let scale = scale.transpose().map_err(explain)?;
+            let scale = mistaken::CALIBRATE.or(scale.transpose(), &runs)?;
             let input = Input::Runs { paths: runs.clone(), campaign };
             let job = Job { out, purpose: Some(Purpose::Calibration), ..Job::of(input) };
-            let mut outcome = crate::identified(job).map_err(explain)?.outcome();
+            let mut outcome = mistaken::CALIBRATE.or(crate::identified(job), &runs)?.outcome();
             outcome.blocks.splice(0..0, scale);
-            print::answer(&outcome, is_json)
+            print::answer(&outcome, form)
         }
-        CarriageJob::Tune(e) => {
-            let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::TUNE)?;
-            let outcome = tune(&job, &switch, &mut person, &mut bar);
-            bar.end();
-            print::answer(&outcome?.outcome(), is_json)
-        }
+        CarriageJob::Tune(e) => experiment(&e, &mistaken::TUNE, form, |job, Stage { switch, person, bar }| {
+            Ok(tune(job, switch, person, bar)?.outcome())
+        }),
         CarriageJob::Resonance(e) => {
-            let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::RESONANCE)?;
-            let outcome = find_resonance(&job, &switch, &mut person, &mut bar);
-            bar.end();
-            print::answer(&outcome?.outcome(), is_json)
+            experiment(&e, &mistaken::RESONANCE, form, |job, Stage { switch, person, bar }| {
+                Ok(find_resonance(job, switch, person, bar)?.outcome())
+            })
         }
     }
 }
@@ -87,15 +84,10 @@ fn same_file(a: &Path, b: &Path) -> bool {
 fn servo(input: &[PathBuf], out: Option<PathBuf>) -> Result<Job, Failure> {
     let is_log = |path: &&PathBuf| path.extension().is_some_and(|e| e == "csv" || e == "parquet");
     if let (Some(log), true) = (input.iter().find(is_log), input.len() > 1) {
-        return Err(Failure::Instead {
-            path: log.clone(),
-            found: "a log of its own",
-            verb: "carriage identify",
-            takes: "one log, or runs of one rig",
-            instead:
-                "identify each log by itself, and compare their records: froude compare A/estimate.json B/estimate.json"
-                    .to_owned(),
-        });
+        let takes = "a log of its own; froude carriage identify takes one log, or runs of one rig";
+        let instead =
+            "identify each log by itself, and compare their records: froude compare A/estimate.json B/estimate.json";
+        return Err(Failure::refused(format_args!("{} is {takes}. {instead}", log.display())));
     }
     Ok(match input {
         [log] if is_log(&log) => {
@@ -108,24 +100,29 @@ fn servo(input: &[PathBuf], out: Option<PathBuf>) -> Result<Job, Failure> {
 }
 
 /// A length as somebody typed it, m.
-fn length(option: &'static str, text: &str) -> Result<f64, Failure> {
-    parse_quantity(text).and_then(|q| q.expect(Dimension::LENGTH)).map_err(|source| Failure::Length {
-        option,
-        text: text.to_owned(),
-        source,
-    })
+fn length(option: &str, text: &str) -> Result<f64, Failure> {
+    parse_quantity(text)
+        .and_then(|q| q.expect(Dimension::LENGTH))
+        .map_err(|error| Failure::refused(format_args!("{option} {text:?}: {error}; write a length, \"2.000 m\"")))
 }
 
 fn encoder_scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) -> Result<Block, Failure> {
     let known = Uncertain::new(length("--measured", measured)?, length("--measured-standard", standard)?);
     let counted_m = counted.iter().map(|text| length("--counted", text)).collect::<Result<Vec<_>, _>>()?;
-    scale(paths, known, &counted_m)?.ok_or(Failure::NoRig)
+    scale(paths, known, &counted_m)?.ok_or_else(|| Failure::refused("the runs do not state which rig they come from"))
 }
 
-fn experiment(e: &Experiment, takes: &Takes) -> Result<(DriveJob, Stage), Failure> {
+fn experiment(
+    e: &Experiment,
+    takes: &Takes,
+    form: Form,
+    conduct: impl FnOnce(&DriveJob, &mut Stage) -> Result<Outcome, Failure>,
+) -> Result<(), Failure> {
     let job = drive_job(e.campaign.clone(), e.out.clone());
-    let prepared = prepare(&job).map_err(|error| takes.explain(error, std::slice::from_ref(&e.campaign)))?;
+    let prepared = takes.or(prepare(&job), std::slice::from_ref(&e.campaign))?;
     let runs = prepared.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
-    let stage = Stage::set(&prepared, e.yes, runs.min(3))?;
-    Ok((job, stage))
+    let mut stage = Stage::set(&prepared, e.yes, runs.min(3))?;
+    let outcome = conduct(&job, &mut stage);
+    stage.bar.end();
+    print::answer(&outcome?, form)
 }

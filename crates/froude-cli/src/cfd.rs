@@ -7,34 +7,31 @@ use std::thread::available_parallelism;
 
 use froude::cfd::verb::{self, Engine, Job, Running, SlurmOptions};
 use froude::pipeline::default_out;
-use froude::records::outcome::Outcome;
 use froude::records::results::can_be_written;
 use froude::report::write::write_folder;
 use froude::swing::swing;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 
-use crate::args::{CfdCampaign, CfdJob, EngineName};
+use crate::args::{CfdJob, EngineName};
 use crate::failure::Failure;
 use crate::out::{self, Spinner, note, say};
-use crate::print;
+use crate::print::{self, Form};
 use crate::signals::{self, STOPPED};
 
-pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
+pub fn job(job: CfdJob, form: Form) -> Result<(), Failure> {
     let found = match job {
         CfdJob::Plan { of, jobs } => {
             let (bar, cancel) = (Spinner::new(), cancel()?);
             let tell = |what: &str| bar.set_message(what);
-            let found = verb::plan(&of.campaign, of.source.as_deref(), processors(jobs), &cancel, &tell)?;
-            bar.finish_and_clear();
-            found
+            verb::plan(&of.campaign, of.source.as_deref(), processors(jobs), &cancel, &tell)?
         }
         CfdJob::Run { of, engine, jobs, ranks, batch, time, memory, partition } => {
             let engine = match engine {
                 EngineName::Local => Engine::Local { jobs: processors(jobs), ranks: 1 },
                 EngineName::Mpi => Engine::Local { jobs: jobs.unwrap_or(1), ranks: ranks.unwrap_or(2) },
                 EngineName::Slurm => {
-                    let program = std::env::current_exe().map_err(Failure::Program)?;
+                    let program = std::env::current_exe().map_err(Failure::system)?;
                     let ranks = ranks.unwrap_or(1);
                     let words = [&program.to_string_lossy(), "cfd", "case", "--ranks", &ranks.to_string()];
                     Engine::Slurm(SlurmOptions {
@@ -47,7 +44,16 @@ pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
                     })
                 }
             };
-            start(&of, engine, json)?
+            out::go_on_unread();
+            let (bar, cancel) = (Spinner::new(), cancel()?);
+            let now = |text: &str| bar.set_message(text);
+            let line = |text: &str| {
+                if form == Form::Lines {
+                    bar.suspend(|| note!("{text}"));
+                }
+            };
+            let job = Job { campaign: of.campaign, source: of.source, engine };
+            verb::run(&job, &cancel, &Running::new(&now, &line))?
         }
         CfdJob::Status { of } => verb::status(&of.campaign, of.source.as_deref())?,
         CfdJob::Collect { of } => verb::collect(&of.campaign, of.source.as_deref())?,
@@ -59,21 +65,18 @@ pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
             let found = verb::report(&of.campaign, of.source.as_deref(), &cases, &out, Some(crate::today()), &tell)?;
             tell("the page");
             write_folder(&found, &out)?;
-            bar.finish_and_clear();
             found
         }
         CfdJob::Retry { of, cases } => verb::retry(&of.campaign, of.source.as_deref(), &cases)?,
         CfdJob::Suggest { of, count } => verb::suggest(&of.campaign, of.source.as_deref(), count)?,
-        CfdJob::Swing { campaign, source, jobs } => {
+        CfdJob::Swing { of, jobs } => {
             let (bar, cancel) = (Spinner::new(), cancel()?);
             let now = |what: &str| bar.set_message(what);
-            let found = swing(&campaign, source.as_deref(), processors(jobs), &cancel, &now)?;
-            bar.finish_and_clear();
-            found
+            swing(&of.campaign, of.source.as_deref(), processors(jobs), &cancel, &now)?
         }
         CfdJob::Case { folders, ranks } => return cases(&folders, ranks),
     };
-    print::answer(&found, json)
+    print::answer(&found, form)
 }
 
 fn processors(jobs: Option<usize>) -> usize {
@@ -85,27 +88,10 @@ fn cancel() -> Result<Arc<AtomicBool>, Failure> {
     let cancel = Arc::new(AtomicBool::new(false));
     signals::take_over();
     for signal in [SIGINT, SIGTERM, SIGHUP] {
-        flag::register_conditional_shutdown(signal, STOPPED.into(), Arc::clone(&cancel)).map_err(Failure::Program)?;
-        flag::register(signal, Arc::clone(&cancel)).map_err(Failure::Program)?;
+        flag::register_conditional_shutdown(signal, STOPPED.into(), Arc::clone(&cancel)).map_err(Failure::system)?;
+        flag::register(signal, Arc::clone(&cancel)).map_err(Failure::system)?;
     }
     Ok(cancel)
-}
-
-fn start(of: &CfdCampaign, engine: Engine, json: bool) -> Result<Outcome, Failure> {
-    out::go_on_unread();
-    let cancel = cancel()?;
-    let bar = Spinner::new();
-    let now = |text: &str| bar.set_message(text);
-    let line = |text: &str| {
-        if !json {
-            bar.suspend(|| note!("{text}"));
-        }
-    };
-    let running = Running::new(&now, &line);
-    let job = Job { campaign: of.campaign.clone(), source: of.source.clone(), engine };
-    let ran = verb::run(&job, &cancel, &running)?;
-    bar.finish_and_clear();
-    Ok(ran)
 }
 
 /// What any queue runs: each folder is one case.

@@ -25,9 +25,12 @@ use clap::Parser;
 use failure::Failure;
 use froude::identify::prediction;
 use froude::pipeline::{self, Identified, Input, Job};
+use froude::records::schema::RESULTS;
 use froude::report::write::write_files;
 use froude::swim::verb::look;
 use froude::{demo, inspect, plan, twin};
+use out::Spinner;
+use print::Form;
 
 fn main() -> ExitCode {
     // Where signals cannot be watched they end the program as they always do.
@@ -50,76 +53,69 @@ fn main() -> ExitCode {
 }
 
 fn run(cli: Cli) -> Result<(), Failure> {
+    let form = match (cli.json, cli.csv) {
+        (true, _) => Form::Json,
+        (_, true) => Form::Csv,
+        _ => Form::Lines,
+    };
     match cli.verb {
         Verb::Demo { dir } => {
-            let bar = spinner();
+            let bar = Spinner::new();
             let outcome = demo::run(&dir, Some(today()), &|step| bar.set_message(step.to_owned()))?;
-            bar.finish_and_clear();
-            print::answer(&outcome, cli.json)?;
+            drop(bar);
+            print::answer(&outcome, form)?;
         }
         Verb::Identify { input, out, sidecar, models } => {
             let job = Job { out, sidecar, models, ..Job::new(&input) };
-            identify(job, cli.json, false).map_err(|error| mistaken::IDENTIFY.explain(error, &[input]))?;
+            mistaken::IDENTIFY.or(identify(job, form, false), &[input])?;
         }
         Verb::Compare { estimates, all, out } => {
             let job = Job { out, ..Job::of(Input::Records(estimates.clone())) };
-            identify(job, cli.json, all).map_err(|error| mistaken::COMPARE.explain(error, &estimates))?;
+            mistaken::COMPARE.or(identify(job, form, all), &estimates)?;
         }
         Verb::Predict { record, table, sidecar, laws, out } => {
             let job = prediction::Job { record: record.clone(), table: table.clone(), sidecar, laws, out };
             // Which of the two is no such file says the reader; that they were taken for each other is said here.
-            let found =
-                prediction::predict(&job).map_err(|error| mistaken::PREDICT.explain(error, &[record, table]))?;
+            let found = mistaken::PREDICT.or(prediction::predict(&job), &[record, table])?;
             write_files(&found)?;
-            print::answer(&found, cli.json)?;
+            print::answer(&found, form)?;
         }
         Verb::Inspect { file, sidecar } => {
-            let inspection = inspect::inspect(&file, sidecar.as_deref())
-                .map_err(|error| mistaken::INSPECT.explain(error, &[file]))?;
-            print::answer(&inspection.outcome(), cli.json)?;
+            let found = mistaken::INSPECT.or(inspect::inspect(&file, sidecar.as_deref()), &[file])?;
+            print::answer(&found.outcome(), form)?;
         }
-        Verb::Plan { campaign } => {
-            let found = plan::plan(&campaign).map_err(|error| mistaken::PLAN.explain(error, &[campaign]))?;
-            print::answer(&found, cli.json)?;
-        }
+        Verb::Plan { campaign } => print::answer(&mistaken::PLAN.or(plan::plan(&campaign), &[campaign])?, form)?,
         Verb::Simulate { campaign, replace } => {
-            let found =
-                twin::simulate(&campaign, replace).map_err(|error| mistaken::SIMULATE.explain(error, &[campaign]))?;
-            print::answer(&found, cli.json)?;
+            print::answer(&mistaken::SIMULATE.or(twin::simulate(&campaign, replace), &[campaign])?, form)?;
         }
-        Verb::Run { campaign, out, check, yes } => carriage::run(campaign, out, check, yes, cli.json)?,
-        Verb::Cfd { job } => cfd::job(job, cli.json)?,
-        Verb::Carriage { job } => carriage::job(job, cli.json)?,
+        Verb::Run { campaign, out, check, yes } => carriage::run(campaign, out, check, yes, form)?,
+        Verb::Cfd { job } => cfd::job(job, form)?,
+        Verb::Carriage { job } => carriage::job(job, form)?,
         Verb::AddedMass(args) => {
             let input = args.input.clone();
-            added_mass::added_mass(*args, cli.json).map_err(|error| mistaken::ADDED_MASS.explain(error, &[input]))?;
+            mistaken::ADDED_MASS.or(added_mass::added_mass(*args, form), &[input])?;
         }
-        Verb::Swim(args) => swim::swim(*args, cli.json)?,
+        Verb::Swim(args) => swim::swim(*args, form)?,
         Verb::Robot { job: RobotJob::Inspect { robot } } => {
-            let found = look(&robot).map_err(|error| mistaken::ROBOT.explain(error, &[robot]))?;
-            print::answer(&found, cli.json)?;
+            print::answer(&mistaken::ROBOT.or(look(&robot), &[robot])?, form)?;
         }
-        Verb::Schema => out::say!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA.trim_end()),
+        Verb::Schema { verb } => {
+            let schema = RESULTS.iter().find(|(name, _)| *name == verb).map(|(_, schema)| schema.trim_end());
+            out::say!("{}", schema.unwrap_or_default());
+        }
     }
     Ok(())
 }
 
 /// `identify`, `compare` and `carriage drag`: one job, one way through it, one outcome, printed or as its record.
-fn identify(job: Job, is_json: bool, all: bool) -> Result<(), Failure> {
-    print::answer_with(&identified(job)?.outcome(), is_json, all)
+fn identify(job: Job, form: Form, all: bool) -> Result<(), Failure> {
+    print::answer_with(&identified(job)?.outcome(), form, all)
 }
 
 /// The same, not yet printed.
 fn identified(job: Job) -> Result<Identified, Failure> {
-    let bar = spinner();
-    let outcome = pipeline::identify(&Job { date: Some(today()), ..job }, &|step| bar.set_message(step.to_owned()))?;
-    bar.finish_and_clear();
-    Ok(outcome)
-}
-
-/// What shows that the program works.
-fn spinner() -> out::Spinner {
-    out::Spinner::new()
+    let bar = Spinner::new();
+    Ok(pipeline::identify(&Job { date: Some(today()), ..job }, &|step| bar.set_message(step.to_owned()))?)
 }
 
 /// Today's date (UTC) as `2026-11-21`.

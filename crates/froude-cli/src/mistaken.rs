@@ -82,27 +82,25 @@ pub const ROBOT: Takes =
     Takes { verb: "robot inspect", kinds: &[Kind::Robot], words: "a robot file (.toml, or .urdf with a sidecar)" };
 
 impl Takes {
-    /// The same error, or what was named instead of what the verb takes.
-    pub fn explain(&self, error: impl Into<Failure>, paths: &[PathBuf]) -> Failure {
-        let error = error.into();
+    /// What the verb found; else its error, or what was named instead of what the verb takes.
+    pub fn or<T, E: Into<Failure>>(&self, found: Result<T, E>, paths: &[PathBuf]) -> Result<T, Failure> {
+        let error = match found {
+            Ok(found) => return Ok(found),
+            Err(error) => error.into(),
+        };
         if error.exit_code() != 2 {
-            return error;
+            return Err(error);
         }
         // A folder with logs of other programs is one of runs, of another method: the reader has said which reads them.
         let is_taken = |path: &PathBuf, kind: Kind| {
             self.kinds.contains(&kind) || (kind == Kind::Folder && self.kinds.contains(&Kind::Runs) && has_logs(path))
         };
         let other = |path: &PathBuf| Some((path.clone(), kind_of(path).filter(|kind| !is_taken(path, *kind))?));
-        match paths.iter().find_map(other) {
-            Some((path, kind)) => Failure::Instead {
-                found: kind.words(),
-                verb: self.verb,
-                takes: self.words,
-                instead: self.instead(kind, &path),
-                path,
-            },
-            None => error,
-        }
+        Err(paths.iter().find_map(other).map_or(error, |(path, kind)| {
+            let (found, instead) = (kind.words(), self.instead(kind, &path));
+            let takes = format_args!("froude {} takes {}", self.verb, self.words);
+            Failure::refused(format_args!("{} is {found}; {takes}. {instead}", path.display()))
+        }))
     }
 
     /// What to write instead.
@@ -134,15 +132,11 @@ impl Takes {
                 format!("To reduce it: froude carriage drag {shown}; to see what is in it: froude inspect {shown}")
             }
             Kind::Results => {
-                let record = path.join("estimate.json");
+                let [record, report] = ["estimate.json", "report.html"].map(|name| path.join(name));
                 if record.exists() {
-                    format!(
-                        "Its record: froude inspect {0}; its report: {1}",
-                        record.display(),
-                        path.join("report.html").display()
-                    )
+                    format!("Its record: froude inspect {}; its report: {}", record.display(), report.display())
                 } else {
-                    format!("Open {} in a browser", path.join("report.html").display())
+                    format!("Open {} in a browser", report.display())
                 }
             }
             Kind::Folder if is_of_runs => {

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use clap::CommandFactory as _;
 use clap::builder::Styles;
 use froude::records::text::visible;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 use crate::args::Cli;
 
@@ -67,7 +67,7 @@ pub fn usage(error: &clap::Error) -> ExitCode {
 /// How often a file or a pipe hears what a spinner shows.
 const UNSEEN: Duration = Duration::from_secs(30);
 
-/// A spinner on standard error; where that is no terminal, a line every half a minute.
+/// A spinner on standard error, until it is dropped; where that is no terminal, a line every half a minute.
 pub struct Spinner {
     bar: ProgressBar,
     /// When a line was last written, or the spinner began.
@@ -76,7 +76,7 @@ pub struct Spinner {
 
 impl Spinner {
     pub fn new() -> Self {
-        let bar = ProgressBar::new_spinner();
+        let bar = ProgressBar::new_spinner().with_finish(ProgressFinish::AndClear);
         if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
             bar.set_style(style);
         }
@@ -100,19 +100,15 @@ impl Spinner {
     pub fn suspend(&self, write: impl FnOnce()) {
         self.bar.suspend(write);
     }
-
-    pub fn finish_and_clear(&self) {
-        self.bar.finish_and_clear();
-    }
 }
 
-/// How much of a long work is done, on standard error; silent where that is no terminal.
+/// How much of a long work is done, on standard error, until it is dropped; silent where that is no terminal.
 pub struct Bar(ProgressBar);
 
 impl Bar {
     /// Of things that are counted in the plural.
     pub fn of(what: &str) -> Self {
-        let bar = ProgressBar::new(0);
+        let bar = ProgressBar::new(0).with_finish(ProgressFinish::AndClear);
         let template = format!("{{bar:30}} {{pos}} of {{len}} {what}, {{eta}} left");
         if let Ok(style) = ProgressStyle::with_template(&template) {
             bar.set_style(style);
@@ -124,9 +120,5 @@ impl Bar {
     pub fn is_at(&self, done: usize, all: usize) {
         self.0.set_length(all as u64);
         self.0.set_position(done as u64);
-    }
-
-    pub fn finish_and_clear(&self) {
-        self.0.finish_and_clear();
     }
 }

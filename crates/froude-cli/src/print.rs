@@ -3,40 +3,35 @@
 use froude::records::block::Block;
 use froude::records::outcome::{Exit, Outcome};
 use froude::records::text::visible_json;
-use froude::report::terminal;
+use froude::report::{csv, terminal};
 
 use crate::failure::Failure;
 use crate::out::say;
 
-/// One JSON document on standard output.
-pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(value).map_err(Failure::Json)?;
-    // As JSON's own escapes: what a program reads is the same.
-    say!("{}", visible_json(&text));
-    Ok(())
+/// How a result is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// For people.
+    Lines,
+    Json,
+    Csv,
 }
 
-/// What a verb returns, for a person or as one JSON document.
-pub fn answer(answer: &Outcome, is_json: bool) -> Result<(), Failure> {
-    answer_with(answer, is_json, false)
+/// What a verb returns.
+pub fn answer(answer: &Outcome, form: Form) -> Result<(), Failure> {
+    answer_with(answer, form, false)
 }
 
 /// The same; `has_details` where a person asks for details too.
-pub fn answer_with(answer: &Outcome, is_json: bool, has_details: bool) -> Result<(), Failure> {
-    if is_json {
-        json(&answer.json())?;
-    } else {
-        lines(&terminal::blocks(&answer.blocks, has_details));
-        if let Some(found) = &answer.findings {
-            say!("");
-            lines(&terminal::findings(found));
+pub fn answer_with(answer: &Outcome, form: Form, has_details: bool) -> Result<(), Failure> {
+    match form {
+        Form::Json => {
+            let unwritten = |error| Failure::refused(format_args!("the result cannot be written as JSON: {error}"));
+            // As JSON's own escapes: what a program reads is the same.
+            say!("{}", visible_json(&serde_json::to_string_pretty(&answer.json()).map_err(unwritten)?));
         }
-        if !answer.files.is_empty() {
-            say!("");
-        }
-        for file in &answer.files {
-            say!("{:<9} {}", file.key.trim_end_matches("[]"), file.path.display());
-        }
+        Form::Csv => say!("{}", csv::tables(answer).trim_end()),
+        Form::Lines => told(answer, has_details),
     }
     match &answer.exit {
         Exit::Done => Ok(()),
@@ -46,9 +41,23 @@ pub fn answer_with(answer: &Outcome, is_json: bool, has_details: bool) -> Result
     }
 }
 
+fn told(answer: &Outcome, has_details: bool) {
+    blocks(&answer.blocks, has_details);
+    if let Some(found) = &answer.findings {
+        say!("");
+        lines(&terminal::findings(found));
+    }
+    if !answer.files.is_empty() {
+        say!("");
+    }
+    for file in &answer.files {
+        say!("{:<9} {}", file.key.trim_end_matches("[]"), file.path.display());
+    }
+}
+
 /// Blocks before an answer is whole.
-pub fn blocks(all: &[Block]) {
-    lines(&terminal::blocks(all, false));
+pub fn blocks(all: &[Block], has_details: bool) {
+    lines(&terminal::blocks(all, has_details));
 }
 
 fn lines(all: &[String]) {

@@ -33,9 +33,7 @@ const LOOK_UP: Duration = Duration::from_millis(50);
 pub struct Stage {
     /// Ctrl-C, SIGTERM and SIGHUP.
     pub switch: StopSwitch,
-    /// Who confirms.
     pub person: Person,
-    /// Who is informed.
     pub bar: Bar,
 }
 
@@ -47,10 +45,14 @@ impl Stage {
     /// Nobody is there to confirm, or nobody could stop it: nothing has moved then, and nothing may.
     pub fn set(prepared: &Prepared, yes: bool, runs: usize) -> Result<Self, Failure> {
         if yes && !prepared.is_twin() {
-            return Err(Failure::YesAtARig);
+            let why = "at a real rig a person must be present and confirm each step";
+            return Err(Failure::refused(format_args!("--yes is for the twin: {why}")));
         }
         if !yes && !std::io::stdin().is_terminal() {
-            return Err(Failure::Nobody { is_twin: prepared.is_twin() });
+            let or = if prepared.is_twin() { ", or give --yes, which the twin accepts" } else { "" };
+            return Err(Failure::refused(format_args!(
+                "nothing was moved: nobody can confirm, because standard input is not a terminal. Run it in a terminal{or}"
+            )));
         }
         // Nobody who stops reading ends a drive half way.
         crate::out::go_on_unread();
@@ -61,7 +63,8 @@ impl Stage {
             }
             flag::register(SIGINT, switch.press_flag())
         };
-        watch().map_err(Failure::Unwatched)?;
+        let unwatched = |e| Failure::refused(format_args!("Ctrl-C cannot be watched: {e}; nothing was moved"));
+        watch().map_err(unwatched)?;
         signals::take_over();
         let (words, heard) = sync_channel(WORDS);
         let terminal = Terminal::new(runs, switch.clone());
@@ -78,11 +81,9 @@ enum Word {
     Run(usize, usize, String),
     /// What the bar shows.
     Live(String),
-    /// A line.
     Line(String),
     /// A question, without the end of its line.
     Question(String),
-    /// Nothing more.
     End,
 }
 
