@@ -19,9 +19,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 CASES = [
     ("columns", "gram", 3.0, "10^7 x 10 from memory", "numpy Gram + Cholesky"),
     ("columns-qr", "gelsy", 15.0, "the same by reflections (QR)", "scipy lstsq gelsy"),
-    ("non-negative", "nnls-on-gram", 3.0, "non-negative", "scipy nnls on Gram"),
     ("csv", "csv-polars", 4.0, "CSV to two components", "polars + numpy"),
-    ("csv-cluster", "csv-polars", 4.0, "the same with cluster CR3", "polars + numpy, no CR3"),
     ("csv", "csv-pyarrow", None, "CSV to two components", "pyarrow + numpy"),
     ("gaussian", "gaussian", 12.0, "Gaussian, 161 taps, 10^7", "scipy gaussian_filter1d"),
     ("savitzky-golay", "savitzky-golay", 12.0, "Savitzky-Golay derivative, 41", "scipy savgol_filter"),

@@ -40,13 +40,6 @@ def gelsy(X, y):
     return sl.lstsq(X, y, lapack_driver="gelsy", check_finite=False)[0]
 
 
-def nnls_on_gram(X, y):
-    import scipy.linalg as sl
-    from scipy.optimize import nnls
-    L = sl.cholesky(X.T @ X, lower=True)
-    return nnls(L.T, sl.solve_triangular(L, X.T @ y, lower=True))[0]
-
-
 def force_regressors(vx, vy, theta, omega):
     c, s = np.cos(theta), np.sin(theta)
     u, v = c * vx + s * vy, c * vy - s * vx
@@ -151,7 +144,7 @@ def main(case, folder):
         *x, y = raw(folder)
         X = regressors(*x)
         del x
-        solve = {"gram": gram, "gelsy": gelsy, "nnls-on-gram": nnls_on_gram}[case]
+        solve = {"gram": gram, "gelsy": gelsy}[case]
         call = lambda: solve(X, y)  # noqa: E731
     before = peak_mib()
     values = call()

@@ -19,12 +19,10 @@
 //! | chunk after chunk | [`Accumulator`] |
 //! | with a cluster each | [`ClusterAccumulator`] |
 //!
-//! Then [`Factor::solve`] gives coefficients, σ and classical covariance,
-//! [`Factor::solve_non_negative`] the fit under bounds at zero, and
-//! [`ClusterFactors::covariance`] CR1 and CR3. One pass is enough for these, also
-//! for CR3: a cluster's triangle replaces its rows exactly. HC3 and HAC weigh each
-//! row by its final residual, hence need a second pass over the rows; Huber's
-//! loss needs several. They are not here.
+//! Then [`Factor::solve`] gives coefficients, σ and classical covariance. A cluster's
+//! triangle replaces its rows exactly, so that it is enough for CR3 too. HC3 and HAC
+//! weigh each row by its final residual, hence need a second pass over the rows;
+//! Huber's loss needs several. They are not here.
 //!
 //! # Accuracy
 //!
@@ -66,18 +64,16 @@ use froude_lanes::LANES;
 use kernel::groups_per_block;
 
 pub use accumulator::Accumulator;
-pub use cluster::{ClusterAccumulator, ClusterCovariance, ClusterFactors, ClusterKind};
+pub use cluster::ClusterAccumulator;
 pub use error::StreamError;
 pub use factor::{Factor, Solution};
 pub use in_memory::{Method, reduce_columns};
-pub use non_negative::NonNegative;
 
 mod cluster;
 mod gram;
 mod kernel;
-pub(crate) mod non_negative;
-#[doc(hidden)]
-pub mod reference;
+#[cfg(test)]
+mod reference;
 #[cfg(test)]
 mod tests;
 

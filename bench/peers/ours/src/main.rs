@@ -6,8 +6,7 @@
 //! peer-bench CASE DIR THREADS   solve it, print one line of JSON
 //! ```
 //!
-//! Cases: `columns`, `columns-qr`, `non-negative`, `csv`,
-//! `csv-cluster`, `gaussian`, `savitzky-golay`, `forward-backward`, `harmonics`, `resample`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
+//! Cases: `columns`, `columns-qr`, `csv`, `gaussian`, `savitzky-golay`, `forward-backward`, `harmonics`, `resample`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
 
 mod hour;
 mod make;
@@ -18,9 +17,7 @@ use std::error::Error;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use froude_fit::stream::{
-    Accumulator, ClusterAccumulator, ClusterKind, Factor, Method, Shape, StreamError, reduce_columns,
-};
+use froude_fit::stream::{Accumulator, Factor, Method, Shape, StreamError, reduce_columns};
 use froude_records::fast_csv::{Chunk, FastCsv, FastCsvError};
 use meter::{Row, measure};
 
@@ -41,11 +38,9 @@ fn main() -> Outcome<()> {
     let threads: NonZeroUsize = number.parse()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build()?;
     let row = pool.install(|| match case.as_str() {
-        "columns" => columns(dir, Method::Adaptive, false),
-        "columns-qr" => columns(dir, Method::Reflections, false),
-        "non-negative" => columns(dir, Method::Adaptive, true),
-        "csv" => csv(dir, threads, false),
-        "csv-cluster" => csv(dir, threads, true),
+        "columns" => columns(dir, Method::Adaptive),
+        "columns-qr" => columns(dir, Method::Reflections),
+        "csv" => csv(dir, threads),
         "gaussian" | "savitzky-golay" | "forward-backward" => signals::filter(dir, case),
         "harmonics" => signals::harmonics(dir),
         "resample" => signals::resample(dir),
@@ -83,16 +78,11 @@ fn in_memory(dir: &Path, limit: usize) -> Outcome<Vec<Vec<f64>>> {
     Ok(columns)
 }
 
-fn columns(dir: &Path, method: Method, is_bounded: bool) -> Outcome<Row> {
+fn columns(dir: &Path, method: Method) -> Outcome<Row> {
     let columns = in_memory(dir, usize::MAX)?;
     let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
     measure(9, || {
-        let factor = reduce_columns(&all[..10], &all[10..], method)?;
-        Ok(if is_bounded {
-            factor.solve_non_negative(0, &[true; 10])?.coefficients
-        } else {
-            factor.solve(0)?.coefficients
-        })
+        Ok(reduce_columns(&all[..10], &all[10..], method)?.solve(0)?.coefficients)
     })
 }
 
@@ -150,49 +140,26 @@ impl From<Stop> for Box<dyn Error + Send + Sync> {
     }
 }
 
-/// Both components from the file in one pass: coefficients, classical covariance, and
-/// with `clusters` CR3 over stretches of ten seconds.
-fn csv(dir: &Path, threads: NonZeroUsize, clusters: bool) -> Outcome<Row> {
+/// Both components from the file in one pass: coefficients and classical covariance.
+fn csv(dir: &Path, threads: NonZeroUsize) -> Outcome<Row> {
     let path = dir.join("record.csv");
     measure(5, || {
         let file = FastCsv::open(&path)?;
         let file = file.select(&["t", "fx", "fy", "vx", "vy", "theta", "omega"])?;
-        let mut by_cluster = ClusterAccumulator::new(FORCES, 4000).finish()?;
         let mut total = Factor::empty(FORCES);
-        if clusters {
-            file.fold_chunks(
-                threads,
-                |chunk| {
-                    let columns = force_rows(&chunk);
-                    let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-                    let stretch: Vec<u64> = chunk.columns[0].iter().map(|t| (t / 10.0) as u64).collect();
-                    let mut rows = ClusterAccumulator::new(FORCES, 4000);
-                    rows.push(&stretch, &all[..8], &all[8..])?;
-                    Ok::<_, Stop>(rows.finish()?)
-                },
-                |part| Ok(by_cluster.merge(&part)?),
-            )?;
-            total = by_cluster.total()?;
-        } else {
-            file.fold_chunks(
-                threads,
-                |chunk| {
-                    let columns = force_rows(&chunk);
-                    let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-                    let mut rows = Accumulator::new(FORCES);
-                    rows.push(&all[..8], &all[8..])?;
-                    Ok::<_, Stop>(rows.finish())
-                },
-                |part| Ok(total.merge(&part)?),
-            )?;
-        }
+        file.fold_chunks(
+            threads,
+            |chunk| {
+                let columns = force_rows(&chunk);
+                let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+                let mut rows = Accumulator::new(FORCES);
+                rows.push(&all[..8], &all[8..])?;
+                Ok::<_, Stop>(rows.finish())
+            },
+            |part| Ok(total.merge(&part)?),
+        )?;
         let mut out = total.solve(0)?.coefficients;
         out.extend(total.solve(1)?.coefficients);
-        if clusters {
-            for k in 0..2 {
-                std::hint::black_box(by_cluster.covariance(k, ClusterKind::Cr3)?);
-            }
-        }
         Ok(out)
     })
 }

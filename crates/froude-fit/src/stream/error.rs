@@ -82,13 +82,6 @@ pub enum StreamError {
         expected: Shape,
     },
 
-    /// The active-set method did not come to an end.
-    #[error("the non-negative fit did not end within {iterations} changes of its active set")]
-    NotConverged {
-        /// Changes made.
-        iterations: usize,
-    },
-
     /// More clusters than memory was granted for.
     #[error(
         "cluster {cluster} is one more than the limit of {limit}: each keeps a triangle of its \
@@ -99,27 +92,5 @@ pub enum StreamError {
         cluster: u64,
         /// The limit.
         limit: usize,
-    },
-
-    /// Too few clusters for an interval that means anything.
-    #[error(
-        "{found} clusters; cluster-robust covariance is refused below {needed}, where \
-         its interval is unreliable"
-    )]
-    TooFewClusters {
-        /// How many there are.
-        found: usize,
-        /// How many are needed.
-        needed: usize,
-    },
-
-    /// One cluster alone determines some coefficient.
-    #[error(
-        "without cluster {cluster} the coefficients are no longer determined; the cluster \
-         jackknife (CR3) needs every one determined by the other clusters"
-    )]
-    ClusterDecides {
-        /// The cluster.
-        cluster: u64,
     },
 }

@@ -60,51 +60,11 @@ impl Factor {
         Ok(())
     }
 
-    /// The same rows with some regressors left out and others in a new order.
-    ///
-    /// # Errors
-    ///
-    /// [`StreamError::NoSuchResponse`] or [`StreamError::Shape`] when an index does not exist.
-    pub fn select(&self, regressors: &[usize], responses: &[usize]) -> Result<Self, StreamError> {
-        let (p, width) = (self.shape.regressors, self.shape.width());
-        if let Some(&bad) = regressors.iter().find(|&&j| j >= p) {
-            return Err(StreamError::Shape { what: "regressors", found: bad + 1, expected: p });
-        }
-        for &k in responses {
-            self.check_response(k)?;
-        }
-        let columns: Vec<usize> = (regressors.iter().copied()).chain(responses.iter().map(|k| p + k)).collect();
-        let n = columns.len();
-        let mut matrix: Vec<f64> = (0..width).flat_map(|i| columns.iter().map(move |&j| self.entry(i, j))).collect();
-        super::reference::triangularise(&mut matrix, width, n);
-        matrix.resize(width.max(n) * n, 0.0);
-        matrix.truncate(n * n);
-        Ok(Self {
-            shape: Shape { regressors: regressors.len(), responses: responses.len() },
-            rows: self.rows,
-            triangle: matrix,
-        })
-    }
-
     /// Sum of squared residuals of the unconstrained fit of response `k`.
     #[must_use]
     pub fn residual_squares(&self, k: usize) -> f64 {
-        self.residual_product(k, k)
-    }
-
-    /// Inner product of the residuals of responses `k` and `l`, unconstrained fits.
-    ///
-    /// Divided by `n − p` it estimates the covariance of their noise.
-    #[must_use]
-    pub fn residual_product(&self, k: usize, l: usize) -> f64 {
         let p = self.shape.regressors;
-        (p..self.shape.width()).map(|i| self.entry(i, p + k) * self.entry(i, p + l)).sum()
-    }
-
-    /// Condition number of the design, its columns scaled to equal length.
-    #[must_use]
-    pub fn condition_number(&self) -> f64 {
-        self.conditioning().0
+        (p..self.shape.width()).map(|i| self.entry(i, p + k).powi(2)).sum()
     }
 
     /// Condition number, and the regressor with the largest part in the weakest direction.
@@ -129,11 +89,11 @@ impl Factor {
     }
 
     /// Euclidean length of each regressor.
-    pub(super) fn column_lengths(&self) -> Vec<f64> {
+    fn column_lengths(&self) -> Vec<f64> {
         (0..self.shape.regressors).map(|j| (0..=j).map(|i| self.entry(i, j).powi(2)).sum::<f64>().sqrt()).collect()
     }
 
-    pub(super) fn check_response(&self, response: usize) -> Result<(), StreamError> {
+    fn check_response(&self, response: usize) -> Result<(), StreamError> {
         if response < self.shape.responses {
             return Ok(());
         }
@@ -141,7 +101,7 @@ impl Factor {
     }
 
     /// Refuses a design that does not determine all its coefficients.
-    pub(super) fn check_determined(&self) -> Result<f64, StreamError> {
+    fn check_determined(&self) -> Result<f64, StreamError> {
         let p = self.shape.regressors;
         if self.rows <= p as u64 {
             return Err(StreamError::TooFewRows { rows: self.rows, regressors: p });
@@ -155,7 +115,7 @@ impl Factor {
     }
 
     /// `R⁻¹` of the design, `p × p`, upper triangular.
-    pub(super) fn inverse(&self) -> Mat<f64> {
+    fn inverse(&self) -> Mat<f64> {
         let p = self.shape.regressors;
         let mut inverse = Mat::zeros(p, p);
         for j in 0..p {

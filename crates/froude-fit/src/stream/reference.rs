@@ -1,5 +1,5 @@
 //! Householder QR as the textbook has it: slow, plain, and what the fast path is
-//! tested against. Also good enough for the small triangles themselves.
+//! tested against.
 
 /// Replaces a row-major `rows × columns` matrix by its upper triangle `R`.
 ///

@@ -1,6 +1,7 @@
 //! The fast path against the textbook, published numbers, and itself.
 
-use proptest::prelude::*;
+use std::collections::BTreeMap;
+
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
@@ -357,20 +358,6 @@ fn merged_factors_are_the_factor_of_all_rows() {
 }
 
 #[test]
-fn selected_regressors_are_fitted_as_if_alone() {
-    let columns = drag_columns(2000, 11);
-    let all = slices(&columns);
-    let both = [all[4], all[1]];
-    let whole = reduce_columns(&all[..4], &both, Method::Adaptive).unwrap();
-    let selected = whole.select(&[3, 0], &[1, 0]).unwrap().solve(1).unwrap();
-    let alone = reduce_columns(&[all[3], all[0]], &[all[4]], Method::Adaptive).unwrap();
-    let alone = alone.solve(0).unwrap();
-    assert_close(&selected.coefficients, &alone.coefficients, 1e-12);
-    assert_close(&selected.standard, &alone.standard, 1e-12);
-    assert_eq!(selected.dof, 1998.0);
-}
-
-#[test]
 fn two_responses_share_their_design_and_not_their_scatter() {
     let columns = drag_columns(2000, 12);
     let all = slices(&columns);
@@ -378,50 +365,6 @@ fn two_responses_share_their_design_and_not_their_scatter() {
     let factor = reduce_columns(&all[..4], &[all[4], &other], Method::Adaptive).unwrap();
     let (a, b) = (factor.solve(0).unwrap(), factor.solve(1).unwrap());
     assert_close(&[b.coefficients[3], b.sigma], &[2.0 * a.coefficients[3], 2.0 * a.sigma], 1e-11);
-    // The second's residual is twice the first's.
-    let [aa, ab] = [0, 1].map(|k| factor.residual_product(0, k));
-    assert_close(&[ab], &[2.0 * aa], 1e-11);
-}
-
-proptest! {
-    /// Under bounds at zero the minimiser is the best of all fits on subsets of columns
-    /// that keep the bounds.
-    #[test]
-    fn non_negative_fits_are_the_best_of_all_subsets(
-        seed in any::<u64>(),
-        p in 1_usize..6,
-        bounded in proptest::collection::vec(any::<bool>(), 5),
-        shared in 0.0_f64..3.0,
-    ) {
-        let mut generator = Pcg64::new(u128::from(seed), 1);
-        let n = 30;
-        let mut columns = vec![Vec::new(); p + 1];
-        for _ in 0..n {
-            let common = shared * uniform(&mut generator);
-            for column in &mut columns {
-                column.push(common + uniform(&mut generator));
-            }
-        }
-        let all = slices(&columns);
-        let bounded = &bounded[..p];
-        let factor = reduce_columns(&all[..p], &all[p..], Method::Adaptive).unwrap();
-        let found = factor.solve_non_negative(0, bounded).unwrap();
-
-        let mut best = f64::INFINITY;
-        for subset in 0..1_u32 << p {
-            let kept: Vec<usize> = (0..p).filter(|j| subset >> j & 1 == 1 || !bounded[*j]).collect();
-            let part = factor.select(&kept, &[0]).unwrap();
-            let beta = if kept.is_empty() { vec![] } else { part.solve(0).unwrap().coefficients };
-            if kept.iter().zip(&beta).all(|(j, b)| !bounded[*j] || *b >= 0.0) {
-                best = best.min(part.residual_squares(0));
-            }
-        }
-        prop_assert!((found.residual_squares - best).abs() <= 1e-11 * best);
-        for j in 0..p {
-            prop_assert!(!bounded[j] || found.coefficients[j] >= 0.0);
-            prop_assert_eq!(found.is_at_bound[j], bounded[j] && found.coefficients[j] == 0.0);
-        }
-    }
 }
 
 /// Rows in clusters of unequal size, with a shared part in the noise.
@@ -440,87 +383,12 @@ fn clustered() -> (Vec<Vec<f64>>, Vec<u64>) {
     (columns, clusters)
 }
 
-fn clustered_factors(columns: &[Vec<f64>], clusters: &[u64]) -> ClusterFactors {
+fn clustered_factors(columns: &[Vec<f64>], clusters: &[u64]) -> BTreeMap<u64, Factor> {
     let all = slices(columns);
     let shape = Shape { regressors: 4, responses: 1 };
     let mut rows = ClusterAccumulator::new(shape, 100);
     rows.push(clusters, &all[..4], &all[4..]).unwrap();
     rows.finish().unwrap()
-}
-
-#[test]
-fn cr3_is_the_jackknife_over_clusters() {
-    let (columns, clusters) = clustered();
-    let factors = clustered_factors(&columns, &clusters);
-    let found = factors.covariance(0, ClusterKind::Cr3).unwrap();
-    let g = factors.count() as f64;
-    assert_eq!((factors.count(), found.dof), (9, 8.0));
-    let all = slices(&columns);
-    let whole = reduce_columns(&all[..4], &all[4..], Method::Adaptive).unwrap().solve(0).unwrap();
-    assert_close(&found.coefficients, &whole.coefficients, 1e-12);
-    let mut expected = Mat::<f64>::zeros(4, 4);
-    for left_out in factors.iter().map(|(cluster, _)| cluster) {
-        let kept: Vec<Vec<f64>> = (columns.iter())
-            .map(|column| {
-                let rows = column.iter().zip(&clusters);
-                rows.filter(|(_, c)| **c != left_out).map(|(x, _)| *x).collect()
-            })
-            .collect();
-        let kept = slices(&kept);
-        let fit = reduce_columns(&kept[..4], &kept[4..], Method::Adaptive).unwrap();
-        let beta = fit.solve(0).unwrap().coefficients;
-        for i in 0..4 {
-            for j in 0..4 {
-                let (a, b) = (beta[i] - whole.coefficients[i], beta[j] - whole.coefficients[j]);
-                expected[(i, j)] += (g - 1.0) / g * a * b;
-            }
-        }
-    }
-    for i in 0..4 {
-        for j in 0..4 {
-            assert_close(&[found.covariance[(i, j)]], &[expected[(i, j)]], 1e-8);
-        }
-    }
-}
-
-#[test]
-fn cr1_is_the_sandwich_of_cluster_scores() {
-    let (columns, clusters) = clustered();
-    let factors = clustered_factors(&columns, &clusters);
-    let found = factors.covariance(0, ClusterKind::Cr1).unwrap();
-    let beta = &found.coefficients;
-    let mut bread = vec![0.0; 4 * 8];
-    let mut scores = std::collections::BTreeMap::<u64, [f64; 4]>::new();
-    for i in 0..600 {
-        let residual = columns[4][i] - (0..4).map(|j| columns[j][i] * beta[j]).sum::<f64>();
-        let score = scores.entry(clusters[i]).or_default();
-        for a in 0..4 {
-            score[a] += columns[a][i] * residual;
-            for b in 0..4 {
-                bread[a * 8 + b] += columns[a][i] * columns[b][i];
-            }
-        }
-    }
-    // (XᵀX)⁻¹ s for each cluster.
-    let mut expected = [[0.0; 4]; 4];
-    for score in scores.values() {
-        let mut matrix = Vec::new();
-        for a in 0..4 {
-            matrix.extend_from_slice(&bread[a * 8..a * 8 + 4]);
-            matrix.push(score[a]);
-        }
-        let step = reference::least_squares(&mut matrix, 4, 4);
-        for a in 0..4 {
-            for b in 0..4 {
-                expected[a][b] += 9.0 / 8.0 * 599.0 / 596.0 * step[a] * step[b];
-            }
-        }
-    }
-    for a in 0..4 {
-        for b in 0..4 {
-            assert_close(&[found.covariance[(a, b)]], &[expected[a][b]], 1e-8);
-        }
-    }
 }
 
 #[test]
@@ -530,15 +398,19 @@ fn clusters_may_come_in_any_order_and_in_parts() {
     let order: Vec<usize> = (0..600).map(|i| i * 7 % 600).collect();
     let mixed: Vec<Vec<f64>> = (columns.iter()).map(|column| order.iter().map(|&i| column[i]).collect()).collect();
     let mixed_clusters: Vec<u64> = order.iter().map(|&i| clusters[i]).collect();
-    let halves = [0..250, 250..600].map(|range| {
-        let part: Vec<Vec<f64>> = mixed.iter().map(|column| column[range.clone()].to_vec()).collect();
-        clustered_factors(&part, &mixed_clusters[range])
-    });
-    let mut merged = halves[0].clone();
-    merged.merge(&halves[1]).unwrap();
-    let (a, b) = (together.covariance(0, ClusterKind::Cr3).unwrap(), merged.covariance(0, ClusterKind::Cr3).unwrap());
-    assert_close(&a.coefficients, &b.coefficients, 1e-11);
-    assert_close(&a.standard, &b.standard, 1e-10);
+    let mut rows = ClusterAccumulator::new(Shape { regressors: 4, responses: 1 }, 100);
+    for range in [0..250, 250..600] {
+        let part: Vec<&[f64]> = mixed.iter().map(|column| &column[range.clone()]).collect();
+        rows.push(&mixed_clusters[range], &part[..4], &part[4..]).unwrap();
+    }
+    let mixed = rows.finish().unwrap();
+    assert_eq!(mixed.len(), 9);
+    for ((cluster, a), (of, b)) in together.iter().zip(&mixed) {
+        assert_eq!((cluster, a.rows()), (of, b.rows()));
+        let (a, b) = (a.solve(0).unwrap(), b.solve(0).unwrap());
+        assert_close(&a.coefficients, &b.coefficients, 1e-9);
+        assert_close(&a.standard, &b.standard, 1e-9);
+    }
 }
 
 #[test]
@@ -583,26 +455,6 @@ fn what_is_wrong_is_said_with_its_place() {
         "cluster 7 is one more than the limit of 1: each keeps a triangle of its own; raise \
          the limit, or use longer clusters"
     );
-    let (columns, clusters) = clustered();
-    let three: Vec<u64> = clusters.iter().map(|c| c % 3).collect();
-    let error = clustered_factors(&columns, &three).covariance(0, ClusterKind::Cr3).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "3 clusters; cluster-robust covariance is refused below 5, where its interval is \
-         unreliable"
-    );
-}
-
-#[test]
-fn cr3_names_the_cluster_that_alone_determines_a_coefficient() {
-    let (mut columns, clusters) = clustered();
-    for (x, cluster) in columns[3].iter_mut().zip(&clusters) {
-        if *cluster != 40 {
-            *x = 0.0;
-        }
-    }
-    let error = clustered_factors(&columns, &clusters).covariance(0, ClusterKind::Cr3);
-    assert_eq!(error.unwrap_err(), StreamError::ClusterDecides { cluster: 40 });
 }
 
 #[test]

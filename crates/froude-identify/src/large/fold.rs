@@ -105,9 +105,9 @@ impl<'a> Fold<'a> {
             let width = columns.len() + 1;
             match rows.finish() {
                 Ok(factors) => {
-                    let observations = factors.iter().map(|(_, factor)| factor.rows()).sum();
-                    let row = |(cluster, factor): (u64, &Factor), i| {
-                        (cluster, (0..width).map(|k| factor.entry(i, k)).collect())
+                    let observations = factors.values().map(Factor::rows).sum();
+                    let row = |(cluster, factor): (&u64, &Factor), i| {
+                        (*cluster, (0..width).map(|k| factor.entry(i, k)).collect())
                     };
                     let of = factors.iter().flat_map(|of| (0..width).map(move |i| row(of, i))).collect();
                     all.push(Triangles { name, columns, of, observations });
