@@ -67,10 +67,9 @@ pub use accumulator::Accumulator;
 pub use cluster::ClusterAccumulator;
 pub use error::StreamError;
 pub use factor::{Factor, Solution};
-pub use in_memory::{Method, reduce_columns};
+pub use in_memory::reduce_columns;
 
 mod cluster;
-mod gram;
 mod kernel;
 #[cfg(test)]
 mod reference;

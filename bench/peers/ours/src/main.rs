@@ -6,7 +6,7 @@
 //! peer-bench CASE DIR THREADS   solve it, print one line of JSON
 //! ```
 //!
-//! Cases: `columns`, `columns-qr`, `csv`, `gaussian`, `savitzky-golay`, `forward-backward`, `harmonics`, `resample`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
+//! Cases: `columns`, `csv`, `gaussian`, `savitzky-golay`, `forward-backward`, `harmonics`, `resample`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
 
 mod hour;
 mod make;
@@ -17,7 +17,7 @@ use std::error::Error;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use froude_fit::stream::{Accumulator, Factor, Method, Shape, StreamError, reduce_columns};
+use froude_fit::stream::{Accumulator, Factor, Shape, StreamError, reduce_columns};
 use froude_records::fast_csv::{Chunk, FastCsv, FastCsvError};
 use meter::{Row, measure};
 
@@ -38,8 +38,7 @@ fn main() -> Outcome<()> {
     let threads: NonZeroUsize = number.parse()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build()?;
     let row = pool.install(|| match case.as_str() {
-        "columns" => columns(dir, Method::Adaptive),
-        "columns-qr" => columns(dir, Method::Reflections),
+        "columns" => columns(dir),
         "csv" => csv(dir, threads),
         "gaussian" | "savitzky-golay" | "forward-backward" => signals::filter(dir, case),
         "harmonics" => signals::harmonics(dir),
@@ -78,11 +77,11 @@ fn in_memory(dir: &Path, limit: usize) -> Outcome<Vec<Vec<f64>>> {
     Ok(columns)
 }
 
-fn columns(dir: &Path, method: Method) -> Outcome<Row> {
+fn columns(dir: &Path) -> Outcome<Row> {
     let columns = in_memory(dir, usize::MAX)?;
     let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
     measure(9, || {
-        Ok(reduce_columns(&all[..10], &all[10..], method)?.solve(0)?.coefficients)
+        Ok(reduce_columns(&all[..10], &all[10..])?.solve(0)?.coefficients)
     })
 }
 

@@ -11,7 +11,7 @@
 //! Control Syst. Technol. 22, 132 (IDIM-IV).
 
 use froude_fit::distribution::coverage_factor;
-use froude_fit::stream::{Method, Solution, reduce_columns};
+use froude_fit::stream::{Solution, reduce_columns};
 
 use crate::servo::chain::Chain;
 use crate::servo::error::ServoError;
@@ -77,7 +77,7 @@ pub fn identify(log: &ServoLog, chain: &Chain, servo: &Loop) -> Result<Instrumen
 fn by_instruments(instruments: &[Vec<f64>], rows: &Rows) -> Result<(Vec<f64>, Solution, Vec<Vec<f64>>), ServoError> {
     let z: Vec<&[f64]> = instruments.iter().map(Vec::as_slice).collect();
     let x: Vec<&[f64]> = rows.columns.iter().map(Vec::as_slice).collect();
-    let factor = reduce_columns(&z, &x, Method::Reflections)?;
+    let factor = reduce_columns(&z, &x)?;
     let mut projected = Vec::with_capacity(x.len());
     for k in 0..x.len() {
         let weights = factor.solve(k)?.coefficients;

@@ -1,7 +1,7 @@
 //! The linear fits of this chapter, all by `froude-fit`.
 
 use froude_fit::faer::Mat;
-use froude_fit::stream::{Method, Solution, reduce_columns};
+use froude_fit::stream::{Solution, reduce_columns};
 
 use crate::servo::error::ServoError;
 use crate::servo::rows::Rows;
@@ -14,8 +14,7 @@ pub(crate) fn least_squares(rows: &Rows) -> Result<Solution, ServoError> {
 /// Least squares of a response on columns.
 pub(crate) fn solve(columns: &[Vec<f64>], response: &[f64]) -> Result<Solution, ServoError> {
     let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-    // Few rows, and orthogonal all the same: reflections cost nothing here.
-    Ok(reduce_columns(&columns, &[response], Method::Reflections)?.solve(0)?)
+    Ok(reduce_columns(&columns, &[response])?.solve(0)?)
 }
 
 /// `(XᵀX)⁻¹` from a solution.

@@ -1,6 +1,5 @@
 //! The triangle of a least-squares problem, and what is solved from it.
 
-use super::gram::{LARGEST_INFLATION, largest_inflation};
 use faer::Mat;
 
 use super::Shape;
@@ -136,12 +135,6 @@ impl Factor {
             beta[i] = (self.entry(i, p + k) - right) / self.entry(i, i);
         }
         beta
-    }
-
-    /// Coefficients of every response in turn, where products may stand in for QR.
-    pub(super) fn pilot(&self) -> Option<Vec<f64>> {
-        let inflation = largest_inflation(&self.triangle, self.shape.regressors, self.shape.width());
-        (inflation <= LARGEST_INFLATION).then(|| (0..self.shape.responses).flat_map(|k| self.minimiser(k)).collect())
     }
 
     /// Ordinary least squares of response `k`, with classical covariance.

@@ -1,6 +1,5 @@
 //! Blocks of rows folded into a triangle.
 
-use super::gram::add_products;
 use super::kernel::{Ahead, absorb, clear_from, groups_per_block, put};
 use froude_lanes::{LANES, Lane, Level};
 
@@ -42,14 +41,6 @@ impl Folder {
         absorb(self.level, triangle, &mut self.block[..used], &mut self.scratch, ahead);
         // A bad entry spoils all columns to its right, hence always the last.
         triangle.last().is_none_or(|last| last.is_finite())
-    }
-
-    /// Adds the products of the first `rows` rows of the block to `sums`.
-    pub(super) fn add_products(&mut self, sums: &mut [Lane], pilot: &[f64], rows: usize, ahead: Ahead<'_>) {
-        let (p, width) = (self.shape.regressors, self.shape.width());
-        let used = rows.div_ceil(LANES) * width;
-        clear_from(&mut self.block[..used], width, rows);
-        add_products(self.level, sums, &mut self.block[..used], p, pilot, width, ahead);
     }
 
     /// Folds another triangle in, a block of its rows after the other.

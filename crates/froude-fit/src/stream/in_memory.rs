@@ -4,50 +4,29 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::gram::pairs;
-use super::kernel::Ahead;
-use froude_lanes::Lane;
-
 use super::error::StreamError;
 use super::factor::Factor;
 use super::folder::Folder;
+use super::kernel::Ahead;
 use super::{Shape, check_finite, check_lengths};
 
 /// How many blocks before its turn a block is asked for.
 const BLOCKS_AHEAD: usize = 4;
 
-/// How a segment of rows in memory becomes a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Method {
-    /// By inner products where the rows themselves show that it is safe, by
-    /// reflections elsewhere.
-    ///
-    /// The first segment (some ten thousand rows) is factored by reflections and fitted: the
-    /// pilot. While variance inflation factors stay below 1000, the triangle of a
-    /// further segment is the Cholesky factor of its columns' products, the responses
-    /// taken as residuals of the pilot. At most three digits of sixteen are lost, and
-    /// only of the small correction to the pilot; the coefficients keep theirs. A
-    /// segment that does not pass is done again by reflections.
-    #[default]
-    Adaptive,
-    /// Householder reflections throughout.
-    Reflections,
-}
-
 /// Reduces columns in memory, on the threads of the current `rayon` pool.
 ///
 /// `regressors` and `responses` are columns of equal length. The result does not
-/// depend on the number of threads; with [`Method::Reflections`] it is that of
+/// depend on the number of threads; it is that of
 /// [`Accumulator`](super::Accumulator), bit for bit.
 ///
 /// # Errors
 ///
 /// [`StreamError::Length`], and [`StreamError::NotFinite`] with the first bad entry.
-pub fn reduce_columns(regressors: &[&[f64]], responses: &[&[f64]], method: Method) -> Result<Factor, StreamError> {
+pub fn reduce_columns(regressors: &[&[f64]], responses: &[&[f64]]) -> Result<Factor, StreamError> {
     let shape = Shape { regressors: regressors.len(), responses: responses.len() };
     let columns = columns_of(shape, regressors, responses)?;
     let n = check_lengths(&columns)?;
-    InMemory { shape, n, columns: &columns }.reduce(method)
+    InMemory { shape, n, columns: &columns }.reduce()
 }
 
 /// Columns in memory, cut into segments of rows that are factored by themselves.
@@ -84,7 +63,7 @@ impl InMemory<'_> {
         }
     }
 
-    /// A segment by reflections.
+    /// The triangle of a segment.
     fn reflect(&self, segment: usize, folder: &mut Folder) -> Result<Vec<f64>, StreamError> {
         let width = self.shape.width();
         let mut triangle = vec![0.0; width * width];
@@ -97,19 +76,8 @@ impl InMemory<'_> {
         Ok(triangle)
     }
 
-    /// A segment by inner products; None when they would not do.
-    fn multiply(&self, segment: usize, pilot: &[f64], folder: &mut Folder) -> Option<Vec<f64>> {
-        let (p, width) = (self.shape.regressors, self.shape.width());
-        let mut sums = vec![Lane::ZERO; pairs(width)];
-        for rows in self.blocks(segment) {
-            self.fill(folder, &rows);
-            folder.add_products(&mut sums, pilot, rows.len(), self.ahead(&rows));
-        }
-        super::gram::triangle(&sums, p, pilot, width)
-    }
-
     /// Segments factored by themselves, then merged in order.
-    fn reduce(&self, method: Method) -> Result<Factor, StreamError> {
+    fn reduce(&self) -> Result<Factor, StreamError> {
         let mut total = Factor::empty(self.shape);
         if self.n == 0 {
             return Ok(total);
@@ -117,16 +85,9 @@ impl InMemory<'_> {
         let mut folder = Folder::new(self.shape);
         let first = self.reflect(0, &mut folder)?;
         folder.fold_triangle(&mut total.triangle, &first);
-        let pilot = total.pilot().filter(|_| method == Method::Adaptive);
         let triangles: Vec<Result<Vec<f64>, StreamError>> = (1..self.n.div_ceil(self.shape.segment_rows()))
             .into_par_iter()
-            .map_init(
-                || Folder::new(self.shape),
-                |folder, segment| {
-                    let quick = pilot.as_ref().and_then(|pilot| self.multiply(segment, pilot, folder));
-                    quick.map_or_else(|| self.reflect(segment, folder), Ok)
-                },
-            )
+            .map_init(|| Folder::new(self.shape), |folder, segment| self.reflect(segment, folder))
             .collect();
         for triangle in triangles {
             folder.fold_triangle(&mut total.triangle, &triangle?);

@@ -16,7 +16,7 @@ use std::ops::Range;
 use froude_lanes::{Kernel, LANES, Lane, Level, Vectors};
 
 /// Columns that a sweep takes at a time: what is subtracted, the sum and the column itself are three registers each.
-pub(crate) const fn tile<V: Vectors>() -> usize {
+const fn tile<V: Vectors>() -> usize {
     (V::REGISTERS - 1) / 3
 }
 
@@ -205,7 +205,7 @@ impl<'a> Ahead<'a> {
 
     /// Asks for the next line, if one is left.
     #[inline(always)]
-    pub(crate) fn ask(&mut self) {
+    fn ask(&mut self) {
         let Some(column) = self.columns.get(self.column) else { return };
         fetch(column.as_ptr().wrapping_add(self.row));
         self.row += LANES;
@@ -217,7 +217,7 @@ impl<'a> Ahead<'a> {
 
     /// Asks for all lines that are left.
     #[inline(always)]
-    pub(crate) fn ask_for_rest(&mut self) {
+    fn ask_for_rest(&mut self) {
         while self.column < self.columns.len() {
             self.ask();
         }

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
-use super::gram::{add_products, pairs};
 use super::kernel::put;
 use super::kernel::{Ahead, absorb};
 use super::*;
@@ -94,40 +93,6 @@ fn every_instruction_set_gives_the_textbook_triangle() {
     }
 }
 
-#[test]
-fn products_of_every_instruction_set_are_sums_over_rows() {
-    let mut generator = Pcg64::new(4, 1);
-    for (p, q) in [(1, 1), (3, 2), (10, 1), (6, 0), (14, 3)] {
-        let (width, rows) = (p + q, 16);
-        let matrix: Vec<f64> = (0..rows * width).map(|_| uniform(&mut generator)).collect();
-        let pilot: Vec<f64> = (0..p * q).map(|_| uniform(&mut generator)).collect();
-        let mut shifted = matrix.clone();
-        for i in 0..rows {
-            for r in 0..q {
-                let fit: f64 = (0..p).map(|j| matrix[i * width + j] * pilot[r * p + j]).sum();
-                shifted[i * width + p + r] -= fit;
-            }
-        }
-        let expected = products(&shifted, rows, width);
-        for level in Level::available() {
-            let mut block = vec![Lane::ZERO; rows.div_ceil(LANES) * width];
-            for j in 0..width {
-                let column: Vec<f64> = (0..rows).map(|i| matrix[i * width + j]).collect();
-                put(&mut block, width, j, 0, &column);
-            }
-            let mut sums = vec![Lane::ZERO; pairs(width)];
-            add_products(level, &mut sums, &mut block, p, &pilot, width, Ahead::nothing());
-            for i in 0..width {
-                for j in 0..=i {
-                    let found: f64 = sums[i * (i + 1) / 2 + j].0.iter().sum();
-                    let error = (found - expected[i * width + j]).abs();
-                    assert!(error < 1e-13, "{level:?}, {p} + {q}: {i}, {j}");
-                }
-            }
-        }
-    }
-}
-
 /// A whole-number design whose least-squares solution is known exactly.
 ///
 /// Every row comes twice, with opposite noise, so the noise is orthogonal to all
@@ -178,7 +143,7 @@ fn by_normal_equations(columns: &[Vec<f64>]) -> Vec<f64> {
     reference::least_squares(&mut matrix, p, p)
 }
 
-/// Both methods stay within this factor of `faer`'s QR (or of one rounding times the
+/// The error stays within this factor of `faer`'s QR (or of one rounding times the
 /// condition number): blocks of rows cost or win no more than a digit.
 const OF_QR: f64 = 10.0;
 
@@ -189,18 +154,14 @@ fn coefficients_are_as_exact_as_by_qr_of_the_whole_design() {
         let all = slices(&columns);
         let qr = worst_error(&by_faer(&columns), &truth);
         let normal = worst_error(&by_normal_equations(&columns), &truth);
-        for method in [Method::Adaptive, Method::Reflections] {
-            let factor = reduce_columns(&all[..4], &all[4..], method).unwrap();
-            let fit = factor.solve(0).unwrap();
-            let error = worst_error(&fit.coefficients, &truth);
-            println!(
-                "condition number {:8.1e}: {method:?} {error:.1e}, QR {qr:.1e}, normal \
-                 equations {normal:.1e}",
-                fit.condition_number
-            );
-            let rounding = f64::EPSILON * fit.condition_number;
-            assert!(error <= OF_QR * qr.max(rounding), "{method:?} {error:e} against {qr:e}");
-        }
+        let fit = reduce_columns(&all[..4], &all[4..]).unwrap().solve(0).unwrap();
+        let error = worst_error(&fit.coefficients, &truth);
+        println!(
+            "condition number {:8.1e}: {error:.1e}, QR {qr:.1e}, normal equations {normal:.1e}",
+            fit.condition_number
+        );
+        let rounding = f64::EPSILON * fit.condition_number;
+        assert!(error <= OF_QR * qr.max(rounding), "{error:e} against {qr:e}");
     }
 }
 
@@ -213,10 +174,8 @@ fn residual_scatter_of_the_exact_problem_is_exact() {
         y.iter().map(|[a, b]| 2.0 * (0.5 * (a - b)).powi(2)).sum()
     };
     let all = slices(&columns);
-    for method in [Method::Adaptive, Method::Reflections] {
-        let factor = reduce_columns(&all[..4], &all[4..], method).unwrap();
-        assert_close(&[factor.residual_squares(0)], &[clean], 1e-12);
-    }
+    let factor = reduce_columns(&all[..4], &all[4..]).unwrap();
+    assert_close(&[factor.residual_squares(0)], &[clean], 1e-12);
 }
 
 /// Longley's data (NIST StRD, linear regression, "Longley"): certified to 15 digits.
@@ -264,7 +223,7 @@ fn longleys_certified_values() {
     }
     columns.push(RAW.iter().map(|row| row[0]).collect());
     let all = slices(&columns);
-    let fit = reduce_columns(&all[..7], &all[7..], Method::Adaptive).unwrap().solve(0).unwrap();
+    let fit = reduce_columns(&all[..7], &all[7..]).unwrap().solve(0).unwrap();
     // Scaled condition number 4.3e4; the intercept is far outside the data: some 9 digits.
     assert_close(&fit.coefficients, &COEFFICIENTS, 1e-8);
     assert_close(&fit.standard, &STANDARD, 1e-8);
@@ -276,7 +235,7 @@ fn longleys_certified_values() {
 fn the_cut_into_chunks_and_the_number_of_threads_change_no_bit() {
     let columns = drag_columns(300_000, 6);
     let all = slices(&columns);
-    let whole = reduce_columns(&all[..4], &all[4..], Method::Reflections).unwrap();
+    let whole = reduce_columns(&all[..4], &all[4..]).unwrap();
     let shape = whole.shape();
     for sizes in [vec![300_000], vec![1, 2, 3, 499, 512, 513], vec![100_000], vec![7777, 1]] {
         let mut rows = Accumulator::new(shape);
@@ -293,37 +252,11 @@ fn the_cut_into_chunks_and_the_number_of_threads_change_no_bit() {
         assert_eq!(rows.rows(), 300_000);
         assert!(rows.finish() == whole, "chunks of {sizes:?}");
     }
-    for method in [Method::Adaptive, Method::Reflections] {
-        let reduced = [1, 2, 3].map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| reduce_columns(&all[..4], &all[4..], method).unwrap())
-        });
-        assert!(reduced[0] == reduced[1] && reduced[1] == reduced[2]);
-    }
-}
-
-#[test]
-fn the_adaptive_method_falls_back_where_columns_are_parallel() {
-    // Nearly parallel everywhere: no segment may use products.
-    let (columns, _) = exact_problem(300_000, 4, 17);
-    let all = slices(&columns);
-    let adaptive = reduce_columns(&all[..4], &all[4..], Method::Adaptive).unwrap();
-    let reflected = reduce_columns(&all[..4], &all[4..], Method::Reflections).unwrap();
-    assert!(adaptive == reflected);
-
-    // A tow at one speed in the second segment: its columns are parallel there.
-    let mut columns = drag_columns(300_000, 8);
-    for i in 140_000..280_000 {
-        for (column, value) in columns.iter_mut().zip([0.5, 0.25, -0.5, -0.25]) {
-            column[i] = value;
-        }
-    }
-    let all = slices(&columns);
-    let adaptive = reduce_columns(&all[..4], &all[4..], Method::Adaptive).unwrap();
-    let reflected = reduce_columns(&all[..4], &all[4..], Method::Reflections).unwrap();
-    let (a, b) = (adaptive.solve(0).unwrap(), reflected.solve(0).unwrap());
-    assert_close(&a.coefficients, &b.coefficients, 1e-11);
-    assert_close(&a.standard, &b.standard, 1e-11);
+    let reduced = [1, 2, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| reduce_columns(&all[..4], &all[4..]).unwrap())
+    });
+    assert!(reduced[0] == reduced[1] && reduced[1] == reduced[2]);
 }
 
 #[test]
@@ -332,21 +265,19 @@ fn a_noiseless_response_is_fitted_to_rounding() {
     let exact: Vec<f64> = columns[0].iter().map(|u| 3.0 * u).collect();
     columns[4] = exact;
     let all = slices(&columns);
-    for method in [Method::Adaptive, Method::Reflections] {
-        let fit = reduce_columns(&all[..4], &all[4..], method).unwrap().solve(0).unwrap();
-        assert!((fit.coefficients[0] - 3.0).abs() < 1e-13);
-        assert!(fit.sigma < 1e-14, "{}", fit.sigma);
-    }
+    let fit = reduce_columns(&all[..4], &all[4..]).unwrap().solve(0).unwrap();
+    assert!((fit.coefficients[0] - 3.0).abs() < 1e-13);
+    assert!(fit.sigma < 1e-14, "{}", fit.sigma);
 }
 
 #[test]
 fn merged_factors_are_the_factor_of_all_rows() {
     let columns = drag_columns(5000, 10);
     let all = slices(&columns);
-    let whole = reduce_columns(&all[..4], &all[4..], Method::Adaptive).unwrap();
+    let whole = reduce_columns(&all[..4], &all[4..]).unwrap();
     let part = |range: Range<usize>| {
         let part: Vec<&[f64]> = all.iter().map(|column| &column[range.clone()]).collect();
-        reduce_columns(&part[..4], &part[4..], Method::Adaptive).unwrap()
+        reduce_columns(&part[..4], &part[4..]).unwrap()
     };
     let mut merged = part(0..3);
     merged.merge(&part(3..1234)).unwrap();
@@ -362,7 +293,7 @@ fn two_responses_share_their_design_and_not_their_scatter() {
     let columns = drag_columns(2000, 12);
     let all = slices(&columns);
     let other: Vec<f64> = columns[4].iter().zip(&columns[0]).map(|(y, u)| 2.0 * y + u).collect();
-    let factor = reduce_columns(&all[..4], &[all[4], &other], Method::Adaptive).unwrap();
+    let factor = reduce_columns(&all[..4], &[all[4], &other]).unwrap();
     let (a, b) = (factor.solve(0).unwrap(), factor.solve(1).unwrap());
     assert_close(&[b.coefficients[3], b.sigma], &[2.0 * a.coefficients[3], 2.0 * a.sigma], 1e-11);
 }
@@ -420,10 +351,8 @@ fn what_is_wrong_is_said_with_its_place() {
     let all = slices(&columns);
     let message = "row 187654, column 2 is NaN; every entry must be finite and below 1e150 in size";
     let shape = Shape { regressors: 4, responses: 1 };
-    for method in [Method::Adaptive, Method::Reflections] {
-        let error = reduce_columns(&all[..4], &all[4..], method).unwrap_err();
-        assert_eq!(error.to_string(), message);
-    }
+    let error = reduce_columns(&all[..4], &all[4..]).unwrap_err();
+    assert_eq!(error.to_string(), message);
     let mut rows = Accumulator::new(shape);
     for start in (0..200_000).step_by(1000) {
         let chunk: Vec<&[f64]> = all.iter().map(|column| &column[start..start + 1000]).collect();
@@ -436,7 +365,7 @@ fn what_is_wrong_is_said_with_its_place() {
 
     let (u, other) = (vec![1.0, 2.0, 3.0], vec![2.0, 4.0, 6.0]);
     let error = |regressors: &[&[f64]], y: &[f64]| {
-        let factor = reduce_columns(regressors, &[y], Method::Adaptive);
+        let factor = reduce_columns(regressors, &[y]);
         factor.and_then(|factor| factor.solve(0)).unwrap_err().to_string()
     };
     assert!(error(&[&u, &other], &u).contains("the data do not determine coefficient"));
@@ -459,11 +388,11 @@ fn what_is_wrong_is_said_with_its_place() {
 
 #[test]
 fn nothing_in_gives_nothing_out() {
-    let factor = reduce_columns(&[&[]], &[&[]], Method::Adaptive).unwrap();
+    let factor = reduce_columns(&[&[]], &[&[]]).unwrap();
     assert_eq!(factor.rows(), 0);
     let error = factor.solve(0).unwrap_err();
     assert_eq!(error, StreamError::TooFewRows { rows: 0, regressors: 1 });
     assert!(factor.solve(1).is_err());
-    let none = reduce_columns(&[], &[], Method::Adaptive).unwrap();
+    let none = reduce_columns(&[], &[]).unwrap();
     assert_eq!(none.shape().width(), 0);
 }
