@@ -294,21 +294,8 @@ fn assemble(problem: &Problem, options: &Options, parts: &[Part]) -> Fit {
 }
 
 fn held_coefficients(problem: &Problem, options: &Options) -> Vec<FitCoefficient> {
-    let mut out: Vec<FitCoefficient> = problem
-        .names
-        .iter()
-        .map(|name| FitCoefficient {
-            name: name.clone(),
-            status: Status::Excluded,
-            value: Some(0.0),
-            standard: None,
-            interval: None,
-            dof: None,
-            unconstrained: None,
-            inflation: None,
-            most: None,
-        })
-        .collect();
+    let mut out: Vec<FitCoefficient> =
+        problem.names.iter().map(|name| FitCoefficient::unfitted(name, Status::Excluded, Some(0.0))).collect();
     for &(j, value) in &options.fixed {
         out[j].status = Status::Fixed;
         out[j].value = Some(value);
@@ -318,19 +305,9 @@ fn held_coefficients(problem: &Problem, options: &Options) -> Vec<FitCoefficient
 
 fn coefficient(problem: &Problem, options: &Options, part: &Part, l: usize, value: f64) -> FitCoefficient {
     let j = part.block.columns[l];
-    let name = problem.names[j].clone();
+    let name = &problem.names[j];
     if !part.indeterminacy.determined[l] {
-        return FitCoefficient {
-            name,
-            status: Status::Undetermined,
-            value: None,
-            standard: None,
-            interval: None,
-            dof: None,
-            unconstrained: None,
-            inflation: None,
-            most: None,
-        };
+        return FitCoefficient::unfitted(name, Status::Undetermined, None);
     }
     let free = part.block.offset[l] + dot(&row(part.block.basis.as_ref(), l), &part.estimate.gamma);
     let free = free / part.block.scale[l];
@@ -356,7 +333,7 @@ fn coefficient(problem: &Problem, options: &Options, part: &Part, l: usize, valu
     let alone = part.block.scale[l] * norm(&lifted);
     let is_plain = part.block.components.len() == 1 && part.estimate.n_priors == 0;
     FitCoefficient {
-        name,
+        name: name.clone(),
         status,
         value: Some(value),
         standard,

@@ -148,13 +148,7 @@ fn finish<M: InputModel>(
     let rows = whitened::whiten(problem, &linear, &variance.sigma);
     let factored = rows.factor();
     let null = Indeterminacy::new(factored.qr.null_space().as_ref());
-    let mut lift = factored.qr.lift();
-    for j in 0..p {
-        for k in 0..lift.ncols() {
-            lift[(j, k)] /= factored.scale[j];
-        }
-    }
-    let full = mul(lift.as_ref(), lift.transpose());
+    let full = factored.covariance();
     let second = second_order::second_order(model, problem, state, &linear, &rows, &full);
     let mut bias = second.bias;
     for (bias, is_determined) in bias.iter_mut().zip(&null.determined) {
@@ -174,34 +168,20 @@ fn finish<M: InputModel>(
     });
     let coefficients = (0..p)
         .map(|j| {
-            let name = problem.names[j].clone();
+            let name = &problem.names[j];
             if !null.determined[j] {
-                return FitCoefficient {
-                    name,
-                    status: Status::Undetermined,
-                    value: None,
-                    standard: None,
-                    interval: None,
-                    dof: None,
-                    unconstrained: None,
-                    inflation: None,
-                    most: None,
-                };
+                return FitCoefficient::unfitted(name, Status::Undetermined, None);
             }
             let value = state.beta[j];
             let standard = covariance[(j, j)].sqrt();
             let dof = spread.coefficient_dof(j, full[(j, j)]);
             let half = coverage_factor(confidence, dof) * standard;
             FitCoefficient {
-                name,
-                status: Status::Free,
-                value: Some(value),
                 standard: Some(standard),
                 interval: Some([value - bias[j] - half, value - bias[j] + half]),
                 dof: Some(dof),
                 unconstrained: Some(value),
-                inflation: None,
-                most: None,
+                ..FitCoefficient::unfitted(name, Status::Free, Some(value))
             }
         })
         .collect();

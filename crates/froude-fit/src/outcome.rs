@@ -53,6 +53,23 @@ pub struct FitCoefficient {
     pub most: Option<(usize, f64)>,
 }
 
+impl FitCoefficient {
+    /// A coefficient of which the data say nothing.
+    pub(crate) fn unfitted(name: &str, status: Status, value: Option<f64>) -> Self {
+        Self {
+            name: name.to_owned(),
+            status,
+            value,
+            standard: None,
+            interval: None,
+            dof: None,
+            unconstrained: None,
+            inflation: None,
+            most: None,
+        }
+    }
+}
+
 /// One response component of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComponentSummary {
@@ -172,12 +189,6 @@ impl Fit {
     #[must_use]
     pub fn coefficient(&self, name: &str) -> Option<&FitCoefficient> {
         self.coefficients.iter().find(|c| c.name == name)
-    }
-
-    /// `(weight, name)` of a combination, for printing.
-    #[must_use]
-    pub fn name_combination(&self, combination: &Combination) -> Vec<(f64, &str)> {
-        combination.weights.iter().map(|&(j, w)| (w, self.coefficients[j].name.as_str())).collect()
     }
 
     /// Whether the data determine `row · β`.

@@ -156,13 +156,7 @@ impl Moments {
         let rows = whiten(problem, linear, sigma);
         let factored = rows.factor();
         let d_beta = factored.solve(&rows.response);
-        let mut lift = factored.qr.lift();
-        for j in 0..p {
-            for k in 0..lift.ncols() {
-                lift[(j, k)] /= factored.scale[j];
-            }
-        }
-        let covariance = mul(lift.as_ref(), lift.transpose());
+        let covariance = factored.covariance();
         let moved = mul_vec(rows.design.as_ref(), &d_beta);
         let mut residual: Vec<f64> = rows.response.iter().zip(moved).map(|(y, f)| y - f).collect();
         let mut design = vec![0.0; n * c * p];

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use crate::dense::column_norm;
+use crate::dense::{column_norm, mul};
 use crate::odr::model::OdrProblem;
 use crate::rank::PivotedQr;
 
@@ -127,6 +127,17 @@ impl Whitened {
 }
 
 impl Factored {
+    /// `(XᵀX)⁻¹` on what is determined.
+    pub(super) fn covariance(&self) -> Mat<f64> {
+        let mut lift = self.qr.lift();
+        for (j, scale) in self.scale.iter().enumerate() {
+            for k in 0..lift.ncols() {
+                lift[(j, k)] /= scale;
+            }
+        }
+        mul(lift.as_ref(), lift.transpose())
+    }
+
     pub(super) fn solve(&self, b: &[f64]) -> Vec<f64> {
         self.qr.solve(b).iter().zip(&self.scale).map(|(x, s)| x / s).collect()
     }
