@@ -15,8 +15,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "sample-report".to_owned()));
     std::fs::create_dir_all(&folder)?;
     let report = sample::report();
-    std::fs::write(folder.join("sample.html"), froude_report::html(&report)?)?;
-    for figure in froude_report::figures(&report)? {
+    std::fs::write(folder.join("sample.html"), froude_report::html(&report))?;
+    for figure in froude_report::figures(&report) {
         std::fs::write(folder.join(figure.file_name), figure.svg)?;
     }
     println!("{}", folder.join("sample.html").display());

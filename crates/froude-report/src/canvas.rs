@@ -1,33 +1,22 @@
-//! A drawing surface in typographic points of the screen, over the SVG backend of `plotters`.
+//! A drawing surface in typographic points of the screen, which writes SVG.
 //!
-//! `plotters` draws on whole pixels. The surface is therefore ten times as fine
-//! as what it shows: coordinates here are CSS pixels with fractions, the picture
-//! is scaled by its view box. Text stays text; symbols get real sub- and
-//! superscripts.
+//! Coordinates here are CSS pixels with fractions. What is written are whole steps, ten to a pixel, and the view box scales the picture:
+//! that is a third shorter than fractions. Text stays text; symbols get real sub- and superscripts.
 
 use std::fmt::Write as _;
 
 use froude_records::text::visible;
-use plotters::backend::{DrawingBackend, SVGBackend};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontFamily, FontStyle, FontTransform, RGBAColor, ShapeStyle, TextStyle};
 
 use crate::symbol::{Rich, Style};
 
 /// Steps of the drawing grid per CSS pixel.
 const FINENESS: f64 = 10.0;
 
-/// Coordinates beyond this are cut, so that none leaves the integers of the backend.
+/// Coordinates beyond this are cut, so that none leaves the integers.
 const FARTHEST: f64 = 1e6;
 
-/// The SVG text size of `plotters` is its font size over this.
-const PLOTTERS_FONT_RATIO: f64 = 1.24;
-
 /// Fonts of the figures: what laboratories print with, then what is there.
-const FONTS: &str = "'Source Sans 3', 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif";
-
-/// Marks the place of a text whose markup is put in afterwards.
-const PLACE: char = '\u{e000}';
+const FONTS: &str = "&apos;Source Sans 3&apos;, &apos;Segoe UI&apos;, &apos;Helvetica Neue&apos;, Arial, &apos;Liberation Sans&apos;, sans-serif";
 
 /// A colour with its opacity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,20 +33,17 @@ impl Ink {
     pub(crate) const fn faint(self, alpha: f64) -> Self {
         Self { alpha, ..self }
     }
-}
 
-/// Ink and line width in CSS pixels.
-#[derive(Debug, Clone, Copy)]
-struct Pen {
-    ink: Ink,
-    width: f64,
-}
+    /// As the fill or the stroke of an element.
+    fn paint(self, of: &str) -> String {
+        let Self { rgb: (r, g, b), alpha } = self;
+        let opacity = if alpha == 1.0 { String::new() } else { format!(" {of}-opacity=\"{alpha}\"") };
+        format!("{opacity} {of}=\"#{r:02X}{g:02X}{b:02X}\"")
+    }
 
-impl Pen {
-    fn style(self) -> ShapeStyle {
-        let Ink { rgb: (r, g, b), alpha } = self.ink;
-        let stroke_width = (self.width * FINENESS).round().clamp(1.0, 1000.0) as u32;
-        ShapeStyle { color: RGBAColor(r, g, b, alpha), filled: true, stroke_width }
+    fn stroke(self, width: f64) -> String {
+        let steps = (width * FINENESS).round().clamp(1.0, 1000.0);
+        format!("{} stroke-width=\"{steps}\"", self.paint("stroke"))
     }
 }
 
@@ -76,19 +62,10 @@ pub(crate) type Xy = (f64, f64);
 pub(crate) struct Canvas {
     width: f64,
     height: f64,
-    /// Drawing steps, played to the backend at the end.
-    steps: Vec<Step>,
-    /// Areas side by side, under all steps: each ink with its outlines, as SVG writes them.
+    /// Elements, one a line.
+    body: String,
+    /// Areas side by side, under all elements: each ink with its outlines, as SVG writes them.
     mosaic: Vec<(Ink, String)>,
-}
-
-enum Step {
-    Line(Xy, Xy, Pen),
-    Path(Vec<Xy>, Pen),
-    Area(Vec<Xy>, Pen),
-    Rectangle(Xy, Xy, Pen),
-    Circle(Xy, f64, Pen, bool),
-    Text { text: Rich, at: Xy, size: f64, ink: Ink, align: Align, upwards: bool },
 }
 
 fn grid(at: Xy) -> (i32, i32) {
@@ -98,18 +75,28 @@ fn grid(at: Xy) -> (i32, i32) {
     (step(at.0), step(at.1))
 }
 
+/// Corners of a line or an area.
+fn points(places: &[Xy]) -> String {
+    places.iter().map(|place| grid(*place)).fold(String::new(), |mut out, (x, y)| {
+        let _ = write!(out, "{x},{y} ");
+        out
+    })
+}
+
 impl Canvas {
     pub(crate) fn new(width: f64, height: f64) -> Self {
-        Self { width, height, steps: Vec::new(), mosaic: Vec::new() }
+        Self { width, height, body: String::new(), mosaic: Vec::new() }
     }
 
     pub(crate) fn line(&mut self, from: Xy, to: Xy, ink: Ink, width: f64) {
-        self.steps.push(Step::Line(from, to, Pen { ink, width }));
+        let ((x1, y1), (x2, y2), stroke) = (grid(from), grid(to), ink.stroke(width));
+        let _ = writeln!(self.body, "<line{stroke} x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\"/>");
     }
 
-    pub(crate) fn path(&mut self, places: Vec<Xy>, ink: Ink, width: f64) {
+    pub(crate) fn path(&mut self, places: &[Xy], ink: Ink, width: f64) {
         if places.len() > 1 {
-            self.steps.push(Step::Path(places, Pen { ink, width }));
+            let (stroke, points) = (ink.stroke(width), points(places));
+            let _ = writeln!(self.body, "<polyline fill=\"none\"{stroke} points=\"{points}\"/>");
         }
     }
 
@@ -138,9 +125,9 @@ impl Canvas {
         }
     }
 
-    pub(crate) fn area(&mut self, places: Vec<Xy>, ink: Ink) {
+    pub(crate) fn area(&mut self, places: &[Xy], ink: Ink) {
         if places.len() > 2 {
-            self.steps.push(Step::Area(places, Pen { ink, width: 1.0 }));
+            let _ = writeln!(self.body, "<polygon{} points=\"{}\"/>", ink.paint("fill"), points(places));
         }
     }
 
@@ -162,53 +149,66 @@ impl Canvas {
     }
 
     pub(crate) fn rectangle(&mut self, upper_left: Xy, lower_right: Xy, ink: Ink) {
-        self.steps.push(Step::Rectangle(upper_left, lower_right, Pen { ink, width: 1.0 }));
+        let ((x0, y0), (x1, y1), fill) = (grid(upper_left), grid(lower_right), ink.paint("fill"));
+        let (width, height) = ((x1 - x0).max(0), (y1 - y0).max(0));
+        let _ = writeln!(
+            self.body,
+            "<rect x=\"{x0}\" y=\"{y0}\" width=\"{width}\" height=\"{height}\"{fill} stroke=\"none\"/>"
+        );
     }
 
     /// A filled disc with a white rim, so that neighbours stay apart.
     pub(crate) fn dot(&mut self, at: Xy, radius: f64, ink: Ink) {
-        let white = Pen { ink: WHITE, width: 1.0 };
-        self.steps.push(Step::Circle(at, radius + 0.8, white, true));
-        self.steps.push(Step::Circle(at, radius, Pen { ink, width: 1.0 }, true));
+        self.speck(at, radius + 0.8, WHITE);
+        self.speck(at, radius, ink);
     }
 
     /// A small disc without rim, for clouds of points.
     pub(crate) fn speck(&mut self, at: Xy, radius: f64, ink: Ink) {
-        self.steps.push(Step::Circle(at, radius, Pen { ink, width: 1.0 }, true));
+        self.circle(at, radius, &ink.paint("fill"));
     }
 
     /// An open ring on white.
     pub(crate) fn ring(&mut self, at: Xy, radius: f64, ink: Ink, width: f64) {
-        self.steps.push(Step::Circle(at, radius, Pen { ink: WHITE, width: 1.0 }, true));
-        self.steps.push(Step::Circle(at, radius, Pen { ink, width }, false));
+        self.speck(at, radius, WHITE);
+        self.circle(at, radius, &format!(" fill=\"none\"{}", ink.stroke(width)));
+    }
+
+    fn circle(&mut self, at: Xy, radius: f64, paint: &str) {
+        let ((x, y), radius) = (grid(at), (radius * FINENESS).round().clamp(1.0, 1e4));
+        let _ = writeln!(self.body, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{paint}/>");
     }
 
     /// Text whose middle height lies on `at`.
-    pub(crate) fn text(&mut self, text: Rich, at: Xy, size: f64, ink: Ink, align: Align) {
-        self.steps.push(Step::Text { text, at, size, ink, align, upwards: false });
+    pub(crate) fn text(&mut self, text: &Rich, at: Xy, size: f64, ink: Ink, align: Align) {
+        self.write(text, at, size, ink, align, false);
     }
 
     /// Centred text that reads upwards.
-    pub(crate) fn upward_text(&mut self, text: Rich, at: Xy, size: f64, ink: Ink) {
-        self.steps.push(Step::Text { text, at, size, ink, align: Align::Center, upwards: true });
+    pub(crate) fn upward_text(&mut self, text: &Rich, at: Xy, size: f64, ink: Ink) {
+        self.write(text, at, size, ink, Align::Center, true);
+    }
+
+    fn write(&mut self, text: &Rich, at: Xy, size: f64, ink: Ink, align: Align, is_upwards: bool) {
+        let ((x, y), size) = (grid(at), size * FINENESS);
+        let anchor = match align {
+            Align::Left => "start",
+            Align::Center => "middle",
+            Align::Right => "end",
+        };
+        let turned = if is_upwards { format!(" transform=\"rotate(270, {x}, {y})\"") } else { String::new() };
+        let _ = writeln!(
+            self.body,
+            "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-family=\"{FONTS}\" font-size=\"{size}\"{}{turned}>\n{}\n</text>",
+            ink.paint("fill"),
+            markup(text, size),
+        );
     }
 
     /// The picture as SVG, with a title and a description for readers who do not see it.
-    pub(crate) fn svg(&self, id: &str, title: &str, description: &str) -> Result<String, String> {
+    pub(crate) fn svg(&self, id: &str, title: &str, description: &str) -> String {
         let (w, h) = grid((self.width, self.height));
-        let mut body = String::new();
-        let mut markups = Vec::new();
-        {
-            let mut backend = SVGBackend::with_string(&mut body, (w.max(1).unsigned_abs(), h.max(1).unsigned_abs()));
-            for step in &self.steps {
-                play(step, &mut backend, &mut markups)?;
-            }
-            backend.present().map_err(|e| e.to_string())?;
-        }
-        // The backend's own head has the fine size; ours has the shown one.
-        let inner = body.split_once(">\n").map_or("", |(_, rest)| rest);
-        let inner = slimmed(inner);
-        let mut out = String::with_capacity(inner.len() + 1024);
+        let mut out = String::with_capacity(self.body.len() + 1024);
         let _ = writeln!(
             out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{}\" height=\"{}\" \
@@ -226,53 +226,14 @@ impl Canvas {
             }
             out.push_str("</g>\n");
         }
-        let mut pieces = inner.split(PLACE);
-        out.push_str(pieces.next().unwrap_or(""));
-        let mut markups = markups.iter();
-        for piece in pieces {
-            if let Some(markup) = markups.next() {
-                out.push_str(markup);
-            }
-            out.push_str(piece);
-        }
-        Ok(visible(&out).into_owned())
+        out.push_str(&self.body);
+        out.push_str("</svg>\n");
+        visible(&out).into_owned()
     }
 }
 
 /// White.
 pub(crate) const WHITE: Ink = Ink::new(0xff_ff_ff);
-
-fn play(step: &Step, backend: &mut SVGBackend<'_>, markups: &mut Vec<String>) -> Result<(), String> {
-    let drawn = match step {
-        Step::Line(from, to, pen) => backend.draw_line(grid(*from), grid(*to), &pen.style()),
-        Step::Path(places, pen) => backend.draw_path(places.iter().map(|p| grid(*p)), &pen.style()),
-        Step::Area(places, pen) => backend.fill_polygon(places.iter().map(|p| grid(*p)), &pen.style()),
-        Step::Rectangle(upper_left, lower_right, pen) => {
-            let ((x0, y0), (x1, y1)) = (grid(*upper_left), grid(*lower_right));
-            backend.draw_rect((x0, y0), (x1.max(x0), y1.max(y0)), &pen.style(), true)
-        }
-        Step::Circle(at, radius, pen, is_filled) => {
-            let radius = (radius * FINENESS).round().clamp(1.0, 1e4) as u32;
-            backend.draw_circle(grid(*at), radius, &pen.style(), *is_filled)
-        }
-        Step::Text { text, at, size, ink, align, upwards } => {
-            let h = match align {
-                Align::Left => HPos::Left,
-                Align::Center => HPos::Center,
-                Align::Right => HPos::Right,
-            };
-            let font = (FontFamily::Name(FONTS), size * FINENESS * PLOTTERS_FONT_RATIO, FontStyle::Normal);
-            let color = RGBAColor(ink.rgb.0, ink.rgb.1, ink.rgb.2, ink.alpha);
-            let style = TextStyle::from(font)
-                .transform(if *upwards { FontTransform::Rotate270 } else { FontTransform::None })
-                .color(&color)
-                .pos(Pos::new(h, VPos::Center));
-            markups.push(markup(text, size * FINENESS));
-            backend.draw_text(&PLACE.to_string(), &style, grid(*at))
-        }
-    };
-    drawn.map_err(|e| e.to_string())
-}
 
 /// The runs of a text as `tspan`s; `size` is the font size in drawing steps. A
 /// superscript behind a subscript stands above it.
@@ -320,25 +281,6 @@ fn markup(text: &Rich, size: f64) -> String {
 /// Size of sub- and superscripts against the text.
 const SMALL: f64 = 0.74;
 
-/// The backend's elements without attributes that say what holds anyway: most of
-/// a cloud of points. Opacity becomes that of the fill or the stroke, which
-/// printers need no group for. No text of a record is in here yet.
-fn slimmed(elements: &str) -> String {
-    let mut out = String::with_capacity(elements.len());
-    for line in elements.lines() {
-        let line = line.replace(" opacity=\"1\"", "").replace(" stroke=\"none\" stroke-width=\"10\"", "");
-        if line.starts_with("<circle") || line.starts_with("<polygon") || line.starts_with("<rect") {
-            out.push_str(&line.replace(" opacity=", " fill-opacity="));
-        } else if line.starts_with("<line") || line.starts_with("<polyline") {
-            out.push_str(&line.replace(" opacity=", " stroke-opacity="));
-        } else {
-            out.push_str(&line);
-        }
-        out.push('\n');
-    }
-    out
-}
-
 /// Text safe inside an element; characters that XML forbids are left out.
 pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -348,7 +290,7 @@ pub(crate) fn escaped(text: &str) -> String {
             '>' => out.push_str("&gt;"),
             '&' => out.push_str("&amp;"),
             '"' => out.push_str("&quot;"),
-            '\u{fffe}' | '\u{ffff}' | PLACE => {}
+            '\u{fffe}' | '\u{ffff}' => {}
             c if c.is_control() && !matches!(c, '\t' | '\n' | '\r') => {}
             c => out.push(c),
         }
@@ -401,21 +343,24 @@ mod tests {
     #[test]
     fn text_is_escaped_and_stays_text() {
         let mut canvas = Canvas::new(100.0, 50.0);
-        canvas.text(Rich::plain("<b>&\u{0}\u{e000}x"), (10.0, 10.0), 12.0, WHITE, Align::Left);
-        canvas.text(crate::symbol::symbol("C_d_II"), (f64::NAN, 1e300), 12.0, WHITE, Align::Right);
-        let svg = canvas.svg("a", "t<", "d&").unwrap();
+        canvas.text(&Rich::plain("<b>&\u{0}x"), (10.0, 10.0), 12.0, WHITE, Align::Left);
+        canvas.text(&crate::symbol::symbol("C_d_II"), (f64::NAN, 1e300), 12.0, WHITE, Align::Right);
+        let svg = canvas.svg("a", "t<", "d&");
         assert!(svg.contains("&lt;b&gt;&amp;x"), "{svg}");
         assert!(svg.contains("<title id=\"a-title\">t&lt;</title>"));
         assert!(svg.contains(">II</tspan>") && svg.trim_end().ends_with("</svg>"));
-        assert!(!svg.contains('\u{e000}') && !svg.contains('\u{0}'));
+        assert!(!svg.contains('\u{0}'));
     }
 
     #[test]
     fn dashes_end_and_cover_their_part() {
         let mut canvas = Canvas::new(100.0, 50.0);
         canvas.dashed(&[(0.0, 0.0), (100.0, 0.0), (100.0, 0.0), (f64::NAN, 0.0)], WHITE, 1.0, 4.0, 3.0);
-        let covered: f64 =
-            canvas.steps.iter().map(|s| if let Step::Line((x0, _), (x1, _), _) = s { x1 - x0 } else { 0.0 }).sum();
+        let number = |line: &str, name: &str| -> f64 {
+            line.split_once(&format!(" {name}=\"")).unwrap().1.split('"').next().unwrap().parse().unwrap()
+        };
+        let lines = canvas.body.lines();
+        let covered = lines.map(|line| number(line, "x2") - number(line, "x1")).sum::<f64>() / FINENESS;
         assert!((covered - 58.0).abs() < 1.0, "{covered}");
     }
 }

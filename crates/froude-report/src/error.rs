@@ -4,12 +4,12 @@
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// The drawing library refused a figure.
+    /// The numbers of a figure are not those of its axes.
     #[error("figure {figure:?} could not be drawn: {reason}")]
     Figure {
         /// Title of the figure.
         figure: String,
-        /// What the drawing library said.
+        /// What does not fit.
         reason: String,
     },
 }

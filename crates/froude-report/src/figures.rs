@@ -16,7 +16,6 @@ use froude_records::block::Block;
 use loads::load_drawings;
 use residuals::residual_drawings;
 
-use crate::error::ReportError;
 use crate::figures::drawing::{Drawing, slug};
 use froude_records::page::Report;
 
@@ -46,16 +45,13 @@ pub(crate) enum Place {
 }
 
 /// The figures of a report, each as an SVG document of its own.
-///
-/// # Errors
-///
-/// [`ReportError::Figure`] when the drawing library refuses a figure.
-pub fn figures(report: &Report) -> Result<Vec<Figure>, ReportError> {
-    Ok(placed_figures(report)?.into_iter().map(|(_, figure)| figure).collect())
+#[must_use]
+pub fn figures(report: &Report) -> Vec<Figure> {
+    placed_figures(report).into_iter().map(|(_, figure)| figure).collect()
 }
 
 /// All figures with their places, numbered through.
-pub(crate) fn placed_figures(report: &Report) -> Result<Vec<(Place, Figure)>, ReportError> {
+pub(crate) fn placed_figures(report: &Report) -> Vec<(Place, Figure)> {
     let mut drawings: Vec<(Place, Drawing)> = Vec::new();
     for (i, section) in report.blocks.iter().enumerate() {
         drawings.extend(drawings_of(&section.blocks).into_iter().map(|d| (Place::Block(i), d)));
@@ -71,12 +67,9 @@ pub(crate) fn placed_figures(report: &Report) -> Result<Vec<(Place, Figure)>, Re
         .enumerate()
         .map(|(i, (place, drawing))| {
             let id = format!("figure-{:02}", i + 1);
-            let svg = drawing
-                .canvas
-                .svg(&id, &drawing.title, &drawing.caption)
-                .map_err(|reason| ReportError::Figure { figure: drawing.title.clone(), reason })?;
+            let svg = drawing.canvas.svg(&id, &drawing.title, &drawing.caption);
             let file_name = format!("{id}-{}.svg", slug(&drawing.slug));
-            Ok((place, Figure { file_name, title: drawing.title, caption: drawing.caption, svg }))
+            (place, Figure { file_name, title: drawing.title, caption: drawing.caption, svg })
         })
         .collect()
 }

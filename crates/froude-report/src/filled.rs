@@ -24,17 +24,17 @@ pub(crate) fn axes(canvas: &mut Canvas, frame: &Panel, labels: [&str; 2], wanted
     for &place in &y.places {
         canvas.line((frame.left - 5.0, frame.at_y(place)), (frame.left, frame.at_y(place)), MUTED, 1.0);
         let at = (frame.left - 8.0, frame.at_y(place));
-        canvas.text(Rich::plain(&y.label(place)), at, TICK_SIZE, MUTED, Align::Right);
+        canvas.text(&Rich::plain(&y.label(place)), at, TICK_SIZE, MUTED, Align::Right);
     }
     for &place in &x.places {
         canvas.line((frame.at_x(place), frame.bottom()), (frame.at_x(place), frame.bottom() + 5.0), MUTED, 1.0);
         let at = (frame.at_x(place), frame.bottom() + 15.0);
-        canvas.text(Rich::plain(&x.label(place)), at, TICK_SIZE, MUTED, Align::Center);
+        canvas.text(&Rich::plain(&x.label(place)), at, TICK_SIZE, MUTED, Align::Center);
     }
     let middle = frame.top + 0.5 * frame.height;
-    canvas.upward_text(y.titled(Rich::plain(labels[1])), (14.0, middle), LABEL_SIZE, TEXT);
+    canvas.upward_text(&y.titled(Rich::plain(labels[1])), (14.0, middle), LABEL_SIZE, TEXT);
     let at = (frame.left + 0.5 * frame.width, frame.bottom() + 38.0);
-    canvas.text(x.titled(Rich::plain(labels[0])), at, LABEL_SIZE, TEXT, Align::Center);
+    canvas.text(&x.titled(Rich::plain(labels[0])), at, LABEL_SIZE, TEXT, Align::Center);
 }
 
 /// The bar of a range from `low` to `high` on a scale, in the place of `bar`, its name at `name_x`.
@@ -47,10 +47,10 @@ pub(crate) fn bar(canvas: &mut Canvas, bar: &Panel, scale: Scale, name: &str, na
     for &place in &ticks.places {
         canvas.line((bar.right(), bar.at_y(place)), (bar.right() + 4.0, bar.at_y(place)), MUTED, 1.0);
         let at = (bar.right() + 8.0, bar.at_y(place));
-        canvas.text(label(&ticks, scale, place), at, TICK_SIZE, MUTED, Align::Left);
+        canvas.text(&label(&ticks, scale, place), at, TICK_SIZE, MUTED, Align::Left);
     }
     let middle = bar.top + 0.5 * bar.height;
-    canvas.upward_text(ticks.titled(Rich::plain(name)), (name_x, middle), LABEL_SIZE, TEXT);
+    canvas.upward_text(&ticks.titled(Rich::plain(name)), (name_x, middle), LABEL_SIZE, TEXT);
 }
 
 /// The place of a shade between 0 and 1.

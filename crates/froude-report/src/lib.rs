@@ -18,9 +18,8 @@
 //! ```
 //! use froude_report::{Report, html};
 //!
-//! let page = html(&Report { title: "Tare drag".to_owned(), ..Report::default() })?;
+//! let page = html(&Report { title: "Tare drag".to_owned(), ..Report::default() });
 //! assert!(page.starts_with("<!DOCTYPE html>"));
-//! # Ok::<(), froude_report::ReportError>(())
 //! ```
 //!
 //! Not here: fitting, propagation, reading and writing of files, PDF (print the

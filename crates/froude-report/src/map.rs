@@ -24,14 +24,14 @@ const HATCHED: Ink = Ink::new(0xb4_bc_c2);
 ///
 /// # Errors
 ///
-/// [`ReportError::Figure`] when the numbers are not those of its axes, or the drawing library refuses it.
+/// [`ReportError::Figure`] when the numbers are not those of its axes.
 pub fn svg(map: &Map) -> Result<String, ReportError> {
-    let refused = |reason: String| ReportError::Figure { figure: map.title.clone(), reason };
     if map.values.len() != map.x.len() * map.y.len() {
         let (n, x, y) = (map.values.len(), map.x.len(), map.y.len());
-        return Err(refused(format!("{n} numbers for {x} × {y} cells")));
+        let reason = format!("{n} numbers for {x} × {y} cells");
+        return Err(ReportError::Figure { figure: map.title.clone(), reason });
     }
-    canvas(map).svg(&crate::figures::drawing::slug(&map.name), &map.title, &map.caption).map_err(refused)
+    Ok(canvas(map).svg(&crate::figures::drawing::slug(&map.name), &map.title, &map.caption))
 }
 
 pub(crate) fn canvas(map: &Map) -> Canvas {
@@ -83,7 +83,7 @@ fn mark(map: &Map, canvas: &mut Canvas, frame: &Panel) {
     let long = crate::canvas::text_width(&text, TICK_SIZE) * 1.1 + 8.0;
     let from = if is_left { at.0 - 12.0 - long } else { at.0 + 12.0 };
     canvas.rectangle((from, at.1 - 10.0), (from + long, at.1 + 10.0), WHITE.faint(0.85));
-    canvas.text(text, (from + 4.0, at.1), TICK_SIZE, TEXT, Align::Left);
+    canvas.text(&text, (from + 4.0, at.1), TICK_SIZE, TEXT, Align::Left);
 }
 
 /// Which of n are drawn.

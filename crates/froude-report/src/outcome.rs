@@ -14,7 +14,7 @@ use crate::{chart, field, map};
 ///
 /// # Errors
 ///
-/// [`ReportError::Figure`] when the drawing library refuses a figure.
+/// [`ReportError::Figure`] when the numbers of a map are not those of its axes.
 pub fn page(outcome: &Outcome, head: &Head) -> Result<String, ReportError> {
     let mut numbers = Numbers::default();
     let is_section = |block: &&Block| matches!(block, Block::Section(_));
@@ -61,9 +61,9 @@ impl Numbers {
             Ok(match block {
                 Block::Text { texts, .. } => html! { @for text in texts { p { (text) } } },
                 Block::Table(table) => table_markup(table, &mut self.tables),
-                Block::Chart(chart) => self.figure(&chart::svg(chart)?, &chart.caption),
+                Block::Chart(chart) => self.figure(&chart::svg(chart), &chart.caption),
                 Block::Map(map) => self.figure(&map::svg(map)?, &map.caption),
-                Block::Field(field) => self.figure(&field::svg(field)?, &field::caption(field)),
+                Block::Field(field) => self.figure(&field::svg(field), &field::caption(field)),
                 Block::Estimates(_) => Markup::default(),
                 Block::Section(section) => {
                     let inner = self.markup(&section.blocks.iter().collect::<Vec<_>>())?;

@@ -12,7 +12,6 @@ use froude_records::number;
 use froude_records::page::SourceSection;
 use maud::{Markup, PreEscaped, html};
 
-use crate::error::ReportError;
 use crate::figures::drawing::{recommended, slug};
 use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs};
 use crate::findings::findings_by_severity;
@@ -28,12 +27,9 @@ const SIDE_BY_SIDE: &str = "Coefficients of the same model are set side by side;
      coefficients needs.";
 
 /// The report as one self-contained HTML file.
-///
-/// # Errors
-///
-/// [`ReportError::Figure`] when the drawing library refuses a figure.
-pub fn html(report: &Report) -> Result<String, ReportError> {
-    let figures = placed_figures(report)?;
+#[must_use]
+pub fn html(report: &Report) -> String {
+    let figures = placed_figures(report);
     let mut page = Page { report, figures, sections: Vec::new(), tables: Tables::default() };
     let summary = page.summary();
     let mut body = Vec::new();
@@ -70,7 +66,7 @@ pub fn html(report: &Report) -> Result<String, ReportError> {
         (summary)
         @for part in &body { (part) }
     };
-    Ok(sheet(title, &page.navigation(), &main))
+    sheet(title, &page.navigation(), &main)
 }
 
 /// An entry of the navigation.

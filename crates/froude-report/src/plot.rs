@@ -225,13 +225,13 @@ impl Panel {
         if let Some(ticks) = x {
             for &place in &ticks.places {
                 let text = Rich::plain(&ticks.label(place));
-                canvas.text(text, (self.at_x(place), self.bottom() + 14.0), TICK_SIZE, MUTED, Align::Center);
+                canvas.text(&text, (self.at_x(place), self.bottom() + 14.0), TICK_SIZE, MUTED, Align::Center);
             }
         }
         if let Some(ticks) = y {
             for &place in &ticks.places {
                 let text = Rich::plain(&ticks.label(place));
-                canvas.text(text, (self.left - 8.0, self.at_y(place)), TICK_SIZE, MUTED, Align::Right);
+                canvas.text(&text, (self.left - 8.0, self.at_y(place)), TICK_SIZE, MUTED, Align::Right);
             }
         }
     }
@@ -265,7 +265,7 @@ impl Panel {
     /// A word in the middle of an empty panel.
     pub(crate) fn say(&self, canvas: &mut Canvas, text: &str) {
         let at = (self.left + self.width / 2.0, self.top + self.height / 2.0);
-        canvas.text(Rich::plain(text), at, TICK_SIZE, MUTED, Align::Center);
+        canvas.text(&Rich::plain(text), at, TICK_SIZE, MUTED, Align::Center);
     }
 }
 
@@ -387,7 +387,7 @@ pub(crate) fn draw_legend(canvas: &mut Canvas, entries: &[Entry], left: f64, top
                 }
                 Swatch::None => text_at = x,
             }
-            canvas.text(entry.text.clone(), (text_at, y), LABEL_SIZE, TEXT, Align::Left);
+            canvas.text(&entry.text, (text_at, y), LABEL_SIZE, TEXT, Align::Left);
             x += entry_width(entry);
         }
         y += LEGEND_ROW;

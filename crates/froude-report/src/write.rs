@@ -53,7 +53,7 @@ pub fn write_folder(outcome: &Outcome, out: &Path) -> Result<(), WriteError> {
 }
 
 fn all_figures(outcome: &Outcome, folder: &Path) -> Result<(), WriteError> {
-    let of_report = outcome.report.as_deref().map(crate::figures).transpose()?;
+    let of_report = outcome.report.as_deref().map(crate::figures);
     if of_report.as_ref().is_some_and(Vec::is_empty) {
         return Ok(());
     }
@@ -86,9 +86,9 @@ pub fn write_files(outcome: &Outcome) -> Result<(), WriteError> {
 fn figures(blocks: &[Block], folder: &Path) -> Result<(), WriteError> {
     for block in blocks {
         let (name, svg) = match block {
-            Block::Chart(chart) => (&chart.name, chart::svg(chart)?),
+            Block::Chart(chart) => (&chart.name, chart::svg(chart)),
             Block::Map(map) => (&map.name, map::svg(map)?),
-            Block::Field(field) => (&field.name, field::svg(field)?),
+            Block::Field(field) => (&field.name, field::svg(field)),
             Block::Section(section) => {
                 figures(&section.blocks, folder)?;
                 continue;
@@ -111,7 +111,7 @@ fn prepared(outcome: &Outcome, file: &OutputFile, path: &Path) -> Result<Prepare
             writeln!(out)
         })?,
         Content::Report => {
-            let page = outcome.report.as_deref().map_or_else(|| Ok(String::new()), crate::html)?;
+            let page = outcome.report.as_deref().map_or_else(String::new, crate::html);
             Prepared::new(path, |out| out.write_all(page.as_bytes()))?
         }
         Content::Table(table) => prepare_table(table, path)?,

@@ -66,7 +66,7 @@ fn is_well_formed(svg: &str) -> bool {
 #[test]
 fn every_coefficient_of_every_estimate_appears() {
     let report = sample::report();
-    let page = html(&report).unwrap();
+    let page = html(&report);
     let estimates = report.sources.iter().flat_map(|s| &s.estimates).chain(&report.published);
     for estimate in estimates {
         for name in estimate.coefficients.keys() {
@@ -80,7 +80,7 @@ fn every_coefficient_of_every_estimate_appears() {
 
 #[test]
 fn the_page_loads_nothing_and_runs_nothing() {
-    let page = html(&sample::report()).unwrap();
+    let page = html(&sample::report());
     for link in links(&page) {
         assert!(link.starts_with('#'), "{link}");
     }
@@ -89,7 +89,7 @@ fn the_page_loads_nothing_and_runs_nothing() {
 
 #[test]
 fn every_link_of_the_navigation_has_its_place_and_ids_are_unique() {
-    let page = html(&sample::report()).unwrap();
+    let page = html(&sample::report());
     for link in links(&page) {
         assert!(page.contains(&format!("id=\"{}\"", &link[1..])), "{link}");
     }
@@ -104,9 +104,9 @@ fn every_link_of_the_navigation_has_its_place_and_ids_are_unique() {
 #[test]
 fn tables_have_captions_and_figures_have_titles_and_descriptions() {
     let report = sample::report();
-    let page = html(&report).unwrap();
+    let page = html(&report);
     assert_eq!(page.matches("<table").count(), page.matches("<caption>").count());
-    let figures = figures(&report).unwrap();
+    let figures = figures(&report);
     assert_eq!(page.matches("<figure").count(), figures.len());
     assert_eq!(page.matches("<figcaption>").count(), figures.len());
     for figure in &figures {
@@ -117,7 +117,7 @@ fn tables_have_captions_and_figures_have_titles_and_descriptions() {
 
 #[test]
 fn figures_are_well_formed_and_have_names_of_their_own() {
-    let figures = figures(&sample::report()).unwrap();
+    let figures = figures(&sample::report());
     assert!(figures.len() > 15);
     let mut names: Vec<&str> = figures.iter().map(|f| f.file_name.as_str()).collect();
     for figure in &figures {
@@ -134,7 +134,7 @@ fn figures_are_well_formed_and_have_names_of_their_own() {
 
 #[test]
 fn the_same_input_gives_the_same_bytes() {
-    assert_eq!(html(&sample::report()).unwrap(), html(&sample::report()).unwrap());
+    assert_eq!(html(&sample::report()), html(&sample::report()));
 }
 
 fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
@@ -182,7 +182,7 @@ fn undetermined_is_a_dash_and_never_a_number() {
         undetermined.type_a = Some(3.25);
         undetermined.effective_dof = Some(f64::NAN);
         undetermined.interval_95 = Some([6.5, 8.5]);
-        let page = html(&report_of(vec![estimate("tank", "f3", &[("C_f_II", undetermined)])])).unwrap();
+        let page = html(&report_of(vec![estimate("tank", "f3", &[("C_f_II", undetermined)])]));
         let text = visible_text(&page);
         assert!(text.contains('—'), "{value:?}");
         for wrong in ["NaN", "7.25", "3.25", "3.2", "6.5", " 0 ", "inf"] {
@@ -207,8 +207,7 @@ fn marks_tell_what_became_of_a_coefficient() {
             ("C_XY_I", coefficient(Some(0.0), Status::Excluded)),
             ("C_XY_II", coefficient(Some(0.46), Status::Free)),
         ],
-    )]))
-    .unwrap();
+    )]));
     let text = visible_text(&page).split_whitespace().collect::<Vec<_>>().join(" ");
     for sentence in [
         "0 (bound)",
@@ -226,9 +225,9 @@ fn marks_tell_what_became_of_a_coefficient() {
 #[test]
 fn a_published_value_without_uncertainty_is_open_and_says_so() {
     let report = sample::report();
-    let page = html(&report).unwrap();
+    let page = html(&report);
     assert!(page.contains("no uncertainty stated"));
-    let forest = figures(&report).unwrap().into_iter().find(|f| f.title.contains("model f4")).unwrap();
+    let forest = figures(&report).into_iter().find(|f| f.title.contains("model f4")).unwrap();
     assert!(forest.svg.contains("no interval stated"));
     assert!(!page.contains("± 0<") && !page.contains("(0)"));
 }
@@ -345,9 +344,9 @@ fn hostile_names_are_escaped_everywhere() {
             findings: vec![Finding::new(Severity::Note, HOSTILE, h())],
         }),
     };
-    let page = html(&report).unwrap();
+    let page = html(&report);
     assert!(!page.contains("<script") && !page.contains("<svg onload"));
-    for figure in figures(&report).unwrap() {
+    for figure in figures(&report) {
         assert!(is_well_formed(&figure.svg), "{}", figure.file_name);
         assert!(!figure.svg.contains('\u{0}') && !figure.svg.contains("<script"));
     }
@@ -373,7 +372,7 @@ fn what_no_model_can_be_scored_on_is_said_once() {
     e.diagnostics.cross_validation_note = row("f1", "f_x").cross_validation.err();
     let mut report = report_of(vec![e]);
     report.sources[0].selection = vec![row("f1", "f_x"), row("f1", "f_y"), row("f2", "f_x"), row("f2", "f_y")];
-    let text = words(&html(&report).unwrap());
+    let text = words(&html(&report));
     assert_eq!(text.matches("leaving one configuration out").count(), 1, "{text}");
     assert!(text.contains(
         "Cross-validation is not possible: leaving one configuration out needs at least three configurations; the table has 2."
@@ -392,14 +391,14 @@ fn a_model_without_an_aicc_has_a_footnote() {
     let mut report = report_of(Vec::new());
     report.sources[0].selection =
         vec![row("quadratic", Ok(0.0)), row("power_law_x", Err("no AICc: an exact fit".to_owned()))];
-    let text = words(&html(&report).unwrap());
+    let text = words(&html(&report));
     assert!(text.contains("power_law_x 0 — — — 1 0.100"), "{text}");
     assert!(text.contains("1 no AICc: an exact fit."), "{text}");
 }
 
 #[test]
 fn predicted_loads_say_what_their_uncertainty_is() {
-    let text = words(&html(&sample::report()).unwrap());
+    let text = words(&html(&sample::report()));
     assert!(text.contains("± U: expanded uncertainty, 95 %, U = k·u"));
     assert!(
         text.contains("circulation tank: k = 2.00 (Student&#39;s t, effective degrees of freedom 57.3)")
@@ -426,7 +425,7 @@ fn sources_of_the_same_data_get_words_and_no_normalised_difference() {
         loads: vec![force.clone(), force],
         ..Comparison::default()
     };
-    let text = words(&html(&Report { comparison: Some(comparison), ..Report::default() }).unwrap());
+    let text = words(&html(&Report { comparison: Some(comparison), ..Report::default() }));
     assert_eq!(text.matches(SAME).count(), 2, "below the coefficients and below the loads: {text}");
     assert!(
         text.contains(&format!("no E_n: {SAME}")) && text.contains(&format!("no E_n of b against a: {SAME}")),
@@ -437,9 +436,9 @@ fn sources_of_the_same_data_get_words_and_no_normalised_difference() {
 
 #[test]
 fn an_empty_report_is_a_page() {
-    let page = html(&Report::default()).unwrap();
+    let page = html(&Report::default());
     assert!(page.contains("No source was fitted") && page.contains("No data file is recorded"));
-    assert!(figures(&Report::default()).unwrap().is_empty());
+    assert!(figures(&Report::default()).is_empty());
 }
 
 #[test]
@@ -459,7 +458,7 @@ fn many_configurations_are_spread_over_figures_of_at_most_nine_panels() {
         .collect();
     let section = SourceSection { name: "tank".to_owned(), points, ..SourceSection::default() };
     let report = Report { sources: vec![section], ..Report::default() };
-    let figures = figures(&report).unwrap();
+    let figures = figures(&report);
     let loads: Vec<_> = figures.iter().filter(|f| f.title.contains("against speed")).collect();
     assert_eq!(loads.len(), 3);
     for k in 0..23 {
@@ -481,7 +480,7 @@ fn a_million_points_give_a_picture_that_can_be_opened() {
         })
         .collect();
     let section = SourceSection { name: "tank".to_owned(), points, ..SourceSection::default() };
-    let page = html(&Report { sources: vec![section], ..Report::default() }).unwrap();
+    let page = html(&Report { sources: vec![section], ..Report::default() });
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
     assert!(page.contains("observations are not drawn") && page.contains("thinned"));
 }
@@ -500,7 +499,7 @@ fn another_abscissa_gets_its_own_axis() {
         })
         .collect();
     let section = SourceSection { name: "tare".to_owned(), points, ..SourceSection::default() };
-    let figures = figures(&Report { sources: vec![section], ..Report::default() }).unwrap();
+    let figures = figures(&Report { sources: vec![section], ..Report::default() });
     assert!(figures[0].title.contains("against w_x"), "{}", figures[0].title);
     assert!(figures[0].svg.contains(" [rad/s]"));
 }
@@ -514,7 +513,7 @@ fn an_added_mass_is_printed_as_a_matrix() {
         .collect();
     own.push(("A11_body_2".to_owned(), coefficient(Some(0.33), Status::Free)));
     let borrowed: Vec<(&str, Coefficient)> = own.iter().map(|(n, c)| (n.as_str(), c.clone())).collect();
-    let page = html(&report_of(vec![estimate("tank", "added_mass_6x6", &borrowed)])).unwrap();
+    let page = html(&report_of(vec![estimate("tank", "added_mass_6x6", &borrowed)]));
     for word in ["surge", "yaw", "title=\"A66\"", "A11_body_2"] {
         assert!(page.contains(word), "{word}");
     }
@@ -635,10 +634,10 @@ proptest! {
             }),
             ..Report::default()
         };
-        let page = html(&report).unwrap();
+        let page = html(&report);
         prop_assert!(!visible_text(&page).contains("NaN"));
         prop_assert!(!page.contains("=\"NaN") && !page.contains("=\"inf"));
-        for figure in figures(&report).unwrap() {
+        for figure in figures(&report) {
             prop_assert!(is_well_formed(&figure.svg));
             prop_assert!(figure.svg.len() < 500_000, "{} bytes", figure.svg.len());
         }
@@ -668,7 +667,7 @@ fn a_comparison_costs_as_much_as_it_has_pairs() {
     let seconds = |report: &Report| {
         let once = || {
             let begun = std::time::Instant::now();
-            let page = html(report).unwrap();
+            let page = html(report);
             assert!(page.contains("further pairs of coefficients"));
             begun.elapsed().as_secs_f64()
         };
@@ -686,11 +685,11 @@ fn a_line_says_what_else_it_holds() {
         curve.held = vec![Abscissa { quantity: "a_x".to_owned(), unit: "m/s^2".to_owned(), value: 0.125 }];
     }
     let report = Report { sources: vec![source.clone()], ..Report::default() };
-    let page = visible_text(&html(&report).unwrap());
+    let page = visible_text(&html(&report));
     assert!(page.contains("with its 95 % band, for a_x = 0.125 m/s²."), "{page}");
     for (i, curve) in source.curves.iter_mut().enumerate() {
         curve.held[0].value = i as f64;
     }
-    let page = visible_text(&html(&Report { sources: vec![source], ..Report::default() }).unwrap());
+    let page = visible_text(&html(&Report { sources: vec![source], ..Report::default() }));
     assert!(page.contains("for a_x at its median in each panel."), "{page}");
 }

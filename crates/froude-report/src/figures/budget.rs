@@ -74,12 +74,12 @@ pub(super) fn budget_drawing(section: &SourceSection) -> Option<Drawing> {
     for &place in &ticks.places {
         canvas.line((panel.at_x(place), panel.top), (panel.at_x(place), panel.bottom()), RULE, 0.8);
         let text = Rich::plain(&ticks.label(place));
-        canvas.text(text, (panel.at_x(place), panel.bottom() + 14.0), TICK_SIZE, MUTED, Align::Center);
+        canvas.text(&text, (panel.at_x(place), panel.bottom() + 14.0), TICK_SIZE, MUTED, Align::Center);
     }
     canvas.line((panel.left, panel.top), (panel.left, panel.bottom()), AXIS, 1.0);
     for (i, coefficient) in shown.iter().enumerate() {
         let middle = panel.top + 2.0 + (i as f64 + 0.5) * pitch;
-        canvas.text(symbol(&shortened(coefficient, 24)), (left - 10.0, middle), LABEL_SIZE, TEXT, Align::Right);
+        canvas.text(&symbol(&shortened(coefficient, 24)), (left - 10.0, middle), LABEL_SIZE, TEXT, Align::Right);
         let mut mine: Vec<&BudgetRow> = rows.iter().copied().filter(|r| r.coefficient == *coefficient).collect();
         mine.sort_by_key(|r| named.iter().position(|n| *n == r.input).unwrap_or(usize::MAX));
         let sum: f64 = mine.iter().map(|r| share(r)).sum();
@@ -94,13 +94,13 @@ pub(super) fn budget_drawing(section: &SourceSection) -> Option<Drawing> {
             canvas.rectangle((x0, middle - 8.5), ((x1 - 1.0).max(x0 + 0.2), middle + 8.5), ink_of(&row.input));
             if part >= 8.0 && named.contains(&row.input.as_str()) {
                 let text = Rich::plain(&number::percent(part / 100.0));
-                canvas.text(text, (x0.midpoint(x1), middle), TICK_SIZE - 0.5, WHITE, Align::Center);
+                canvas.text(&text, (x0.midpoint(x1), middle), TICK_SIZE - 0.5, WHITE, Align::Center);
             }
             at += part;
         }
     }
     let title = Rich::plain("Share of the coefficient's variance [%]");
-    canvas.text(title, (panel.left + panel.width / 2.0, total - 12.0), LABEL_SIZE, TEXT, Align::Center);
+    canvas.text(&title, (panel.left + panel.width / 2.0, total - 12.0), LABEL_SIZE, TEXT, Align::Center);
     let mut caption = format!(
         "Uncertainty budget of model {model}, {}: what part of each coefficient's variance comes from which input.",
         section.name

@@ -158,14 +158,14 @@ fn draw_forest(model: &str, coefficients: &[&str], rows: &[&(String, bool, &Esti
             canvas.line((at, panel.top), (at, panel.bottom()), ink, 0.8);
             canvas.line((at, panel.bottom()), (at, panel.bottom() + 4.0), AXIS, 1.0);
             let text = Rich::plain(&ticks.label(place));
-            canvas.text(text, (at, panel.bottom() + 14.0), TICK_SIZE, MUTED, Align::Center);
+            canvas.text(&text, (at, panel.bottom() + 14.0), TICK_SIZE, MUTED, Align::Center);
         }
         let title = ticks.titled(symbol_and_unit(&shortened(coefficient, 40), unit));
-        canvas.text(title, (panel.left, panel.top - 12.0), LABEL_SIZE + 1.0, TEXT, Align::Left);
+        canvas.text(&title, (panel.left, panel.top - 12.0), LABEL_SIZE + 1.0, TEXT, Align::Left);
         for (k, (source, mark)) in shown.iter().zip(marks).enumerate() {
             let y = panel.top + 3.0 + (k as f64 + 0.5) * pitch;
             if column == 0 {
-                canvas.text(label(source), (left - 14.0, y), LABEL_SIZE, TEXT, Align::Right);
+                canvas.text(&label(source), (left - 14.0, y), LABEL_SIZE, TEXT, Align::Right);
             }
             if let Some(mark) = mark {
                 draw_mark(&mut canvas, &panel, *mark, y, source.1, coefficient, source.2);
@@ -177,7 +177,7 @@ fn draw_forest(model: &str, coefficients: &[&str], rows: &[&(String, bool, &Esti
                 Some(_) => "not determined",
             };
             let at = (panel.left + panel.width / 2.0, y);
-            canvas.text(Rich::styled(Style::Italic, word), at, TICK_SIZE - 0.5, MUTED, Align::Center);
+            canvas.text(&Rich::styled(Style::Italic, word), at, TICK_SIZE - 0.5, MUTED, Align::Center);
         }
     }
     let mut caption = format!(
@@ -259,10 +259,10 @@ fn draw_mark(
         let (x0, x1) = (panel.at_x(low.max(panel.x.low)), panel.at_x(high.min(panel.x.high)));
         canvas.line((x0, y), (x1, y), ink, 1.6);
         if low < panel.x.low {
-            canvas.area(vec![(x0, y), (x0 + 7.0, y - 4.0), (x0 + 7.0, y + 4.0)], ink);
+            canvas.area(&[(x0, y), (x0 + 7.0, y - 4.0), (x0 + 7.0, y + 4.0)], ink);
         }
         if high > panel.x.high {
-            canvas.area(vec![(x1, y), (x1 - 7.0, y - 4.0), (x1 - 7.0, y + 4.0)], ink);
+            canvas.area(&[(x1, y), (x1 - 7.0, y - 4.0), (x1 - 7.0, y + 4.0)], ink);
         }
     }
     let at = (panel.at_x(mark.value().max(panel.x.low).min(panel.x.high)), y);

@@ -416,14 +416,14 @@ fn draw_loads(look: &Look, contents: &[Content], index: usize, n_figures: usize)
         if has_titles {
             let title = Rich::styled(Style::Bold, &shortened(content.configuration, 40));
             let title = if is_shared { title } else { y_ticks.titled(title) };
-            canvas.text(title, (panel.left, panel.top - 11.0), LABEL_SIZE, TEXT, Align::Left);
+            canvas.text(&title, (panel.left, panel.top - 11.0), LABEL_SIZE, TEXT, Align::Left);
         }
         draw_content(look, content, &panel, &mut canvas);
     }
     let middle = legend_tall + head + (total - legend_tall - head - 46.0) / 2.0;
-    canvas.upward_text(y_title, (12.0, middle), LABEL_SIZE, TEXT);
+    canvas.upward_text(&y_title, (12.0, middle), LABEL_SIZE, TEXT);
     let x_title = x_ticks.titled(look.abscissa.axis());
-    canvas.text(x_title, (left + (WIDTH - left - 12.0) / 2.0, total - 10.0), LABEL_SIZE, TEXT, Align::Center);
+    canvas.text(&x_title, (left + (WIDTH - left - 12.0) / 2.0, total - 10.0), LABEL_SIZE, TEXT, Align::Center);
 
     let part = if n_figures > 1 { format!(" ({} of {n_figures})", index + 1) } else { String::new() };
     let word = look.abscissa.word();
@@ -441,7 +441,7 @@ fn draw_content(look: &Look, content: &Content, panel: &Panel, canvas: &mut Canv
     let shown = |c: &Curve| -> Vec<f64> { c.x.iter().map(|x| look.abscissa.shown(*x)).collect() };
     let is_cloud = content.points.len() >= CLOUD;
     for (curve, level) in content.curves.iter().filter(|(c, _)| is_best(c)) {
-        canvas.area(panel.band(&shown(curve), &curve.low, &curve.high), look.ink(*level).faint(0.16));
+        canvas.area(&panel.band(&shown(curve), &curve.low, &curve.high), look.ink(*level).faint(0.16));
     }
     let mut n_drawn = 0;
     let mut dots = Vec::new();
@@ -458,7 +458,7 @@ fn draw_content(look: &Look, content: &Content, panel: &Panel, canvas: &mut Canv
     for (curve, level) in &content.curves {
         for stroke in panel.strokes(&shown(curve), &curve.y) {
             if is_best(curve) {
-                canvas.path(stroke, look.ink(*level), if is_cloud { 1.3 } else { 1.7 });
+                canvas.path(&stroke, look.ink(*level), if is_cloud { 1.3 } else { 1.7 });
             } else {
                 canvas.dashed(&stroke, look.ink(*level).faint(0.8), 1.3, 5.0, 3.5);
             }

@@ -119,7 +119,7 @@ fn draw_row(canvas: &mut Canvas, top: f64, component: &str, mine: &[&Point], ink
             let quantiles: Vec<f64> = (0..=60).map(|i| x.low + x.width() * f64::from(i) / 60.0).collect();
             let normal: Vec<f64> = quantiles.iter().map(|z| mean + deviation * z).collect();
             for stroke in panel.strokes(&quantiles, &normal) {
-                canvas.path(stroke, AXIS, 1.2);
+                canvas.path(&stroke, AXIS, 1.2);
             }
         }
         for (x, p) in places {
@@ -128,10 +128,10 @@ fn draw_row(canvas: &mut Canvas, top: f64, component: &str, mine: &[&Point], ink
             }
         }
         let below = (panel.left + panel.width / 2.0, panel.bottom() + 34.0);
-        canvas.text(x_ticks.titled(title), below, LABEL_SIZE, TEXT, Align::Center);
+        canvas.text(&x_ticks.titled(title), below, LABEL_SIZE, TEXT, Align::Center);
         if column == 0 {
             let title = y_ticks.titled(Rich::plain("Residual ").then(symbol_and_unit(component, unit)));
-            canvas.upward_text(title, (12.0, panel.top + panel.height / 2.0), LABEL_SIZE, TEXT);
+            canvas.upward_text(&title, (12.0, panel.top + panel.height / 2.0), LABEL_SIZE, TEXT);
         }
     }
 }

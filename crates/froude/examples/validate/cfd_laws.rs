@@ -26,7 +26,7 @@ const SPEED_M_S: f64 = 0.4;
 /// Writes the page and its figure.
 pub fn write(found: &Identified, pairs: &[Pair], pages: &Path) -> Result<(), Box<dyn Error>> {
     let figure = figure(found)?;
-    write_atomically(&pages.join("cfd-laws.svg"), chart::svg(&figure)?.as_bytes())?;
+    write_atomically(&pages.join("cfd-laws.svg"), chart::svg(&figure).as_bytes())?;
     write_atomically(&pages.join("cfd-laws.md"), page(found, pairs)?.as_bytes())?;
     Ok(())
 }

@@ -113,7 +113,7 @@ pub fn all(claims: &mut Claims, root: &Path, pages: Option<&Path>) -> Result<(),
     }
     let figures = [costs_figure(&cells, &drawn), scan_figure("amplitude", &scans[0]), scan_figure("phase", &scans[1])];
     for figure in &figures {
-        write_atomically(&pages.join(format!("{}.svg", figure.name)), chart::svg(figure)?.as_bytes())?;
+        write_atomically(&pages.join(format!("{}.svg", figure.name)), chart::svg(figure).as_bytes())?;
     }
     write_atomically(&pages.join("swim-sources.md"), page(&cells, &drawn, &sets, [laws, sources]).as_bytes())?;
     Ok(())
