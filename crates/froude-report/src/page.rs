@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use froude_records::block::Block;
+use froude_records::block::{Block, TableBuilder};
 use froude_records::estimate::{Estimate, Measured};
 use froude_records::finding::Severity;
 use froude_records::number;
@@ -19,7 +19,7 @@ use crate::sheet::{sheet, table_markup};
 use crate::side_by_side;
 use crate::symbol::unit_text;
 use crate::tables::{self, Tables, counted, html_symbol};
-use froude_records::page::{InputFile, Report};
+use froude_records::page::Report;
 
 /// What a reader of two sources needs to know first.
 const SIDE_BY_SIDE: &str = "Coefficients of the same model are set side by side; their normalised difference Eₙ is stated only where both sides state an \
@@ -206,42 +206,20 @@ impl Page<'_> {
         if data.is_empty() {
             return html! { section { (heading) p { "No data file is recorded." } } };
         }
-        let has_source = data.iter().any(|f| f.source.is_some());
-        let has_rows = data.iter().any(|f| f.n_rows.is_some());
-        let has_used = data.iter().any(|f| f.n_used.is_some());
-        let count = |n: Option<usize>| n.map_or_else(|| number::MISSING.to_owned(), number::count);
-        let row = |file: &InputFile| {
-            html! {
-                tr {
-                    th scope="row" { code { (file.path) } }
-                    @if has_source { td { (file.source.as_deref().unwrap_or(number::MISSING)) } }
-                    @if has_rows { td class="num" { (count(file.n_rows)) } }
-                    @if has_used { td class="num" { (count(file.n_used)) } }
-                    td class="hash" { (if file.sha256.is_empty() { number::MISSING } else { file.sha256.as_str() }) }
-                }
-            }
-        };
-        let caption = self.tables.caption("Files that the numbers come from, with their fingerprints.");
-        html! {
-            section {
-                (heading)
-                div class="table wide" {
-                    table {
-                        (caption)
-                        thead {
-                            tr {
-                                th scope="col" { "File" }
-                                @if has_source { th scope="col" { "Source" } }
-                                @if has_rows { th scope="col" class="num" { "Rows" } }
-                                @if has_used { th scope="col" class="num" { "Used" } }
-                                th scope="col" { "SHA-256" }
-                            }
-                        }
-                        tbody { @for file in data { (row(file)) } }
-                    }
-                }
-            }
+        let t = TableBuilder::new("", "Files that the numbers come from, with their fingerprints.", data);
+        let mut columns = vec![t.text("", "File", |file| file.path.clone())];
+        if data.iter().any(|file| file.source.is_some()) {
+            columns.push(t.text("", "Source", |file| file.source.clone()));
         }
+        if data.iter().any(|file| file.n_rows.is_some()) {
+            columns.push(t.count("", "Rows", |file| file.n_rows));
+        }
+        if data.iter().any(|file| file.n_used.is_some()) {
+            columns.push(t.count("", "Used", |file| file.n_used));
+        }
+        columns.push(t.text("", "SHA-256", |file| Some(file.sha256.clone()).filter(|hash| !hash.is_empty())));
+        let table = table_markup(&t.build(columns), &mut self.tables);
+        html! { section { (heading) (table) } }
     }
 
     fn findings(&mut self) -> Markup {
@@ -381,25 +359,18 @@ impl Page<'_> {
             return Markup::default();
         }
         let heading = self.open("versions", "Versions", "");
-        let caption = self.tables.caption(
+        let rows: Vec<(&String, &String)> = self.report.versions.iter().collect();
+        let t = TableBuilder::new(
+            "",
             "Programs that made this report. Together with the fingerprints of the data they allow it to be reproduced.",
+            &rows,
         );
-        html! {
-            section {
-                (heading)
-                div class="table wide" {
-                    table class="compact" {
-                        (caption)
-                        thead { tr { th scope="col" { "Program" } th scope="col" { "Version" } } }
-                        tbody {
-                            @for (name, version) in &self.report.versions {
-                                tr { th scope="row" { (name) } td { code { (version) } } }
-                            }
-                        }
-                    }
-                }
-            }
-        }
+        let columns = vec![
+            t.text("", "Program", |(name, _)| (*name).clone()),
+            t.text("", "Version", |(_, version)| (*version).clone()),
+        ];
+        let table = table_markup(&t.build(columns), &mut self.tables);
+        html! { section { (heading) (table) } }
     }
 }
 

@@ -5,7 +5,7 @@ use froude_records::text::visible;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::style::{POLICY, STYLE};
-use crate::tables::{Tables, html_symbol};
+use crate::tables::{Tables, html_symbols};
 
 /// Cells longer than this are sentences, and break into lines.
 const WORDS: usize = 44;
@@ -45,7 +45,7 @@ pub(crate) fn table_markup(table: &ResultTable, tables: &mut Tables) -> Markup {
     let digits: Vec<Digits> =
         if table.are_facts { Vec::new() } else { table.shown().map(|column| column.digits).collect() };
     let written = |column: usize, cell: &str| match digits.get(column) {
-        Some(Digits::Symbol) => html_symbol(cell),
+        Some(Digits::Symbol) => html_symbols(cell),
         Some(Digits::Normalised) if is_beyond(cell) => html! { span class="bad" { (cell) } },
         _ => html! { (cell) },
     };

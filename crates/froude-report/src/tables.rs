@@ -4,10 +4,12 @@ mod budget;
 mod coefficients;
 mod selection;
 
-use froude_records::estimate::{Coefficient, Estimate, Status};
+use froude_records::block::TableBuilder;
+use froude_records::estimate::{Coefficient, Estimate, Range, Status};
 use froude_records::number;
 use maud::{Markup, html};
 
+use crate::sheet::table_markup;
 use crate::symbol::{Rich, Style, symbol, unit_text};
 
 /// A count with its noun.
@@ -21,8 +23,8 @@ pub(crate) struct Tables {
     n: usize,
 }
 
-/// A quantity of the range of validity in words; channels of the table as symbols.
-fn quantity(name: &str) -> Markup {
+/// A quantity of the range of validity in words; channels of the table stay symbols.
+fn quantity(name: &str) -> String {
     let words = match name {
         "n_links" => "links of the body",
         "Re" => "Reynolds number",
@@ -30,10 +32,10 @@ fn quantity(name: &str) -> Markup {
         "Fr_depth" => "Froude number of the water's depth",
         "Fr_submergence" => "Froude number of the submergence",
         "KC" => "Keulegan–Carpenter number",
-        _ if name.len() > 2 && name.as_bytes()[1] == b'_' => return html_symbol(name),
-        _ => return html! { (name.replace('_', " ")) },
+        _ if name.len() > 2 && name.as_bytes()[1] == b'_' => name,
+        _ => return name.replace('_', " "),
     };
-    html! { (words) }
+    words.to_owned()
 }
 
 /// A name as a symbol, with the name itself in its tooltip.
@@ -73,6 +75,14 @@ pub(crate) fn called<'a>(e: &'a Estimate, beside: &[&Estimate]) -> &'a str {
 /// A coefficient's symbol, with what a paper calls it.
 pub(crate) fn named(name: &str, c: &Coefficient) -> Markup {
     html! { (html_symbol(name)) @if let Some(label) = &c.label { " (" (html_symbol(label)) ")" } }
+}
+
+/// A name as a symbol, with another in brackets where there is one.
+pub(crate) fn html_symbols(cell: &str) -> Markup {
+    match cell.strip_suffix(')').and_then(|cell| cell.split_once(" (")) {
+        Some((name, label)) => html! { (html_symbol(name)) " (" (html_symbol(label)) ")" },
+        None => html_symbol(cell),
+    }
 }
 
 /// A unit behind a number; nothing for a pure number.
@@ -132,36 +142,21 @@ impl Tables {
 
     /// Ranges of the observations behind an estimate.
     pub(crate) fn validity(&mut self, e: &Estimate) -> Markup {
-        let caption = self.caption(&format!(
+        let caption = format!(
             "Range of the observations behind model {}. Outside it every prediction is extrapolation.",
             e.law.name
-        ));
-        html! {
-            div class="table" {
-                table class="compact" {
-                    (caption)
-                    thead {
-                        tr {
-                            th scope="col" { "Quantity" }
-                            th scope="col" class="num" { "From" }
-                            th scope="col" class="num" { "To" }
-                            th scope="col" { "Unit" }
-                        }
-                    }
-                    tbody {
-                        @for (name, range) in &e.validity {
-                            @let (scale, unit) = if range.unit == "rad" { (1f64.to_degrees(), "°") } else { (1.0, range.unit.as_str()) };
-                            tr {
-                                th scope="row" { (quantity(name)) }
-                                td class="num" { (number::plain(range.low * scale, 4)) }
-                                td class="num" { (number::plain(range.high * scale, 4)) }
-                                td { (unit_text(unit)) }
-                            }
-                        }
-                    }
-                }
-            }
-        }
+        );
+        let shown =
+            |range: &Range, end: f64| number::plain(if range.unit == "rad" { end.to_degrees() } else { end }, 4);
+        let rows: Vec<(&String, &Range)> = e.validity.iter().collect();
+        let t = TableBuilder::new("", caption, &rows);
+        let columns = vec![
+            t.text("", "Quantity", |(name, _)| quantity(name)).symbol(),
+            t.text("", "From", |(_, range)| shown(range, range.low)),
+            t.text("", "To", |(_, range)| shown(range, range.high)),
+            t.text("", "Unit", |(_, range)| if range.unit == "rad" { "°".to_owned() } else { unit_text(&range.unit) }),
+        ];
+        table_markup(&t.build(columns), self)
     }
 }
 

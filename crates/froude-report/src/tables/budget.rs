@@ -4,8 +4,10 @@ use maud::{Markup, html};
 
 use super::{Tables, head_unit, html_symbol, union};
 use crate::figures::{budget_rows, ranked_inputs, share};
+use crate::sheet::table_markup;
 use crate::symbol::unit_text;
-use froude_records::number::{self, MISSING};
+use froude_records::block::TableBuilder;
+use froude_records::number;
 use froude_records::page::{BudgetRow, SourceSection};
 
 /// Shares of a variance below this are rounding: double precision, squared, with room.
@@ -15,7 +17,7 @@ const ROUNDING: f64 = 1e-20;
 const MOST_INPUTS: usize = 6;
 
 /// A budget: a column per input where they fit, else a row per input and coefficient.
-fn budget_table(rows: &[&BudgetRow], caption: &Markup) -> Markup {
+fn budget_table(rows: &[&BudgetRow], caption: String, tables: &mut Tables) -> Markup {
     let mut inputs: Vec<(&str, &str)> = Vec::new();
     for (input, _) in ranked_inputs(rows) {
         for r in rows.iter().filter(|r| r.input == input) {
@@ -25,8 +27,9 @@ fn budget_table(rows: &[&BudgetRow], caption: &Markup) -> Markup {
         }
     }
     if inputs.len() > MOST_INPUTS {
-        return long_budget_table(rows, caption);
+        return long_budget_table(rows, caption, tables);
     }
+    let caption = tables.caption(&caption);
     let of = |coefficient: &str, input: &(&str, &str)| {
         rows.iter().copied().find(|r| r.coefficient == coefficient && r.input == input.0 && r.shared == input.1)
     };
@@ -69,41 +72,21 @@ fn budget_table(rows: &[&BudgetRow], caption: &Markup) -> Markup {
     }
 }
 
-fn long_budget_table(rows: &[&BudgetRow], caption: &Markup) -> Markup {
+fn long_budget_table(rows: &[&BudgetRow], caption: String, tables: &mut Tables) -> Markup {
     let order: Vec<&str> = ranked_inputs(rows).into_iter().map(|(input, _)| input).collect();
     let coefficients = union(rows.iter().map(|r| &r.coefficient));
-    html! {
-        div class="table" {
-            table {
-                (caption)
-                thead {
-                    tr {
-                        th scope="col" { "Coefficient" }
-                        th scope="col" { "Input" }
-                        th scope="col" { "Shared by" }
-                        th scope="col" class="num" { "Standard uncertainty" }
-                        th scope="col" { "Unit" }
-                        th scope="col" class="num" { "Share of variance" }
-                    }
-                }
-                @for coefficient in &coefficients {
-                    @let own = sorted(rows, coefficient, &order);
-                    tbody {
-                        @for (i, r) in own.iter().enumerate() {
-                            tr {
-                                @if i == 0 { th scope="rowgroup" rowspan=(own.len()) { (html_symbol(coefficient)) } }
-                                td { (r.input) }
-                                td { (if r.shared.is_empty() { MISSING } else { r.shared.as_str() }) }
-                                td class="num" { (number::significant(r.contribution, 2)) }
-                                td { (unit_text(if r.unit.is_empty() { "1" } else { &r.unit })) }
-                                td class="num" { (number::percent(r.share)) }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
+    let own = |coefficient| sorted(rows, coefficient, &order).into_iter().enumerate();
+    let rows: Vec<(usize, &BudgetRow)> = coefficients.into_iter().flat_map(own).collect();
+    let t = TableBuilder::new("", caption, &rows);
+    let columns = vec![
+        t.text("", "Coefficient", |(i, r)| if *i == 0 { r.coefficient.clone() } else { String::new() }).symbol(),
+        t.text("", "Input", |(_, r)| r.input.clone()),
+        t.text("", "Shared by", |(_, r)| Some(r.shared.clone()).filter(|shared| !shared.is_empty())),
+        t.number("", "Standard uncertainty", |(_, r)| r.contribution).significant(2),
+        t.text("", "Unit", |(_, r)| unit_text(if r.unit.is_empty() { "1" } else { &r.unit })),
+        t.number("", "Share of variance", |(_, r)| r.share).percent(),
+    ];
+    table_markup(&t.build(columns), tables)
 }
 
 /// Rows of one coefficient, the largest share first; ties as the inputs rank overall.
@@ -119,19 +102,19 @@ impl Tables {
     pub(crate) fn budget(&mut self, source: &SourceSection) -> Markup {
         let rows = budget_rows(source);
         let model = rows.first().map_or("", |r| r.model.as_str());
-        let caption = self.caption(&format!(
+        let caption = format!(
             "Uncertainty budget of model {model}: standard uncertainty that each input alone gives to each coefficient, and its share of the \
              variance. What is shared by a setup or a campaign does not average down."
-        ));
-        let table = budget_table(&rows, &caption);
+        );
+        let table = budget_table(&rows, caption, self);
         let others =
             union(source.budget.iter().map(|r| &r.model)).into_iter().filter(|m| *m != model).collect::<Vec<_>>();
         let folded: Vec<Markup> = others
             .into_iter()
             .map(|other| {
                 let rows: Vec<&BudgetRow> = source.budget.iter().filter(|r| r.model == other).collect();
-                let caption = self.caption(&format!("Uncertainty budget of model {other}."));
-                html! { details { summary { "Uncertainty budget of model " (other) } (budget_table(&rows, &caption)) } }
+                let table = budget_table(&rows, format!("Uncertainty budget of model {other}."), self);
+                html! { details { summary { "Uncertainty budget of model " (other) } (table) } }
             })
             .collect();
         html! { (table) @for part in &folded { (part) } }

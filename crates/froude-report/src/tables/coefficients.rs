@@ -2,11 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use froude_records::block::TableBuilder;
 use froude_records::estimate::{Coefficient, Estimate, Status};
 use froude_records::number::{self, MISSING};
 use maud::{Markup, html};
 
 use super::{Tables, called, dagger, head_unit, html_symbol, html_unit, is_bare, named, sigma, union};
+use crate::sheet::table_markup;
 use crate::symbol::unit_text;
 
 /// Most models side by side in one table.
@@ -256,53 +258,34 @@ impl Tables {
         if !has_types {
             return Markup::default();
         }
-        let caption = self.caption(&format!(
+        let caption = format!(
             "Model {} in detail: standard uncertainty from the scatter of the data (type A), from the declared budget (type B), combined, \
              and with its effective degrees of freedom. The interval is valid if this model is true. The range is the envelope of the intervals over all models that the data do not \
              contradict.",
             e.law.name
-        ));
+        );
         // Nothing is known about a coefficient that is not determined, whatever its record holds.
-        let known = |c: &Coefficient, x: Option<f64>| number::finite(x).filter(|_| c.status != Status::Undetermined);
-        let u = |c: &Coefficient, x: Option<f64>| {
-            known(c, x).map_or_else(|| MISSING.to_owned(), |x| number::significant(x, 2))
+        let known = |c: &Coefficient| c.status != Status::Undetermined;
+        let rows: Vec<(&String, &Coefficient)> = e.coefficients.iter().collect();
+        let t = TableBuilder::new("", caption, &rows);
+        let name = |(name, c): &(&String, &Coefficient)| match &c.label {
+            Some(label) => format!("{name} ({label})"),
+            None => (*name).clone(),
         };
-        let has_range = e.coefficients.values().any(|c| c.range_95.is_some());
-        html! {
-            div class="table" {
-                table {
-                    (caption)
-                    thead {
-                        tr {
-                            th scope="col" { "Coefficient" }
-                            th scope="col" class="num" { "Value" }
-                            th scope="col" class="num" { "u" sub { "A" } }
-                            th scope="col" class="num" { "u" sub { "B" } }
-                            th scope="col" class="num" { "u" sub { "c" } }
-                            th scope="col" class="num" { "ν" sub { "eff" } }
-                            th scope="col" class="num" { "95 % interval" }
-                            @if has_range { th scope="col" class="num" { "Range" } }
-                            th scope="col" { "Unit" }
-                        }
-                    }
-                    tbody {
-                        @for (name, c) in &e.coefficients {
-                            tr {
-                                th scope="row" { (named(name, c)) }
-                                td class="num" { (number::coefficient(c)) }
-                                td class="num" { (u(c, c.type_a)) }
-                                td class="num" { (u(c, c.type_b)) }
-                                td class="num" { (u(c, number::usable(c.standard_uncertainty))) }
-                                td class="num" { (known(c, c.effective_dof).map_or_else(|| MISSING.to_owned(), number::dof)) }
-                                td class="num" { (c.interval_95.filter(|_| c.status != Status::Undetermined).map_or_else(|| MISSING.to_owned(), number::interval)) }
-                                @if has_range { td class="num" { (c.range_95.map_or_else(|| MISSING.to_owned(), number::interval)) } }
-                                td { (unit_text(if c.unit.is_empty() { "1" } else { &c.unit })) }
-                            }
-                        }
-                    }
-                }
-            }
+        let mut columns = vec![
+            t.text("", "Coefficient", name).symbol(),
+            t.text("", "Value", |(_, c)| number::coefficient(c)),
+            t.number("", "u_A", |(_, c)| c.type_a.filter(|_| known(c))).significant(2),
+            t.number("", "u_B", |(_, c)| c.type_b.filter(|_| known(c))).significant(2),
+            t.number("", "u_c", |(_, c)| number::usable(c.standard_uncertainty).filter(|_| known(c))).significant(2),
+            t.text("", "ν_eff", |(_, c)| number::finite(c.effective_dof).filter(|_| known(c)).map(number::dof)),
+            t.interval("", "95 % interval", |(_, c)| c.interval_95.filter(|_| known(c))),
+        ];
+        if e.coefficients.values().any(|c| c.range_95.is_some()) {
+            columns.push(t.interval("", "Range", |(_, c)| c.range_95));
         }
+        columns.push(t.text("", "Unit", |(_, c)| unit_text(if c.unit.is_empty() { "1" } else { &c.unit })));
+        table_markup(&t.build(columns), self)
     }
 }
 

@@ -1,10 +1,12 @@
 //! The contest of the models.
 
+use froude_records::block::TableBuilder;
 use froude_records::number::{self, MISSING};
 use froude_records::page::{SelectionRow, SourceSection};
 use maud::{Markup, html};
 
 use super::{Tables, html_symbol, union};
+use crate::sheet::table_markup;
 use crate::symbol::unit_text;
 
 impl Tables {
@@ -126,38 +128,20 @@ impl Tables {
 
     /// Each model beside the terms of the others.
     pub(crate) fn added_terms(&mut self, source: &SourceSection) -> Markup {
-        let caption = self.caption(
+        let t = TableBuilder::new(
+            "",
             "F tests of each model against the terms that another model would add. The data contradict a model if its smallest p, times the number of its tests, is below 0.5 %; loads that it gives and loads that it lacks are counted separately.",
+            &source.tests,
         );
-        html! {
-            div class="table" {
-                table class="compact" {
-                    (caption)
-                    thead {
-                        tr {
-                            th scope="col" { "Model" }
-                            th scope="col" { "Terms of" }
-                            th scope="col" { "Load" }
-                            th scope="col" class="num" { "F" }
-                            th scope="col" class="num" { "Degrees of freedom" }
-                            th scope="col" class="num" { "p" }
-                        }
-                    }
-                    tbody {
-                        @for t in &source.tests {
-                            tr {
-                                th scope="row" { (t.law) }
-                                td { (t.of) }
-                                td { (html_symbol(&t.component)) }
-                                td class="num" { (number::significant(t.f, 3)) }
-                                td class="num" { (number::dof(t.dof[0])) ", " (number::dof(t.dof[1])) }
-                                td class="num" { (number::p_value(t.p)) }
-                            }
-                        }
-                    }
-                }
-            }
-        }
+        let columns = vec![
+            t.text("", "Model", |test| test.law.clone()),
+            t.text("", "Terms of", |test| test.of.clone()),
+            t.text("", "Load", |test| test.component.clone()).symbol(),
+            t.number("", "F", |test| test.f).significant(3),
+            t.text("", "Degrees of freedom", |test| test.dof.map(number::dof).join(", ")),
+            t.number("", "p", |test| test.p).p_value(),
+        ];
+        table_markup(&t.build(columns), self)
     }
 }
 
