@@ -9,7 +9,6 @@ use super::kernel::put;
 use super::kernel::{Ahead, absorb};
 use super::*;
 use crate::stream::reference::triangularise;
-use faer::Mat;
 use froude_lanes::{Lane, Level};
 
 fn uniform(generator: &mut Pcg64) -> f64 {
