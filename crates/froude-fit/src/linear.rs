@@ -61,11 +61,11 @@ const ROUNDING: f64 = 1e-12;
 pub fn fit(problem: &Problem, options: &Options) -> Result<Fit, FitError> {
     problem.check()?;
     options.check(problem)?;
-    let parts = blocks(problem, options)?
+    let mut parts = blocks(problem, options)?
         .into_iter()
         .map(|block| Part::new(problem, options, block))
         .collect::<Result<Vec<_>, _>>()?;
-    Ok(assemble(problem, options, &parts))
+    Ok(assemble(problem, options, &mut parts))
 }
 
 /// A fitted block.
@@ -178,8 +178,11 @@ impl Part {
     }
 
     /// `∂β/∂y` of the block in the problem's units, columns × rows.
-    fn sensitivity(&self, problem: &Problem) -> Mat<f64> {
-        let mut s = mul(self.lift.as_ref(), self.core.influence.as_ref());
+    fn sensitivity(&mut self, problem: &Problem) -> Mat<f64> {
+        // Of many rows it is as large as the design, and nothing else reads it.
+        let influence = std::mem::replace(&mut self.core.influence, Mat::zeros(0, 0));
+        let mut s = mul(self.lift.as_ref(), influence.as_ref());
+        drop(influence);
         for (k, &i) in self.block.rows.iter().enumerate() {
             let factor = problem.weight_of(i).sqrt() / self.estimate.whitening[self.block.row_component[k]];
             for l in 0..s.nrows() {
@@ -190,7 +193,7 @@ impl Part {
     }
 }
 
-fn assemble(problem: &Problem, options: &Options, parts: &[Part]) -> Fit {
+fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
     let n = problem.n_rows();
     let p = problem.n_coefficients();
     let mut minimiser = vec![0.0; p];
@@ -207,7 +210,8 @@ fn assemble(problem: &Problem, options: &Options, parts: &[Part]) -> Fit {
     let mut null_columns: Vec<Vec<f64>> = Vec::new();
     let mut report = Report { end: End::Converged, iterations: 0 };
     let mut optimality: Option<Optimality> = None;
-    for part in parts {
+    for part in parts.iter_mut() {
+        let s = part.sensitivity(problem);
         let block = &part.block;
         let value = part.constrained(options);
         for (l, &j) in block.columns.iter().enumerate() {
@@ -215,7 +219,6 @@ fn assemble(problem: &Problem, options: &Options, parts: &[Part]) -> Fit {
             coefficients[j] = coefficient(problem, options, part, l, value[l]);
         }
         let of_block = mul(mul(part.lift.as_ref(), part.core.covariance.as_ref()).as_ref(), part.lift.transpose());
-        let s = part.sensitivity(problem);
         let is_known: Vec<bool> = block.columns.iter().map(|&j| coefficients[j].standard.is_some()).collect();
         for (l, &j) in block.columns.iter().enumerate() {
             for (m, &k) in block.columns.iter().enumerate() {

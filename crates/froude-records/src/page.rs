@@ -6,7 +6,7 @@ mod observation;
 mod report;
 mod source;
 
-pub use observation::{Abscissa, Against, Curve, Point};
+pub use observation::{Abscissa, Against, Curve, Observed, Point};
 pub use report::{InputFile, Report};
 pub use source::{BudgetRow, SelectionRow, SourceSection};
 

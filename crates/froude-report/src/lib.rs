@@ -49,6 +49,6 @@ pub mod write;
 pub use error::ReportError;
 pub use figures::{Figure, figures};
 pub use froude_records::page::{
-    Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection,
+    Abscissa, Against, BudgetRow, Curve, InputFile, Observed, Point, Report, SelectionRow, SourceSection,
 };
 pub use page::{file_stem, html};

@@ -3,6 +3,8 @@
 
 mod sample;
 
+use std::sync::Arc;
+
 use froude_records::block::{Block, Section, TableBuilder};
 use froude_records::comparison::{
     AddedTerms, CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LargestLoad, LoadComparison,
@@ -12,7 +14,7 @@ use froude_records::estimate::{Coefficient, Estimate, Measured, Range, Status};
 use froude_records::finding::{Finding, Severity};
 use froude_records::page::Chart;
 use froude_report::{
-    Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection, figures, html,
+    Abscissa, Against, BudgetRow, Curve, InputFile, Observed, Point, Report, SelectionRow, SourceSection, figures, html,
 };
 use proptest::prelude::*;
 
@@ -232,6 +234,11 @@ fn a_published_value_without_uncertainty_is_open_and_says_so() {
     assert!(!page.contains("± 0<") && !page.contains("(0)"));
 }
 
+fn observed(configuration: &str, component: &str, unit: &str) -> Arc<Observed> {
+    let [configuration, component, unit] = [configuration, component, unit].map(str::to_owned);
+    Arc::new(Observed { configuration, component, unit, other: None })
+}
+
 const HOSTILE: &str = "\"><script>alert('x')</script><svg onload=x>&amp;\u{0}\u{7}\u{e000}";
 
 #[test]
@@ -270,7 +277,7 @@ fn hostile_names_are_escaped_everywhere() {
             facts: vec![(h(), h())],
             estimates: vec![e.clone()],
             sample_of: None,
-            points: vec![Point { configuration: h(), component: h(), unit: h(), measured: 1.0, ..Point::default() }],
+            points: vec![Point { of: observed(&h(), &h(), &h()), measured: 1.0, ..Point::default() }],
             curves: vec![Curve {
                 configuration: h(),
                 component: h(),
@@ -446,9 +453,7 @@ fn many_configurations_are_spread_over_figures_of_at_most_nine_panels() {
     let points: Vec<Point> = (0..23)
         .flat_map(|k| {
             (0..5).map(move |i| Point {
-                configuration: format!("body {k}"),
-                component: "f_x".to_owned(),
-                unit: "N".to_owned(),
+                of: observed(&format!("body {k}"), "f_x", "N"),
                 speed_m_s: f64::from(i) * 0.1,
                 measured: -f64::from(i * i),
                 fitted: -f64::from(i * i) + 0.1,
@@ -469,10 +474,10 @@ fn many_configurations_are_spread_over_figures_of_at_most_nine_panels() {
 
 #[test]
 fn a_million_points_give_a_picture_that_can_be_opened() {
+    let of = observed("", "f_x", "N");
     let points: Vec<Point> = (0..200_000u32)
         .map(|i| Point {
-            component: "f_x".to_owned(),
-            unit: "N".to_owned(),
+            of: of.clone(),
             speed_m_s: f64::from(i) * 1e-5,
             measured: f64::from(i % 97),
             fitted: 48.0,
@@ -488,11 +493,12 @@ fn a_million_points_give_a_picture_that_can_be_opened() {
 /// Loads against a channel of its own: a rotor's rate at no speed.
 #[test]
 fn another_abscissa_gets_its_own_axis() {
+    let other = Some(["w_x", "rad/s"].map(str::to_owned));
+    let of = Arc::new(Observed { other, ..Observed::clone(&observed("", "m_x", "N m")) });
     let points = (0..6)
         .map(|i| Point {
-            component: "m_x".to_owned(),
-            unit: "N m".to_owned(),
-            other: Some(Abscissa { quantity: "w_x".to_owned(), unit: "rad/s".to_owned(), value: f64::from(i) }),
+            of: of.clone(),
+            other: f64::from(i),
             measured: -0.849 + 0.01 * f64::from(i),
             fitted: -0.849 + 0.01 * f64::from(i),
             ..Point::default()
@@ -585,15 +591,13 @@ proptest! {
             name: "tank".to_owned(),
             estimates: vec![e.clone()],
             points: loads.iter().enumerate().map(|(i, (a, b, f, g))| Point {
-                configuration: format!("H{}LT", i % 3),
-                component: "f_x".to_owned(),
-                unit: "N".to_owned(),
+                of: observed(&format!("H{}LT", i % 3), "f_x", "N"),
                 speed_m_s: *a,
                 angle_rad: *b,
                 measured: *f,
                 fitted: *g,
                 standard: Some(values[5]),
-                other: None,
+                other: 0.0,
             }).collect(),
             curves: vec![Curve {
                 configuration: "H1LT".to_owned(),

@@ -2,21 +2,32 @@
 //!
 //! **Units.** SI; angles in radians. A load carries its unit as text beside it.
 
-/// One steady observation.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Point {
+use std::sync::Arc;
+
+/// What many observations share.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Observed {
     /// Configuration (`H1LT`, …); empty when there is only one.
     pub configuration: String,
     /// Load component: `f_x`, `m_z`, …
     pub component: String,
     /// Unit of `measured`, `standard` and `fitted`.
     pub unit: String,
+    /// Another abscissa, for loads that do not go with speed or angle (a rotor's rate): name of the channel, and its unit.
+    pub other: Option<[String; 2]>,
+}
+
+/// One steady observation.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Point {
+    /// What was observed.
+    pub of: Arc<Observed>,
     /// Speed through the water.
     pub speed_m_s: f64,
     /// Angle `atan2(−v_y, v_x)`.
     pub angle_rad: f64,
-    /// Another abscissa, for loads that do not go with speed or angle (a rotor's rate).
-    pub other: Option<Abscissa>,
+    /// The other abscissa.
+    pub other: f64,
     /// The measured load.
     pub measured: f64,
     /// Its standard uncertainty, where one is known.
@@ -64,9 +75,9 @@ pub enum Against {
 /// `low` or `high` means that no band is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Configuration, as in [`Point::configuration`].
+    /// Configuration, as in [`Observed::configuration`].
     pub configuration: String,
-    /// Load component, as in [`Point::component`].
+    /// Load component, as in [`Observed::component`].
     pub component: String,
     /// Unit of `y`, `low` and `high`.
     pub unit: String,

@@ -67,7 +67,8 @@ impl Abscissa {
             Self::Speed => Some((p.speed_m_s, Some(p.angle_rad))),
             Self::Angle => Some((p.angle_rad.to_degrees(), Some(p.speed_m_s))),
             Self::Other { quantity, unit } => {
-                p.other.as_ref().filter(|o| o.quantity == *quantity && o.unit == *unit).map(|o| (o.value, None))
+                let is_own = p.of.other.as_ref().is_some_and(|[own, of]| own == quantity && of == unit);
+                is_own.then_some((p.other, None))
             }
         }
     }
@@ -131,11 +132,15 @@ struct Content<'a> {
 
 pub(super) fn load_drawings(section: &SourceSection) -> Vec<Drawing> {
     let components = distinct(
-        section.points.iter().map(|p| p.component.as_str()).chain(section.curves.iter().map(|c| c.component.as_str())),
+        section
+            .points
+            .iter()
+            .map(|p| p.of.component.as_str())
+            .chain(section.curves.iter().map(|c| c.component.as_str())),
     );
     let mut drawings = Vec::new();
     for component in components {
-        let points: Vec<&Point> = section.points.iter().filter(|p| p.component == component).collect();
+        let points: Vec<&Point> = section.points.iter().filter(|p| p.of.component == component).collect();
         let curves: Vec<&Curve> = section.curves.iter().filter(|c| c.component == component).collect();
         for abscissa in abscissae(&points, &curves) {
             drawings.extend(component_drawings(section, component, &abscissa, &points, &curves));
@@ -164,8 +169,8 @@ fn abscissae(points: &[&Point], curves: &[&Curve]) -> Vec<Abscissa> {
         if varies(|p| p.angle_rad, 1e-3) {
             out.push(Abscissa::Angle);
         }
-        for other in points.iter().filter_map(|p| p.other.as_ref()) {
-            let abscissa = Abscissa::Other { quantity: other.quantity.clone(), unit: other.unit.clone() };
+        for [quantity, unit] in points.iter().filter_map(|p| p.of.other.as_ref()) {
+            let abscissa = Abscissa::Other { quantity: quantity.clone(), unit: unit.clone() };
             if !out.contains(&abscissa) {
                 out.push(abscissa);
             }
@@ -219,11 +224,11 @@ fn component_drawings(
     // Of a sweep over angles the other speeds are part of the picture; of one over speeds the other angles would hide it.
     let needs_level = !curves.is_empty() && !levels.is_empty() && *abscissa != Abscissa::Angle;
     let configurations = distinct(
-        points.iter().map(|p| p.configuration.as_str()).chain(curves.iter().map(|c| c.configuration.as_str())),
+        points.iter().map(|p| p.of.configuration.as_str()).chain(curves.iter().map(|c| c.configuration.as_str())),
     );
     let mut by_configuration: BTreeMap<&str, Vec<&Point>> = BTreeMap::new();
     for &point in points {
-        by_configuration.entry(&point.configuration).or_default().push(point);
+        by_configuration.entry(&point.of.configuration).or_default().push(point);
     }
     let contents: Vec<Content> = configurations
         .into_iter()
@@ -254,7 +259,7 @@ fn component_drawings(
         return Vec::new();
     }
     let unit =
-        points.first().map(|p| p.unit.as_str()).or_else(|| curves.first().map(|c| c.unit.as_str())).unwrap_or("");
+        points.first().map(|p| p.of.unit.as_str()).or_else(|| curves.first().map(|c| c.unit.as_str())).unwrap_or("");
     let best = recommended(section)
         .map(|e| e.law.name.as_str())
         .filter(|m| curves.iter().any(|c| c.model == *m))

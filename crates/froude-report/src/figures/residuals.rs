@@ -19,8 +19,8 @@ const RESIDUAL_ROWS: usize = 3;
 
 pub(super) fn residual_drawings(section: &SourceSection) -> Vec<Drawing> {
     let usable: Vec<&Point> = section.points.iter().filter(|p| drawable(p.measured) && drawable(p.fitted)).collect();
-    let components = distinct(usable.iter().map(|p| p.component.as_str()));
-    let configurations = distinct(usable.iter().map(|p| p.configuration.as_str()));
+    let components = distinct(usable.iter().map(|p| p.of.component.as_str()));
+    let configurations = distinct(usable.iter().map(|p| p.of.configuration.as_str()));
     let n_figures = components.len().div_ceil(RESIDUAL_ROWS);
     components
         .chunks(RESIDUAL_ROWS)
@@ -54,11 +54,11 @@ fn draw_residuals(
     let rank: BTreeMap<&str, usize> = configurations.iter().enumerate().map(|(i, c)| (*c, i)).collect();
     let ink_of = |p: &Point| match configurations.len() {
         0 | 1 => ACCENT,
-        n => level_ink(rank.get(p.configuration.as_str()).copied().unwrap_or(0), n),
+        n => level_ink(rank.get(p.of.configuration.as_str()).copied().unwrap_or(0), n),
     };
     let mut is_thinned = false;
     for (row, component) in components.iter().enumerate() {
-        let mine: Vec<&Point> = points.iter().copied().filter(|p| p.component == *component).collect();
+        let mine: Vec<&Point> = points.iter().copied().filter(|p| p.of.component == *component).collect();
         let top = legend_tall + row as f64 * (HEAD + HEIGHT + FOOT) + HEAD;
         draw_row(&mut canvas, top, component, &mine, &ink_of);
         is_thinned |= mine.len() > MOST_POINTS;
@@ -106,7 +106,7 @@ fn draw_row(canvas: &mut Canvas, top: f64, component: &str, mine: &[&Point], ink
     let largest = y.low.abs().max(y.high.abs());
     let y = Span { low: -largest, high: largest }.aired(0.08);
     let y_ticks = y.ticks(4);
-    let unit = mine.first().map_or("", |p| p.unit.as_str());
+    let unit = mine.first().map_or("", |p| p.of.unit.as_str());
     let width = (WIDTH - LEFT - 12.0 - 2.0 * GAP) / 3.0;
     for (column, (places, title)) in abscissae(component, unit, mine).into_iter().enumerate() {
         let x = Span::of(places.iter().map(|p| p.0)).unwrap_or(Span { low: 0.0, high: 0.0 }).aired(0.05);
@@ -141,10 +141,10 @@ fn abscissae<'a>(component: &str, unit: &str, mine: &[&'a Point]) -> [(Vec<(f64,
     let drawn = thinned(mine, MOST_POINTS);
     let fitted = drawn.iter().map(|p| (p.fitted, *p)).collect();
     let is_one_speed = Span::of(drawn.iter().map(|p| p.speed_m_s)).is_none_or(|s| s.width() < 1e-9);
-    let motion = if is_one_speed && drawn.iter().all(|p| p.other.is_some()) {
-        let name = drawn.iter().find_map(|p| p.other.as_ref());
-        let places = drawn.iter().filter_map(|p| p.other.as_ref().map(|o| (o.value, *p))).collect();
-        (places, name.map_or_else(Rich::default, |o| symbol_and_unit(&o.quantity, &o.unit)))
+    let motion = if is_one_speed && drawn.iter().all(|p| p.of.other.is_some()) {
+        let name = drawn.iter().find_map(|p| p.of.other.as_ref());
+        let places = drawn.iter().map(|p| (p.other, *p)).collect();
+        (places, name.map_or_else(Rich::default, |[quantity, unit]| symbol_and_unit(quantity, unit)))
     } else {
         (drawn.iter().map(|p| (p.speed_m_s, *p)).collect(), Rich::plain("Speed [m/s]"))
     };

@@ -8,7 +8,7 @@ use froude_records::estimate::{
     Status, TypeA,
 };
 use froude_records::finding::{Finding, Severity};
-use froude_report::{Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection};
+use froude_report::{Against, BudgetRow, Curve, InputFile, Observed, Point, Report, SelectionRow, SourceSection};
 use indexmap::IndexMap;
 
 /// Names of the coefficients of f1 … f6 in the order of the paper's tables.
@@ -227,12 +227,16 @@ fn loads(
             for (i, component) in ["f_x", "f_y"].into_iter().enumerate() {
                 let u = sigma * (1.0 + i as f64);
                 points.push(Point {
-                    configuration: configuration.clone(),
-                    component: component.to_owned(),
-                    unit: "N".to_owned(),
+                    of: Observed {
+                        configuration: configuration.clone(),
+                        component: component.to_owned(),
+                        unit: "N".to_owned(),
+                        other: None,
+                    }
+                    .into(),
                     speed_m_s,
                     angle_rad,
-                    other: None,
+                    other: 0.0,
                     measured: fitted[i] + u * dice.noise(),
                     standard: Some(u),
                     fitted: fitted[i],
