@@ -130,7 +130,13 @@ impl Part {
     #[must_use]
     pub fn of_one(name: String, shared: &'static str, kind: Kind, standard: f64, dof: f64) -> Self {
         let covariance = Mat::from_fn(1, 1, |_, _| standard * standard);
-        Self { name, shared, kind, covariance, dof: vec![dof], shape: Shape::Normal, in_scatter: false, origin: None }
+        Self { kind, ..Self::scatter(name, shared, covariance, vec![dof]) }
+    }
+
+    /// Scatter, with its covariance and degrees of freedom of the coefficients.
+    #[must_use]
+    pub fn scatter(name: String, shared: &'static str, covariance: Mat<f64>, dof: Vec<f64>) -> Self {
+        Self { name, shared, kind: Kind::A, covariance, dof, shape: Shape::Normal, in_scatter: false, origin: None }
     }
 
     /// Of a fit with one coefficient: an error between two limits.

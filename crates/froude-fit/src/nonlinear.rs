@@ -14,12 +14,11 @@
 //! | end of the iteration            | [`Settings::offset`]                  | Bates & Watts (1981), Technometrics 23, 179       |
 //! | parameters of single runs       | eliminated in each step               | Lovell (1963), J. Am. Stat. Assoc. 58, 993        |
 //! | standard uncertainty            | [`Solution::covariance`]              | see [`Scatter`]                                   |
-//! | interval of a curved model      | [`profile_interval`]                  | Bates & Watts (1988), ch. 6                       |
 //!
 //! **Measured.** Seven problems of NIST's, certified to eleven digits: parameters to 1e-7, standard uncertainties to 1e-6 of themselves, from both
 //! starts but one; from MGH10's first start the valley is too long, and the report says so. 95 % intervals, 2,000 repetitions: by runs 95.0 %
 //! (6 runs) and 95.3 % (15) of noise that remembers 0.75 of itself from row to row, where the classical interval covers 60 % and 62 %; with a
-//! lag, one run of 1,000 rows, 92.2 %: somewhat too short, as such intervals are. Profile 95.7 % where the linear interval covers 87.8 %.
+//! lag, one run of 1,000 rows, 92.2 %: somewhat too short, as such intervals are. On a curved model, a line read on a logarithmic scale, the linear interval covers 87.8 %.
 //!
 //! Not here: more than one minimum (start from several places), inequalities between parameters, robust losses, second derivatives: where
 //! residuals are large and the model strongly curved, steps converge slowly and the covariance is Gauss and Newton's.
@@ -29,7 +28,6 @@ mod covariance;
 mod error;
 mod model;
 mod point;
-mod profile;
 
 use border::{Damping, eliminate};
 use point::{Layout, Point, Problem};
@@ -40,7 +38,6 @@ use crate::report::{End, Report};
 pub use crate::nonlinear::model::{Model, Parameter, Settings};
 pub use covariance::{Scatter, SharedCovariance};
 pub use error::NonlinearError;
-pub use profile::{Profile, profile_interval};
 
 /// Damping of the first step, as part of the squared length of each column.
 const FIRST_DAMPING: f64 = 1e-3;
@@ -78,7 +75,6 @@ pub struct Solution {
     /// How it ended.
     pub report: Report,
     parameters: Vec<Parameter>,
-    settings: Settings,
     layout: Layout,
 }
 
@@ -185,7 +181,6 @@ pub fn minimise(model: &dyn Model, parameters: &[Parameter], settings: &Settings
         columns: here.columns,
         report,
         parameters: parameters.to_vec(),
-        settings: settings.clone(),
         layout: problem.layout,
     })
 }

@@ -10,7 +10,7 @@
 
 use faer::Mat;
 
-use crate::budget::{Kind, Part, Shape, jackknife};
+use crate::budget::{Part, jackknife};
 use crate::propagate::effective_dof;
 
 /// Replicates of one sort, each left out in turn.
@@ -111,16 +111,8 @@ pub fn together(name: &str, sets: &[Replicates]) -> Option<Part> {
             (name, (0..p).map(|j| effective_dof(&of(j))).collect())
         }
     };
-    Some(Part {
-        name: name.to_owned(),
-        shared: sets[0].left_out,
-        kind: Kind::A,
-        covariance: all.iter().fold(Mat::zeros(p, p), |sum, (covariance, ..)| sum + covariance),
-        dof,
-        shape: Shape::Normal,
-        in_scatter: false,
-        origin: None,
-    })
+    let covariance = all.iter().fold(Mat::zeros(p, p), |sum, (covariance, ..)| sum + covariance);
+    Some(Part::scatter(name.to_owned(), sets[0].left_out, covariance, dof))
 }
 
 #[cfg(test)]
@@ -130,7 +122,7 @@ mod tests {
     use rand_pcg::Pcg64Mcg;
 
     use super::*;
-    use crate::budget::{OUTSIDE_95, combine};
+    use crate::budget::{Kind, OUTSIDE_95, combine};
 
     /// Means of two columns without each row.
     fn means(rows: &[[f64; 2]]) -> Replicates {

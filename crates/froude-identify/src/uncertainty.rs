@@ -396,16 +396,8 @@ fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Part, Identi
 /// JCGM 100:2008 (GUM), 2.3.2.
 #[must_use]
 pub fn scatter(fit: &fit::Fit) -> Part {
-    Part {
-        name: SCATTER.to_owned(),
-        shared: "sample",
-        kind: Kind::A,
-        covariance: fit.covariance.clone(),
-        dof: fit.coefficients.iter().map(|c| c.dof.unwrap_or(f64::INFINITY)).collect(),
-        shape: Shape::Normal,
-        in_scatter: false,
-        origin: None,
-    }
+    let dof = fit.coefficients.iter().map(|c| c.dof.unwrap_or(f64::INFINITY)).collect();
+    Part::scatter(SCATTER.to_owned(), "sample", fit.covariance.clone(), dof)
 }
 
 /// Two-sided 95 % quantile of Student's t.

@@ -141,7 +141,7 @@ impl Solution {
         eliminate(&self.point(), &self.layout, |j| !self.at_bound[j], &self.residuals, None)
     }
 
-    pub(super) fn named(&self, parameter: usize) -> Result<&Parameter, NonlinearError> {
+    fn named(&self, parameter: usize) -> Result<&Parameter, NonlinearError> {
         let count = self.parameters.len();
         self.parameters.get(parameter).ok_or(NonlinearError::NoSuchParameter { index: parameter, count })
     }
@@ -159,7 +159,7 @@ impl Solution {
     }
 }
 
-pub(super) fn check_confidence(confidence: f64) -> Result<(), NonlinearError> {
+fn check_confidence(confidence: f64) -> Result<(), NonlinearError> {
     if confidence > 0.0 && confidence < 1.0 {
         return Ok(());
     }

@@ -185,20 +185,4 @@ pub enum NonlinearError {
         /// The run.
         run: usize,
     },
-
-    /// A profile went below the sum of squares of the solution.
-    #[error(
-        "with {name:?} = {value} the sum of squares is {found}, below the solution's {expected}; the solution was not \
-         the minimum: start again from there"
-    )]
-    NotTheMinimum {
-        /// The parameter.
-        name: String,
-        /// Where it was held.
-        value: f64,
-        /// Sum of squares there.
-        found: f64,
-        /// Sum of squares of the solution.
-        expected: f64,
-    },
 }

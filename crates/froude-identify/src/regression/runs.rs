@@ -14,7 +14,7 @@
 //! Satterthwaite (1946), Biometrics Bull. 2, 110.
 
 use froude_fit as fit;
-use froude_fit::budget::{Kind, Part, Shape};
+use froude_fit::budget::Part;
 use froude_fit::faer::linalg::solvers::Solve as _;
 use froude_fit::faer::{Mat, Side};
 use froude_records::number::significant;
@@ -143,16 +143,7 @@ pub(crate) fn between_runs(
             )
         })
         .collect();
-    let part = Part {
-        name: format!("{NAME} ({})", parts.join("; ")),
-        shared: "sample",
-        kind: Kind::A,
-        covariance,
-        dof,
-        shape: Shape::Normal,
-        in_scatter: false,
-        origin: None,
-    };
+    let part = Part::scatter(format!("{NAME} ({})", parts.join("; ")), "sample", covariance, dof);
     Some(OfRuns { part, loads: sizes })
 }
 

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use froude_fit as fit;
-use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, combine};
+use froude_fit::budget::{Combined, OUTSIDE_95, Part, combine};
 use froude_fit::replicates;
 use froude_records::campaign::SourceKind;
 
@@ -149,20 +149,12 @@ pub(crate) fn serial(
         correlations.push(if problem.components.len() > 1 { format!("{by} ({load})") } else { by });
         is_largest |= found.is_largest;
     }
-    Some(Part {
-        name: format!(
-            "scatter of the rows in time, correlated by {} from one to the next{}",
-            correlations.join(", "),
-            if is_largest { ", the most that runs of this length tell: it may be more" } else { "" }
-        ),
-        shared: "sample",
-        kind: Kind::A,
-        covariance,
-        dof,
-        shape: Shape::Normal,
-        in_scatter: false,
-        origin: None,
-    })
+    let name = format!(
+        "scatter of the rows in time, correlated by {} from one to the next{}",
+        correlations.join(", "),
+        if is_largest { ", the most that runs of this length tell: it may be more" } else { "" }
+    );
+    Some(Part::scatter(name, "sample", covariance, dof))
 }
 
 /// The sum of the budget's parts. A coefficient that was not estimated has no covariance, whatever the budget says.
