@@ -15,7 +15,7 @@ use faer::Mat;
 
 use crate::block::{Block, blocks};
 use crate::covariance::{Core, core};
-use crate::dense::{dot, mul, mul_vec, norm, row};
+use crate::dense::{dot, mul, mul_vec, row};
 use crate::determined::Indeterminacy;
 use crate::diagnostics::{condition_number, durbin_watson, durbin_watson_p};
 use crate::distribution::coverage_factor;
@@ -333,8 +333,6 @@ fn coefficient(problem: &Problem, options: &Options, part: &Part, l: usize, valu
         status = Status::BoundContradicted;
     }
     let lifted = row(part.lift.as_ref(), l);
-    let alone = part.block.scale[l] * norm(&lifted);
-    let is_plain = part.block.components.len() == 1 && part.estimate.n_priors == 0;
     FitCoefficient {
         name: name.clone(),
         status,
@@ -343,7 +341,6 @@ fn coefficient(problem: &Problem, options: &Options, part: &Part, l: usize, valu
         interval,
         dof,
         unconstrained: Some(free),
-        inflation: is_plain.then_some(alone * alone),
         most: part.core.freedom.of(&lifted).and_then(|robust| robust.most),
     }
 }

@@ -47,8 +47,6 @@ pub struct FitCoefficient {
     pub dof: Option<f64>,
     /// The estimate without bounds and inequalities.
     pub unconstrained: Option<f64>,
-    /// Variance relative to that of the same column alone, ≥ 1.
-    pub inflation: Option<f64>,
     /// The row (HC3) or cluster (CR3) that tells most of its variance, and how much of it \[-\].
     pub most: Option<(usize, f64)>,
 }
@@ -64,7 +62,6 @@ impl FitCoefficient {
             interval: None,
             dof: None,
             unconstrained: None,
-            inflation: None,
             most: None,
         }
     }

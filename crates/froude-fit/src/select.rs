@@ -7,8 +7,7 @@
 //! | does it predict beyond the range it saw?     | [`range_block`]               |
 //! | does it fit as well as the repeats allow?    | [`lack_of_fit`]               |
 //!
-//! A question that the data cannot answer is [`Score::NotScorable`], with the
-//! reason, and not a number.
+//! A question that the data cannot answer has a reason instead of a number.
 
 mod aicc;
 mod group_out;
@@ -16,50 +15,20 @@ mod lack_of_fit;
 mod range_block;
 
 pub use aicc::{TooFewRows, aicc};
-pub use group_out::{GroupScore, leave_one_group_out};
+pub use group_out::leave_one_group_out;
 pub use lack_of_fit::{LackOfFit, lack_of_fit};
-pub use range_block::{BlockScore, RangeBlock, range_block};
+pub use range_block::{RangeBlock, range_block};
 
 use crate::options::{CovarianceKind, Options};
 use crate::problem::Problem;
-
-/// A score, or why there is none.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Score<T> {
-    /// The score.
-    Scored(T),
-    /// There is none.
-    NotScorable {
-        /// Why.
-        reason: String,
-    },
-}
-
-impl<T> Score<T> {
-    /// The score, if there is one.
-    pub fn scored(self) -> Option<T> {
-        match self {
-            Self::Scored(score) => Some(score),
-            Self::NotScorable { .. } => None,
-        }
-    }
-
-    /// The score, if there is one.
-    pub fn as_ref(&self) -> Option<&T> {
-        match self {
-            Self::Scored(score) => Some(score),
-            Self::NotScorable { .. } => None,
-        }
-    }
-}
 
 /// A score of one component.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComponentScore<T> {
     /// The component.
     pub component: String,
-    /// Its score.
-    pub score: Score<T>,
+    /// Its score, or why there is none.
+    pub score: Result<T, String>,
 }
 
 /// The rows to train on, as a problem without components that lost all rows.

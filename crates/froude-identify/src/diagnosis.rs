@@ -80,7 +80,7 @@ fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f
     let options = fit::Options { covariance: fit::CovarianceKind::Classical, ..options };
     let refitted = (model.declared.ncols() > 0).then(|| fit::fit(&clear, &options).ok()).flatten();
     match fit::select::lack_of_fit(&clear, refitted.as_ref().unwrap_or(&model.fit), &stacked) {
-        Ok(tests) => tests.into_iter().filter_map(|t| t.score.as_ref().map(|s| (t.component.clone(), s.p))).collect(),
+        Ok(tests) => tests.into_iter().filter_map(|t| Some((t.component, t.score.ok()?.p))).collect(),
         Err(_) => indexmap::IndexMap::new(),
     }
 }

@@ -1,33 +1,21 @@
 //! Prediction of each group from all others.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use super::{ComponentScore, Score, predicting, training};
+use super::{ComponentScore, predicting, training};
 use crate::block::{Block, blocks};
 use crate::error::FitError;
 use crate::linear::fit;
 use crate::options::{Loss, Options};
 use crate::problem::{Problem, size};
 
-/// How well left-out groups are predicted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GroupScore {
-    /// Root mean square error over all rows, unit of the response.
-    pub rmse: f64,
-    /// The group predicted worst.
-    pub worst_group: usize,
-    /// Its root mean square error.
-    pub worst_rmse: f64,
-    /// Groups left out, one at a time.
-    pub n_groups: usize,
-}
-
 /// Fewest groups: with two, each would be predicted from a single other one.
 const FEWEST_GROUPS: usize = 3;
 
-/// Predicts each group (a configuration, for example) from a fit to all others.
+/// Predicts each group (a configuration, for example) from a fit to all others: the root mean square error over all rows, in the unit of
+/// the response.
 ///
 /// `groups` has an entry per row. A component is not scorable with fewer than
 /// three groups, or when the others do not determine what a group needs.
@@ -39,7 +27,7 @@ pub fn leave_one_group_out(
     problem: &Problem,
     options: &Options,
     groups: &[usize],
-) -> Result<Vec<ComponentScore<GroupScore>>, FitError> {
+) -> Result<Vec<ComponentScore<f64>>, FitError> {
     problem.check()?;
     options.check(problem)?;
     let n = problem.n_rows();
@@ -82,11 +70,8 @@ pub fn leave_one_group_out(
 /// Most rows that are fitted again and again, groups times rows, where every fit needs all of them.
 const MOST_REFITTED: usize = 5_000_000;
 
-fn not_scored(problem: &Problem, reason: &str) -> Vec<ComponentScore<GroupScore>> {
-    let score = |name: &String| ComponentScore {
-        component: name.clone(),
-        score: Score::NotScorable { reason: reason.to_owned() },
-    };
+fn not_scored(problem: &Problem, reason: &str) -> Vec<ComponentScore<f64>> {
+    let score = |name: &String| ComponentScore { component: name.clone(), score: Err(reason.to_owned()) };
     problem.components.iter().map(score).collect()
 }
 
@@ -196,47 +181,18 @@ fn triangle(matrix: Mat<f64>) -> Mat<f64> {
     matrix.qr().thin_R().to_owned()
 }
 
-fn score(rows: &[usize], groups: &[usize], error: &[Result<f64, usize>]) -> Score<GroupScore> {
-    let present: BTreeSet<usize> = rows.iter().map(|&i| groups[i]).collect();
-    if present.len() < FEWEST_GROUPS {
-        return Score::NotScorable {
-            reason: format!(
-                "leaving one group out needs {FEWEST_GROUPS} groups, and there {} {}",
-                if present.len() == 1 { "is" } else { "are" },
-                present.len()
-            ),
-        };
+fn score(rows: &[usize], groups: &[usize], error: &[Result<f64, usize>]) -> Result<f64, String> {
+    let mut squares: BTreeMap<usize, f64> = rows.iter().map(|&i| (groups[i], 0.0)).collect();
+    let present = squares.len();
+    if present < FEWEST_GROUPS {
+        let are = if present == 1 { "is" } else { "are" };
+        return Err(format!("leaving one group out needs {FEWEST_GROUPS} groups, and there {are} {present}"));
     }
-    let mut squares: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
     for &i in rows {
-        match error[i] {
-            Ok(e) => {
-                let (sum, count) = squares.entry(groups[i]).or_default();
-                *sum += e * e;
-                *count += 1.0;
-            }
-            Err(group) => {
-                return Score::NotScorable {
-                    reason: format!("without group {group} the others do not determine its prediction"),
-                };
-            }
-        }
+        let undetermined = |group| format!("without group {group} the others do not determine its prediction");
+        *squares.entry(groups[i]).or_default() += error[i].map_err(undetermined)?.powi(2);
     }
-    let mut total = 0.0;
-    let mut worst = (0, -1.0);
-    for (group, (sum, count)) in squares {
-        total += sum;
-        let rmse = f64::sqrt(sum / count);
-        if rmse > worst.1 {
-            worst = (group, rmse);
-        }
-    }
-    Score::Scored(GroupScore {
-        rmse: (total / rows.len() as f64).sqrt(),
-        worst_group: worst.0,
-        worst_rmse: worst.1,
-        n_groups: present.len(),
-    })
+    Ok((squares.values().sum::<f64>() / rows.len() as f64).sqrt())
 }
 
 #[cfg(test)]
@@ -303,6 +259,6 @@ mod tests {
         let (problem, groups) = problem(true);
         assert!(!is_weighed_alone(&problem, &Options::default()).unwrap());
         let scores = leave_one_group_out(&problem, &Options::default(), &groups).unwrap();
-        assert!(scores.iter().all(|s| matches!(s.score, Score::Scored(_))), "{scores:?}");
+        assert!(scores.iter().all(|s| s.score.is_ok()), "{scores:?}");
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{ComponentScore, Score};
+use super::ComponentScore;
 use crate::distribution::f_upper;
 use crate::error::FitError;
 use crate::outcome::Fit;
@@ -11,8 +11,6 @@ use crate::problem::{Problem, size};
 /// Residuals of a model against the scatter of repeated settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LackOfFit {
-    /// Standard deviation of repeats (of weight one): pure error.
-    pub pure_sigma: f64,
     /// Degrees of freedom of lack of fit and of pure error.
     pub dof: [f64; 2],
     /// Sum of squares of lack of fit over its degrees of freedom, over pure variance.
@@ -54,28 +52,20 @@ pub fn lack_of_fit(
             let pure: f64 = groups.values().map(|rows| scatter(problem, rows)).sum();
             let pure_dof = (component.n - groups.len()) as f64;
             let lack_dof = component.dof - pure_dof;
+            let not = |reason: &str| Err(reason.to_owned());
             let score = if pure_dof < 0.5 {
-                not_scorable("no setting was repeated")
+                not("no setting was repeated")
             } else if lack_dof < 0.5 {
-                not_scorable("the model has as many coefficients as there are settings")
+                not("the model has as many coefficients as there are settings")
             } else if pure == 0.0 {
-                not_scorable("the repeats are identical: copies, or resolution too coarse")
+                not("the repeats are identical: copies, or resolution too coarse")
             } else {
                 let f = ((component.rss - pure).max(0.0) / lack_dof) / (pure / pure_dof);
-                Score::Scored(LackOfFit {
-                    pure_sigma: (pure / pure_dof).sqrt(),
-                    dof: [lack_dof, pure_dof],
-                    f,
-                    p: f_upper(f, lack_dof, pure_dof),
-                })
+                Ok(LackOfFit { dof: [lack_dof, pure_dof], f, p: f_upper(f, lack_dof, pure_dof) })
             };
             ComponentScore { component: component.name.clone(), score }
         })
         .collect())
-}
-
-fn not_scorable(reason: &str) -> Score<LackOfFit> {
-    Score::NotScorable { reason: reason.to_owned() }
 }
 
 /// Weighted sum of squares about the weighted mean.

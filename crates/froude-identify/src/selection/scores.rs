@@ -61,8 +61,8 @@ pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
             let mut out = Score { rmse: Vec::new(), note: None };
             for score in scores {
                 match score.score {
-                    fit::select::Score::Scored(s) => out.rmse.push((score.component, s.rmse)),
-                    fit::select::Score::NotScorable { reason } => {
+                    Ok(rmse) => out.rmse.push((score.component, rmse)),
+                    Err(reason) => {
                         out.note = Some(if names.len() < 3 {
                             format!(
                                 "not possible: leaving one configuration out needs at least three configurations; the table has {}",
