@@ -4,6 +4,7 @@
 //! fluid exerts on the body. `speed` and `angle` belong to the velocity by
 //! v = (U cos θ, −U sin θ), so that `angle ≡ atan2(−v_y, v_x)`.
 
+use froude_records::table::{Column, ColumnData};
 use froude_records::texts::Texts;
 use froude_records::units::Dimension;
 use indexmap::{IndexMap, IndexSet};
@@ -107,6 +108,13 @@ impl Dataset {
     #[must_use]
     pub fn values(&self, name: &str) -> Option<&[f64]> {
         self.channels.get(name).map(|c| c.values.as_slice())
+    }
+
+    /// Configuration, setup and run as columns, where they have names.
+    pub(crate) fn named_columns(&self) -> impl Iterator<Item = Column> {
+        let all = [("configuration", &self.configuration), ("setup", &self.setup), ("run", &self.run)];
+        let named = all.into_iter().filter(|(_, texts)| texts.iter().any(|text| !text.is_empty()));
+        named.map(|(name, texts)| Column { name: name.to_owned(), data: ColumnData::Text(texts.clone()) })
     }
 
     /// The dimension of a channel, if the table has it.

@@ -54,11 +54,7 @@ pub fn largest_power_w(law: &ForceLaw, data: &Dataset, coefficients: &[f64]) -> 
         let v = grid.velocity_m_s(i);
         let (mut power, mut size) = (0.0, 0.0);
         for (r, name) in law.responses.iter().enumerate() {
-            let speed = match name.as_str() {
-                "f_x" => v[0],
-                "f_y" => v[1],
-                _ => 0.0,
-            };
+            let speed = along(name, v);
             power += force[r * n + i] * speed;
             size += (force[r * n + i] * speed).abs();
         }
@@ -84,11 +80,7 @@ pub fn constraints(law: &ForceLaw, data: &Dataset, p: usize) -> Result<Vec<Const
         let v = grid.velocity_m_s(i);
         let mut row = vec![0.0; p];
         for (r, name) in law.responses.iter().enumerate() {
-            let speed = match name.as_str() {
-                "f_x" => v[0],
-                "f_y" => v[1],
-                _ => 0.0,
-            };
+            let speed = along(name, v);
             for (j, value) in row.iter_mut().enumerate().take(law.coefficients.len()) {
                 *value += speed * x[(r * n + i, j)];
             }
@@ -102,4 +94,13 @@ pub fn constraints(law: &ForceLaw, data: &Dataset, p: usize) -> Result<Vec<Const
         }
     }
     Ok(out)
+}
+
+/// The speed along a load's axis; loads about an axis give no power here.
+fn along(load: &str, [v_x, v_y]: [f64; 2]) -> f64 {
+    match load {
+        "f_x" => v_x,
+        "f_y" => v_y,
+        _ => 0.0,
+    }
 }

@@ -384,6 +384,12 @@ impl ForceLaw {
         Ok(out)
     }
 
+    /// What an estimate gives its coefficients, in their order; the name of the first that has no value.
+    pub(crate) fn values_of<'a>(&'a self, estimate: &Estimate) -> Result<Vec<f64>, &'a str> {
+        let value = |name: &'a str| estimate.coefficients.get(name).and_then(|c| c.value).ok_or(name);
+        self.coefficients.iter().map(|c| value(&c.name)).collect()
+    }
+
     /// Place of a coefficient by name.
     #[must_use]
     pub fn position(&self, name: &str) -> Option<usize> {

@@ -42,11 +42,7 @@ pub fn tables(sources: &[Answer], campaign: &Campaign) -> Result<Vec<Table>, Ide
 fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, IdentifyError> {
     let data = &source.data;
     let mut columns = vec![number("line", &data.line.iter().map(|&l| l as f64).collect::<Vec<_>>(), Unit::one())];
-    for (name, texts) in [("configuration", &data.configuration), ("setup", &data.setup), ("run", &data.run)] {
-        if texts.iter().any(|t| !t.is_empty()) {
-            columns.push(Column { name: name.to_owned(), data: ColumnData::Text(texts.clone()) });
-        }
-    }
+    columns.extend(data.named_columns());
     for (name, channel) in &data.channels {
         let unit = match name.as_str() {
             "angle" => parse_unit("deg").unwrap_or_else(|_| Unit::si(channel.dimension)),

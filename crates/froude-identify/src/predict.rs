@@ -140,11 +140,8 @@ pub fn predict(estimate: &Estimate, others: &[&Estimate], data: &Dataset) -> Res
 fn by_law(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyError> {
     let data = &with_loads(estimate, data);
     let law = ForceLaw::of_estimate(estimate, data)?;
-    let value = |name: &str| estimate.coefficients.get(name).and_then(|c| c.value);
-    let values = law.coefficients.iter().map(|c| {
-        value(&c.name).ok_or_else(|| IdentifyError::NoValue { id: estimate.id.clone(), coefficient: c.name.clone() })
-    });
-    let values: Vec<f64> = values.collect::<Result<_, _>>()?;
+    let unknown = |name: &str| IdentifyError::NoValue { id: estimate.id.clone(), coefficient: name.to_owned() };
+    let values = law.values_of(estimate).map_err(unknown)?;
     let forces = law.predict(data, &values)?;
     let slopes = Slopes::of(estimate, &law, &law.regressors(data, &values)?);
     let refused = estimate.without_interval();

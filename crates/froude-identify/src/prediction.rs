@@ -427,11 +427,7 @@ impl Prediction {
             Column { name: name.to_owned(), data: ColumnData::Number { dimension: unit.dimension, unit, si } }
         };
         let mut columns = vec![of_unit("line", "1", data.line.iter().map(|l| *l as f64).collect())];
-        for (name, texts) in [("configuration", &data.configuration), ("run", &data.run)] {
-            if texts.iter().any(|text| !text.is_empty()) {
-                columns.push(Column { name: name.to_owned(), data: ColumnData::Text(texts.clone()) });
-            }
-        }
+        columns.extend(data.named_columns().filter(|column| column.name != "setup"));
         for (name, unit) in [("speed", "m/s"), ("angle", "deg")] {
             columns.extend(data.values(name).map(|values| of_unit(name, unit, values.to_vec())));
         }

@@ -82,12 +82,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         relative_residual(law, data, &coefficients, &job.newtons, &mut fitted)?;
     }
     findings.extend(beside_priors(law, data, settings, &problem, &options, &job.specs)?);
-    let at = Linearised {
-        law,
-        data,
-        coefficients: &coefficients[..law.coefficients.len()],
-        sensitivity: &fitted.sensitivity,
-    };
+    let at = Linearised::about(law, data, &coefficients, &fitted);
     let declared = if whitened.is_some() || settings.condensed.is_some() {
         Mat::zeros(problem.n_rows(), 0)
     } else {

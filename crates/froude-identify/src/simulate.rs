@@ -90,16 +90,11 @@ pub fn truth(campaign: &Campaign, data: &Dataset) -> Result<(ForceLaw, Vec<f64>)
             let file = read_estimates(path)?;
             let estimate = crate::select::one_estimate(&file, select.as_deref(), path)?;
             let law = ForceLaw::of_estimate(estimate, data)?;
-            let values = law
-                .coefficients
-                .iter()
-                .map(|c| {
-                    estimate.coefficients.get(&c.name).and_then(|c| c.value).ok_or_else(|| IdentifyError::Campaign {
-                        place: path.display().to_string(),
-                        what: format!("{} does not state {}, which a truth needs", estimate.id, c.name),
-                    })
-                })
-                .collect::<Result<_, _>>()?;
+            let unknown = |name: &str| IdentifyError::Campaign {
+                place: path.display().to_string(),
+                what: format!("{} does not state {name}, which a truth needs", estimate.id),
+            };
+            let values = law.values_of(estimate).map_err(unknown)?;
             Ok((law, values))
         }
         Truth::Coefficients { model, values } => {
@@ -215,12 +210,7 @@ pub fn table(data: &Dataset, source: &Source) -> Result<Table, IdentifyError> {
         froude_records::campaign::Input::Table(path) => path.clone(),
         _ => std::path::PathBuf::from(format!("{}.csv", source.name)),
     };
-    let mut columns = Vec::new();
-    for (name, text) in [("configuration", &data.configuration), ("setup", &data.setup), ("run", &data.run)] {
-        if text.iter().any(|t| !t.is_empty()) {
-            columns.push(Column { name: name.to_owned(), data: ColumnData::Text(text.clone()) });
-        }
-    }
+    let mut columns: Vec<Column> = data.named_columns().collect();
     for (name, unit) in [("repeat", "1"), ("speed", "m/s"), ("angle", "deg"), ("f_x", "N"), ("f_y", "N")] {
         if let Some(channel) = data.channels.get(name) {
             let unit = unit_of(unit);

@@ -41,15 +41,9 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Vec<SharedError>, Ve
     let estimate = crate::select::one_estimate(&file, tare.select.as_deref(), &tare.record)?;
     let law = ForceLaw::of_estimate(estimate, data)?;
     let complaint = |what: String| IdentifyError::Campaign { place: tare.record.display().to_string(), what };
-    let values = law
-        .coefficients
-        .iter()
-        .map(|c| {
-            estimate.coefficients.get(&c.name).and_then(|c| c.value).ok_or_else(|| {
-                complaint(format!("{} does not determine {}; use another model as tare", estimate.id, c.name))
-            })
-        })
-        .collect::<Result<Vec<f64>, _>>()?;
+    let unknown =
+        |name: &str| complaint(format!("{} does not determine {name}; use another model as tare", estimate.id));
+    let values = law.values_of(estimate).map_err(unknown)?;
     if let Some(missing) = law.responses.iter().find(|r| data.values(r).is_none()) {
         return Err(complaint(format!("{} gives {missing}, which the table does not measure", estimate.id)));
     }

@@ -119,6 +119,13 @@ pub struct Linearised<'a> {
     pub sensitivity: &'a Mat<f64>,
 }
 
+impl<'a> Linearised<'a> {
+    /// About the coefficients of a fit, whose law's come first.
+    pub(crate) fn about(law: &'a ForceLaw, data: &'a Dataset, coefficients: &'a [f64], fitted: &'a fit::Fit) -> Self {
+        Self { law, data, coefficients: &coefficients[..law.coefficients.len()], sensitivity: &fitted.sensitivity }
+    }
+}
+
 /// The contribution of every entry of the budget and of every shared error. `campaign` is the key of the campaign that declares the budget;
 /// empty where none does.
 ///

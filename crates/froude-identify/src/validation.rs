@@ -320,9 +320,7 @@ struct Prediction {
 impl Prediction {
     fn of(estimate: &Estimate, data: &Dataset) -> Option<Self> {
         let law = ForceLaw::of_estimate(estimate, data).ok()?;
-        let values: Option<Vec<f64>> =
-            law.coefficients.iter().map(|c| estimate.coefficients.get(&c.name)?.value).collect();
-        let values = values?;
+        let values = law.values_of(estimate).ok()?;
         let force = law.predict(data, &values).ok()?;
         let standard = match estimate.covariance() {
             None => Vec::new(),

@@ -129,9 +129,7 @@ impl<'a> Prediction<'a> {
     /// Without others.
     fn of_law(named: &Named<'a>, label: &'a String, data: &Dataset) -> Option<Self> {
         let law = ForceLaw::of_estimate(named.estimate, data).ok()?;
-        let values: Option<Vec<f64>> =
-            law.coefficients.iter().map(|c| named.estimate.coefficients.get(&c.name)?.value).collect();
-        let values = values?;
+        let values = law.values_of(named.estimate).ok()?;
         let (force, slopes) = (law.predict(data, &values).ok()?, law.regressors(data, &values).ok()?);
         Some(Self { named: *named, label, law, force, slopes, others: Vec::new() })
     }

@@ -43,7 +43,7 @@ pub(crate) fn beside_priors(
         return Ok(Vec::new());
     };
     let values = step(&free);
-    let at = Linearised { law, data, coefficients: &values[..law.coefficients.len()], sensitivity: &free.sensitivity };
+    let at = Linearised::about(law, data, &values, &free);
     let declared = contributions(
         at,
         settings.budget,

@@ -7,9 +7,7 @@ use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw, Kind};
 use crate::regression::fitted::Settings;
-use crate::regression::problem::{
-    GroupOffsets, OffsetSetups, group_offsets, logarithms, offset_setups, problem, start, step, weights,
-};
+use crate::regression::problem::{Offsets, logarithms, problem, start, step, weights};
 
 /// Iterations of the non-linear parts (power law, angle offset); both converge quadratically.
 const MOST_ITERATIONS: usize = 50;
@@ -26,8 +24,8 @@ pub(crate) struct Job<'a> {
     /// What is fitted: the loads, or the logarithms of their absolute values.
     measured: Vec<f64>,
     pub(crate) weight: Option<Vec<f64>>,
-    setups: OffsetSetups,
-    groups: GroupOffsets,
+    setups: Offsets,
+    groups: Offsets,
     /// Coefficients of the law, then the angle offset of each setup, then the offset of each group in each load.
     pub(crate) specs: Vec<CoefficientSpec>,
 }
@@ -36,13 +34,13 @@ impl<'a> Job<'a> {
     pub(crate) fn new(law: &'a ForceLaw, data: &'a Dataset, settings: Settings<'a>) -> Result<Self, IdentifyError> {
         let newtons = law.measured(data)?;
         let measured = if law.in_logarithms() { logarithms(law, &newtons, data, settings)? } else { newtons.clone() };
-        let setups = offset_setups(law, data, settings.identify);
+        let setups = Offsets::of_setups(law, data, settings.identify);
         let mut specs = law.coefficients.clone();
         specs.extend(setups.names.iter().map(|s| CoefficientSpec {
             name: format!("angle_offset{}{s}", if s.is_empty() { "" } else { "_" }),
             unit: "rad".to_owned(),
         }));
-        let groups = group_offsets(law, data, settings.identify);
+        let groups = Offsets::of_groups(law, data, settings.identify);
         if settings.identify.group_offset && law.is_nonlinear() {
             return Err(IdentifyError::NoFit {
                 source_name: settings.source_name.to_owned(),

@@ -2,6 +2,7 @@
 
 use froude_fit as fit;
 use froude_records::campaign::{AngleOffset, Identify};
+use froude_records::texts::Texts;
 
 use crate::dataset::{Dataset, distinct, labels};
 use crate::error::IdentifyError;
@@ -40,35 +41,32 @@ pub(crate) fn logarithms(
         .collect()
 }
 
-/// Setups whose angle offset is estimated, and the setup of each row.
-pub(crate) struct OffsetSetups {
+/// Setups or groups that have an offset of their own, and that of each row.
+#[derive(Default)]
+pub(crate) struct Offsets {
     pub(crate) names: Vec<String>,
     of_row: Vec<usize>,
 }
 
-pub(crate) fn offset_setups(law: &ForceLaw, data: &Dataset, identify: &Identify) -> OffsetSetups {
-    let both_loads = law.responses == ["f_x", "f_y"];
-    // A row is turned with both of its loads.
-    let is_whole = law.responses.iter().all(|load| !data.observed.contains_key(load));
-    if identify.angle_offset != AngleOffset::Estimate || !both_loads || !is_whole {
-        return OffsetSetups { names: Vec::new(), of_row: Vec::new() };
+impl Offsets {
+    fn of(texts: &Texts) -> Self {
+        Self { names: distinct(texts), of_row: labels(texts) }
     }
-    OffsetSetups { names: distinct(&data.setup), of_row: labels(&data.setup) }
-}
 
-/// Groups that have an offset of their own in each load, and the group of each row.
-pub(crate) struct GroupOffsets {
-    pub(crate) names: Vec<String>,
-    of_row: Vec<usize>,
-}
+    /// Setups whose angle offset is estimated.
+    pub(crate) fn of_setups(law: &ForceLaw, data: &Dataset, identify: &Identify) -> Self {
+        let both_loads = law.responses == ["f_x", "f_y"];
+        // A row is turned with both of its loads.
+        let is_whole = law.responses.iter().all(|load| !data.observed.contains_key(load));
+        let is_asked = identify.angle_offset == AngleOffset::Estimate && both_loads && is_whole;
+        if is_asked { Self::of(&data.setup) } else { Self::default() }
+    }
 
-/// Those of `group_offset = "estimate"`; none for a law that is fitted by steps, whose start knows no offset.
-pub(crate) fn group_offsets(law: &ForceLaw, data: &Dataset, identify: &Identify) -> GroupOffsets {
-    match &data.group {
-        Some(group) if identify.group_offset && !law.is_nonlinear() => {
-            GroupOffsets { names: distinct(group), of_row: labels(group) }
-        }
-        _ => GroupOffsets { names: Vec::new(), of_row: Vec::new() },
+    /// Groups that have an offset in each load, of `group_offset = "estimate"`; none for a law that is fitted by steps, whose start knows no
+    /// offset.
+    pub(crate) fn of_groups(law: &ForceLaw, data: &Dataset, identify: &Identify) -> Self {
+        let group = data.group.as_ref().filter(|_| identify.group_offset && !law.is_nonlinear());
+        group.map_or_else(Self::default, Self::of)
     }
 }
 
@@ -82,7 +80,7 @@ pub(crate) fn problem(
     specs: &[CoefficientSpec],
     measured: &[f64],
     weight: Option<Vec<f64>>,
-    (setups, groups): (&OffsetSetups, &GroupOffsets),
+    (setups, groups): (&Offsets, &Offsets),
     beta: &[f64],
 ) -> Result<fit::Problem, IdentifyError> {
     let n = data.rows;

@@ -43,12 +43,7 @@ impl Uncertainty {
     ) -> Result<Self, IdentifyError> {
         let p = fitted.coefficients.len();
         let coefficients = step(fitted);
-        let at = Linearised {
-            law,
-            data,
-            coefficients: &coefficients[..law.coefficients.len()],
-            sensitivity: &fitted.sensitivity,
-        };
+        let at = Linearised::about(law, data, &coefficients, fitted);
         let is_measured = settings.kind != SourceKind::Cfd;
         let mut declared = contributions(at, settings.budget, settings.campaign, settings.shared_errors, is_measured)?;
         if in_variables {
