@@ -149,9 +149,9 @@ impl Solution {
     fn undetermined(&self, parameter: usize) -> NonlinearError {
         let Parameter { name, run, .. } = &self.parameters[parameter];
         let why = if run.is_some() {
-            "it belongs to one run alone; use its profile likelihood"
+            "it belongs to one run alone"
         } else if self.at_bound[parameter] {
-            "it lies on a bound; use its profile likelihood"
+            "it lies on a bound"
         } else {
             "the data do not determine it; fix it, or add data that depend on it"
         };
