@@ -18,76 +18,51 @@ const MOST_ANGLES: usize = 5;
 /// Curves against angle, one a speed: they lie apart, and a drift test has few; more shades cannot be distinguished.
 const MOST_SPEEDS: usize = 12;
 
-/// Lines of the recommended model: against speed at the most frequent angles, against angle at the most frequent speeds.
+/// Lines of the recommended model: against speed at the most frequent angles, against angle at the most frequent speeds, or against another
+/// channel.
 pub(super) fn of(source: &SourceResult, model: &ModelFit, data: &Dataset) -> Result<Vec<Curve>, IdentifyError> {
-    if let Some(channel) = abscissa(model, data) {
-        return other_curves(source, model, data, &channel);
-    }
+    let other = abscissa(model, data);
+    let moved = other.as_deref().map_or_else(|| vec!["speed", "angle", "v_x", "v_y"], |channel| vec![channel]);
     let mut out = Vec::new();
     for configuration in data.configurations() {
         let rows: Vec<usize> = (0..data.rows).filter(|&i| data.configuration[i] == configuration).collect();
-        let of = |name: &str| -> Vec<f64> {
-            data.values(name).map_or_else(|| vec![0.0; rows.len()], |v| rows.iter().map(|&i| v[i]).collect())
+        let held = held(model, data, &rows, &moved);
+        let lines = match &other {
+            Some(channel) => over_channel(data, channel).into_iter().collect(),
+            None => over_motion(data, &rows),
         };
-        let (by_angle, by_speed) = (settings_of_angle(&of("angle")), settings_of_speed(&of("speed")));
-        let angles = frequent(&by_angle, &by_speed, MOST_ANGLES);
-        let speeds = frequent(&by_speed, &by_angle, MOST_SPEEDS);
-        let range = |name: &str| {
-            let v = data.values(name).unwrap_or_default();
-            rows.iter()
-                .map(|&i| v.get(i).copied().unwrap_or(0.0))
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
-        };
-        let held = held(model, data, &rows, &["speed", "angle", "v_x", "v_y"]);
-        let (slowest, fastest) = range("speed");
-        let (least, most) = range("angle");
-        for angle in angles {
-            let x = line(slowest.min(0.0), fastest.max(0.0));
-            let places = place(data, &rows, &held, &x, |d, x| {
-                d.put("speed", x.to_vec(), Dimension::SPEED);
-                d.put("angle", vec![angle; x.len()], Dimension::ONE);
-                d.velocity_from_speed_and_angle();
-            });
-            let of = Along { configuration: &configuration, x: &x, against: Against::Speed { angle_rad: angle } };
-            out.extend(bands(source, model, &places, &of, &held)?);
-        }
-        if most > least {
-            for speed in speeds {
-                let x = line(least, most);
-                let places = place(data, &rows, &held, &x, |d, x| {
-                    d.put("speed", vec![speed; x.len()], Dimension::SPEED);
-                    d.put("angle", x.to_vec(), Dimension::ONE);
-                    d.velocity_from_speed_and_angle();
-                });
-                let of = Along { configuration: &configuration, x: &x, against: Against::Angle { speed_m_s: speed } };
-                out.extend(bands(source, model, &places, &of, &held)?);
-            }
+        for line in lines {
+            out.extend(bands(source, model, data, &rows, line, &held)?);
         }
     }
     Ok(out)
 }
 
-fn other_curves(
-    source: &SourceResult,
-    model: &ModelFit,
-    data: &Dataset,
-    channel: &str,
-) -> Result<Vec<Curve>, IdentifyError> {
-    let Some(values) = data.values(channel) else { return Ok(Vec::new()) };
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let dimension = data.dimension(channel).unwrap_or(Dimension::ONE);
-    let x = line(low, high);
-    let against = Against::Other { quantity: channel.to_owned(), unit: dimension.to_string() };
-    let mut out = Vec::new();
-    for configuration in data.configurations() {
-        let rows: Vec<usize> = (0..data.rows).filter(|&i| data.configuration[i] == configuration).collect();
-        let held = held(model, data, &rows, &[channel]);
-        let places = place(data, &rows, &held, &x, |d, x| d.put(channel, x.to_vec(), dimension));
-        let of = Along { configuration: &configuration, x: &x, against: against.clone() };
-        out.extend(bands(source, model, &places, &of, &held)?);
-    }
-    Ok(out)
+/// Places on a line, and what it runs against.
+type Line = (Vec<f64>, Against);
+
+fn over_motion(data: &Dataset, rows: &[usize]) -> Vec<Line> {
+    let of = |name: &str| -> Vec<f64> {
+        data.values(name).map_or_else(|| vec![0.0; rows.len()], |v| rows.iter().map(|&i| v[i]).collect())
+    };
+    let (speed, angle) = (of("speed"), of("angle"));
+    let (by_angle, by_speed) = (settings_of_angle(&angle), settings_of_speed(&speed));
+    let ((slowest, fastest), (least, most)) = (ends(&speed), ends(&angle));
+    let angles = frequent(&by_angle, &by_speed, MOST_ANGLES).into_iter();
+    let speeds = frequent(&by_speed, &by_angle, MOST_SPEEDS).into_iter().filter(|_| most > least);
+    let at_angle = |angle_rad| (line(slowest.min(0.0), fastest.max(0.0)), Against::Speed { angle_rad });
+    let at_speed = |speed_m_s| (line(least, most), Against::Angle { speed_m_s });
+    angles.map(at_angle).chain(speeds.map(at_speed)).collect()
+}
+
+fn over_channel(data: &Dataset, channel: &str) -> Option<Line> {
+    let (low, high) = ends(data.values(channel)?);
+    let unit = data.dimension(channel).unwrap_or(Dimension::ONE).to_string();
+    Some((line(low, high), Against::Other { quantity: channel.to_owned(), unit }))
+}
+
+fn ends(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)))
 }
 
 fn line(low: f64, high: f64) -> Vec<f64> {
@@ -105,40 +80,45 @@ fn held(model: &ModelFit, data: &Dataset, rows: &[usize], moved: &[&str]) -> Vec
     model.law.channels().into_iter().filter(|name| !moved.contains(name)).filter_map(at_median).collect()
 }
 
-/// Copies of the first of these observations, moved along a line.
-fn place(data: &Dataset, rows: &[usize], held: &[Abscissa], x: &[f64], set: impl Fn(&mut Dataset, &[f64])) -> Dataset {
-    let mut out = data.subset(&vec![rows.first().copied().unwrap_or(0); x.len()]);
-    for Abscissa { quantity, value, .. } in held {
-        let dimension = data.dimension(quantity).unwrap_or(Dimension::ONE);
-        out.put(quantity, vec![*value; x.len()], dimension);
-    }
-    set(&mut out, x);
-    out
-}
-
-/// The line that places lie on.
-struct Along<'a> {
-    configuration: &'a str,
-    x: &'a [f64],
-    against: Against,
-}
-
+/// Loads and bands at copies of the first of these observations, moved along a line.
 fn bands(
     source: &SourceResult,
     model: &ModelFit,
-    places: &Dataset,
-    along: &Along<'_>,
+    data: &Dataset,
+    rows: &[usize],
+    (x, against): Line,
     held: &[Abscissa],
 ) -> Result<Vec<Curve>, IdentifyError> {
-    let bands = envelope::of_source(source, places)?;
+    let first = rows.first().copied().unwrap_or(0);
+    let mut places = data.subset(&vec![first; x.len()]);
+    let mut put = |name: &str, values: Vec<f64>| {
+        places.put(name, values, data.dimension(name).unwrap_or(Dimension::ONE));
+    };
+    for Abscissa { quantity, value, .. } in held {
+        put(quantity, vec![*value; x.len()]);
+    }
+    let moves = match &against {
+        Against::Speed { angle_rad } => Some((x.clone(), vec![*angle_rad; x.len()])),
+        Against::Angle { speed_m_s } => Some((vec![*speed_m_s; x.len()], x.clone())),
+        Against::Other { quantity, .. } => {
+            put(quantity, x.clone());
+            None
+        }
+    };
+    if let Some((speed, angle)) = moves {
+        places.put("speed", speed, Dimension::SPEED);
+        places.put("angle", angle, Dimension::ONE);
+        places.velocity_from_speed_and_angle();
+    }
+    let bands = envelope::of_source(source, &places)?;
     let curve = |(response, bands): (&String, &[Band])| Curve {
-        configuration: along.configuration.to_owned(),
+        configuration: data.configuration[first].clone(),
         component: response.clone(),
-        unit: unit_text(places, response),
+        unit: unit_text(&places, response),
         model: model.law.name.clone(),
-        against: along.against.clone(),
+        against: against.clone(),
         held: held.to_vec(),
-        x: along.x.to_vec(),
+        x: x.clone(),
         y: bands.iter().map(|band| band.load).collect(),
         low: bands.iter().map(|band| band.low).collect(),
         high: bands.iter().map(|band| band.high).collect(),
