@@ -44,7 +44,7 @@ use crate::source::handed::{TABLE, merges_motions, scatter};
 use crate::source::{Asked, laws, reduced, with_recommended};
 
 pub use crate::large::limits::MOST_KEPT;
-pub(crate) use crate::large::limits::{Limits, refused_above};
+pub(crate) use crate::large::limits::{SAMPLE, refused_above};
 
 /// Most rows that are kept all the same where something is asked for that needs all of them at once: some 4 GB and minutes.
 const MOST_AT_ONCE: usize = 2_000_000;
@@ -56,14 +56,14 @@ const MOST_AT_ONCE: usize = 2_000_000;
 pub(crate) fn identify_source(
     campaign: &Campaign,
     source: &Source,
-    limits: Limits,
+    sample: usize,
     progress: &dyn Fn(&str),
 ) -> Result<Option<SourceResult>, IdentifyError> {
     if let Some(what) = at_once(campaign, source) {
         return Err(refused_above(MOST_AT_ONCE, source, what));
     }
     progress("the ranges of a long table");
-    let (mut facts, mut motions) = (Facts::new(limits.sample), Motions::default());
+    let (mut facts, mut motions) = (Facts::new(sample), Motions::default());
     let has_motions = merges_motions(campaign, source);
     each(campaign, source, true, &mut |chunk| {
         facts.take(chunk, source)?;

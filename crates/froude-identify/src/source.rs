@@ -7,7 +7,7 @@ use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::finding::{Finding, Severity};
 
 use crate::error::IdentifyError;
-use crate::large::{self, Limits};
+use crate::large;
 use crate::law::ForceLaw;
 use crate::lint::counts::Counts;
 use crate::reduce::{Observations, reduce};
@@ -33,7 +33,7 @@ pub fn identify_source(
 ) -> Result<SourceResult, IdentifyError> {
     if let Input::Table(path) = &source.input
         && large::is_long(campaign, source, path)
-        && let Some(result) = large::identify_source(campaign, source, Limits::default(), progress)?
+        && let Some(result) = large::identify_source(campaign, source, large::SAMPLE, progress)?
     {
         return Ok(result);
     }

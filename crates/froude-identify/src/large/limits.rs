@@ -10,19 +10,6 @@ pub(crate) const MOST_CLUSTERS: usize = 10_000;
 /// Most configurations of a body in one table.
 pub(crate) const MOST_CONFIGURATIONS: usize = 10_000;
 
-/// Sizes of what is kept.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
-    /// Rows of the sample.
-    pub sample: usize,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self { sample: SAMPLE }
-    }
-}
-
 /// What a table that is read in chunks cannot be asked for, with the way out.
 pub(crate) fn refusal(source: &Source, what: &str) -> IdentifyError {
     refused_above(MOST_KEPT, source, what)

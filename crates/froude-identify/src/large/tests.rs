@@ -12,7 +12,6 @@ use serde_json::Value;
 
 use super::identify_source;
 use crate::error::IdentifyError;
-use crate::large::limits::Limits;
 use crate::result::SourceResult;
 use crate::source::identify_source as in_memory;
 
@@ -21,7 +20,7 @@ const AGREE: f64 = 1e-10;
 /// Rows: two chunks of CSV and two of Parquet.
 const ROWS: usize = 20_000;
 /// A sample smaller than the table.
-const SMALL: Limits = Limits { sample: 1_000 };
+const SMALL: usize = 1_000;
 
 /// A planar record at 1 kHz of a body whose law is known; 10 runs of two configurations.
 fn record() -> String {
@@ -128,7 +127,7 @@ fn check(campaign: &Campaign) {
     }
     assert_eq!(rows.n_read, chunks.n_read);
     assert_eq!(rows.data.rows, chunks.data.observations());
-    assert_eq!(chunks.data.rows, SMALL.sample);
+    assert_eq!(chunks.data.rows, SMALL);
 }
 
 #[test]
