@@ -20,7 +20,7 @@
 //! | [`odr`]         | orthogonal distance regression: uncertain inputs                     |
 //! | [`stream`]      | more rows than memory holds, one pass                                |
 //! | [`wild`]        | wild cluster bootstrap                                               |
-//! | [`propagate`]   | shared input errors, effective degrees of freedom                    |
+//! | [`propagate`]   | combined and expanded uncertainty, effective degrees of freedom      |
 //! | [`budget`]      | what each error does to the coefficients, intervals, jackknife       |
 //! | [`residuals`], [`ratio`] | residuals of a component, exact tests of their independence and equal variances |
 //! | [`replicates`]  | scatter from replicates left out in turn, sums of such, a floor      |

@@ -51,4 +51,4 @@ pub use figures::{Figure, figures};
 pub use froude_records::page::{
     Abscissa, Against, BudgetRow, Curve, InputFile, Observed, Point, Report, SelectionRow, SourceSection,
 };
-pub use page::{file_stem, html};
+pub use page::html;

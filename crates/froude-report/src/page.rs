@@ -12,7 +12,7 @@ use froude_records::number;
 use froude_records::page::SourceSection;
 use maud::{Markup, PreEscaped, html};
 
-use crate::figures::drawing::{recommended, slug};
+use crate::figures::drawing::recommended;
 use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs};
 use crate::findings::findings_by_severity;
 use crate::sheet::{sheet, table_markup};
@@ -553,11 +553,4 @@ fn improve_first(source: &SourceSection) -> Markup {
             }
         }
     }
-}
-
-/// A file name for the page: the title, made safe.
-#[must_use]
-pub fn file_stem(report: &Report) -> String {
-    let stem = slug(&report.title);
-    if stem.is_empty() { "report".to_owned() } else { stem }
 }

@@ -15,11 +15,7 @@ pub(super) struct Folder {
 
 impl Folder {
     pub(super) fn new(shape: Shape) -> Self {
-        Self::at_level(shape, Level::detect())
-    }
-
-    fn at_level(shape: Shape, level: Level) -> Self {
-        let width = shape.width();
+        let (width, level) = (shape.width(), Level::detect());
         Self { shape, level, block: vec![Lane::ZERO; width * groups_per_block(width)], scratch: vec![0.0; 2 * width] }
     }
 
