@@ -8,6 +8,7 @@ mod between_runs;
 pub mod conditioning;
 pub mod decay;
 pub mod declared;
+mod drawn;
 pub mod excited_response;
 mod fluid;
 pub mod joint;

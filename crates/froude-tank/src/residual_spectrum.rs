@@ -1,7 +1,9 @@
 //! What a mean, a track or a fit leaves of the runs, as a chart of its power density.
 
-use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
+use froude_records::page::{Chart, ChartPanel, Mark, Scale};
 use froude_signal::spectrum::density;
+
+use crate::drawn::series;
 
 /// Segments that the shortest run is cut into, at least.
 const SEGMENTS: usize = 4;
@@ -46,13 +48,8 @@ pub(crate) fn chart(runs: &[Left], what: (&str, &str), says: &str) -> Option<Cha
     } else {
         "the runs".to_owned()
     };
-    let series = Series {
-        name: "residual".to_owned(),
-        mark: Mark::Line,
-        x: densities[0].0[lines.clone()].to_vec(),
-        y: lines.map(mean).collect(),
-        ..Series::default()
-    };
+    let frequencies = &densities[0].0[lines.clone()];
+    let series = series("residual", Mark::Line, frequencies, lines.map(mean).collect::<Vec<f64>>());
     Some(Chart {
         name: "residual-spectrum".to_owned(),
         title: "Spectrum of the residuals".to_owned(),

@@ -5,12 +5,13 @@ use std::f64::consts::TAU;
 use froude_identify::regression::ModelFit;
 use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
+use froude_records::page::{Chart, ChartPanel, Mark};
 use froude_records::run::ImportedRun;
 
 use super::law::names;
 use super::reduce::{Reduced, Setup};
 use super::rows::Rows;
+use crate::drawn::{self, over_time, series};
 
 /// Runs that are drawn; more would be a page of the same.
 const DRAWN: usize = 4;
@@ -70,40 +71,23 @@ fn signals(logs: &[ImportedRun], reduced: &Reduced) -> Chart {
     let panel = |(id, _, rows): &(String, usize, Rows)| {
         let log = &logs.iter().find(|log| log.log.meta.id == *id)?.log;
         let force = &log.channels.get("force")?.values;
-        let line = |name: &str, [from, to]: [f64; 2], [a, b]: [f64; 2]| Series {
-            name: name.to_owned(),
-            mark: Mark::Line,
-            x: vec![from, to],
-            y: vec![a, b],
-            ..Series::default()
-        };
         let (first, last) = (rows.middle_s[0], rows.middle_s[rows.middle_s.len() - 1]);
-        let mut series = vec![Series {
-            name: "as read".to_owned(),
-            mark: Mark::Points,
-            x: log.time_s.clone(),
-            y: force.clone(),
-            ..Series::default()
-        }];
-        series.push(line("zero over the windows used", [first, last], rows.zero_n));
+        let mut drawn = vec![
+            series("as read", Mark::Points, &log.time_s[..], &force[..]),
+            series("zero over the windows used", Mark::Line, [first, last], rows.zero_n),
+        ];
         for (k, rest) in rows.rest_s.iter().enumerate() {
-            series.extend(rest.map(|ends| line("at rest", ends, [rows.zero_n[k]; 2])));
+            drawn.extend(rest.map(|ends| series("at rest", Mark::Line, ends, [rows.zero_n[k]; 2])));
         }
-        Some(ChartPanel { y_label: format!("force of {id} [N]"), series, ..ChartPanel::default() })
+        Some(drawn::panel(format!("force of {id} [N]"), drawn))
     };
     let panels: Vec<ChartPanel> = reduced.runs.iter().take(DRAWN).filter_map(panel).collect();
-    Chart {
-        name: "signals".to_owned(),
-        title: "Force and windows".to_owned(),
-        caption: format!(
-            "Force of the rig on the body as it was read in {} of {} runs, its parts at rest, and the zero over the windows that are used.",
-            panels.len(),
-            reduced.runs.len()
-        ),
-        x_label: "time [s]".to_owned(),
-        panels,
-        ..Chart::default()
-    }
+    let caption = format!(
+        "Force of the rig on the body as it was read in {} of {} runs, its parts at rest, and the zero over the windows that are used.",
+        panels.len(),
+        reduced.runs.len()
+    );
+    over_time(["signals", "Force and windows"], caption, panels)
 }
 
 /// Fitted load of every row, N.
@@ -119,31 +103,13 @@ fn fitted(reduced: &Reduced, model: &ModelFit, setup: &Setup) -> Chart {
     for (id, _, rows) in reduced.runs.iter().take(DRAWN) {
         let own = from..from + rows.middle_s.len();
         from = own.end;
-        let series = |name: &str, mark: Mark, of: &[f64]| Series {
-            name: name.to_owned(),
-            mark,
-            x: rows.middle_s.clone(),
-            y: of[own.clone()].to_vec(),
-            ..Series::default()
-        };
-        panels.push(ChartPanel {
-            y_label: format!("{load} of {id} [N]"),
-            series: vec![series("measured", Mark::Points, measured), series(&model.law.name, Mark::Line, &law)],
-            ..ChartPanel::default()
-        });
+        let drawn = [("measured", Mark::Points, measured), (&model.law.name, Mark::Line, &law)];
+        let drawn = drawn.map(|(name, mark, of)| series(name, mark, &rows.middle_s[..], &of[own.clone()]));
+        panels.push(drawn::panel(format!("{load} of {id} [N]"), drawn.to_vec()));
     }
-    Chart {
-        name: "fitted".to_owned(),
-        title: "Fitted beside measured".to_owned(),
-        caption: format!(
-            "Load of the water in the windows of {} of {} runs, and that of the law.",
-            panels.len(),
-            reduced.runs.len()
-        ),
-        x_label: "time [s]".to_owned(),
-        panels,
-        ..Chart::default()
-    }
+    let (n, all) = (panels.len(), reduced.runs.len());
+    let caption = format!("Load of the water in the windows of {n} of {all} runs, and that of the law.");
+    over_time(["fitted", "Fitted beside measured"], caption, panels)
 }
 
 /// Mean periodogram of the residuals of the runs, as amplitude over the frequencies that the rows resolve.
@@ -167,13 +133,8 @@ fn spectrum(reduced: &Reduced, model: &ModelFit, setup: &Setup) -> Chart {
             *sum += (c * c + s * s) * 4.0 / (n as f64).powi(2) / reduced.runs.len() as f64;
         }
     }
-    let series = Series {
-        name: "residuals".to_owned(),
-        mark: Mark::Line,
-        x: frequencies,
-        y: power.into_iter().map(f64::sqrt).collect(),
-        ..Series::default()
-    };
+    let amplitudes: Vec<f64> = power.into_iter().map(f64::sqrt).collect();
+    let drawn = vec![series("residuals", Mark::Line, frequencies, amplitudes)];
     Chart {
         name: "residual-spectrum".to_owned(),
         title: "Spectrum of the residuals".to_owned(),
@@ -184,7 +145,7 @@ fn spectrum(reduced: &Reduced, model: &ModelFit, setup: &Setup) -> Chart {
             number::plain(0.5 / step_s, 3)
         ),
         x_label: "frequency [Hz]".to_owned(),
-        panels: vec![ChartPanel { y_label: format!("{load} [N]"), series: vec![series], y_scale: Scale::default() }],
+        panels: vec![drawn::panel(format!("{load} [N]"), drawn)],
         ..Chart::default()
     }
 }

@@ -7,6 +7,7 @@ use crate::decay::section::{self, DecayPlan};
 use crate::decay::{DecayFit, DecayRun, DecaySetup, Method as DecayMethod, RunSummary};
 use crate::decay::{envelope, output_error, plan, record, releases};
 use crate::declared::{check, needed};
+use crate::drawn::{self, first_of, over_time, series};
 use crate::logs;
 use crate::long_logs::Reading;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
@@ -16,7 +17,7 @@ use froude_records::RecordError;
 use froude_records::block::{Section, TableBuilder};
 use froude_records::campaign::{Campaign, Motion, Source};
 use froude_records::finding::{Finding, Severity};
-use froude_records::page::{Chart, ChartPanel, Mark, Series};
+use froude_records::page::{ChartPanel, Mark};
 use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role};
 use froude_records::units::Dimension;
 
@@ -174,36 +175,16 @@ fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> Section {
     let panel = |summary: &RunSummary| {
         let run = runs.iter().find(|run| run.id == summary.id)?;
         let first = run.time_s.partition_point(|t| *t < summary.from_s);
-        let time_s = run.time_s.get(first..first + summary.fitted.len())?.to_vec();
-        let measured = Series {
-            name: "measured".to_owned(),
-            mark: Mark::Points,
-            x: run.time_s.to_vec(),
-            y: run.position.to_vec(),
-            ..Series::default()
-        };
-        let fitted = Series {
-            name: "fitted".to_owned(),
-            mark: Mark::Line,
-            x: time_s,
-            y: summary.fitted.clone(),
-            ..Series::default()
-        };
-        let y_label = format!("{} [{unit}]", summary.id);
-        Some(ChartPanel { y_label, series: vec![measured, fitted], ..ChartPanel::default() })
+        let time_s = run.time_s.get(first..first + summary.fitted.len())?;
+        let measured = series("measured", Mark::Points, run.time_s, run.position);
+        let fitted = series("fitted", Mark::Line, time_s, &summary.fitted[..]);
+        Some(drawn::panel(format!("{} [{unit}]", summary.id), vec![measured, fitted]))
     };
     let panels: Vec<ChartPanel> =
         fit.runs.iter().filter(|run| !run.fitted.is_empty()).take(DRAWN).filter_map(panel).collect();
-    let of = if panels.len() < fit.runs.len() { format!("the first {} of ", panels.len()) } else { String::new() };
-    let chart = Chart {
-        name: "releases".to_owned(),
-        title: "Motion and fit".to_owned(),
-        caption: format!("Position of {of}the releases as measured, and the fitted motion where it was used."),
-        x_label: "time [s]".to_owned(),
-        panels,
-        ..Chart::default()
-    };
-    let chart = (!chart.panels.is_empty()).then(|| chart.into());
+    let of = first_of(panels.len(), fit.runs.len());
+    let caption = format!("Position of {of}the releases as measured, and the fitted motion where it was used.");
+    let chart = (!panels.is_empty()).then(|| over_time(["releases", "Motion and fit"], caption, panels).into());
     Section::new("Releases", std::iter::once(table.into()).chain(chart))
 }
 

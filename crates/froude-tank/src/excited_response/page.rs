@@ -10,6 +10,7 @@ use super::coefficients::{AtPeriod, NAMES, UNITS, Used};
 use super::response::Response;
 use super::setup::WaveRun;
 use super::wave::Wave;
+use crate::drawn::{self, first_of, over_time, series};
 
 /// Runs that are drawn; more would be a page of the same.
 const DRAWN: usize = 10;
@@ -82,7 +83,7 @@ fn over_period(found: &[AtPeriod]) -> Option<Chart> {
             high: of(&|at| at.combined[j].interval(at.values[j])[1]),
         };
         let label = if j == 0 { "A33 [kg]" } else { "B33 [N s/m]" };
-        ChartPanel { y_label: label.to_owned(), series: vec![series], ..ChartPanel::default() }
+        drawn::panel(label.to_owned(), vec![series])
     };
     let has_damping = found.iter().any(|at| at.is_declared);
     (found.len() > 1).then(|| Chart {
@@ -144,40 +145,25 @@ fn signals(found: &[AtPeriod], runs: &[WaveRun<'_>]) -> Chart {
         let since: Vec<f64> = run.time_s.iter().map(|t| t - start).collect();
         let every = run.time_s.len().div_ceil(POINTS).max(1);
         let thin = |x: &[f64]| x.iter().step_by(every).copied().collect::<Vec<f64>>();
-        let line = |name: &str, mark: Mark, x: Vec<f64>, y: Vec<f64>| Series {
-            name: name.to_owned(),
-            mark,
-            x,
-            y,
-            ..Series::default()
-        };
         let low = run.signal.iter().copied().fold(f64::INFINITY, f64::min);
         let high = run.signal.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let edge = |i: usize| line("window", Mark::Dashed, vec![since[i]; 2], vec![low, high]);
+        let edge = |i: usize| series("window", Mark::Dashed, [since[i]; 2], [low, high]);
         let body = if run.is_held() { "held" } else { "free" };
-        ChartPanel {
-            y_label: format!("{}, {body} [{}]", run.id, run.shows.unit()),
-            series: vec![
-                line("measured", Mark::Line, thin(&since), thin(&run.signal)),
-                line("fitted, where used", Mark::Line, since[rows.clone()].to_vec(), used.response.fitted.clone()),
-                edge(rows.start),
-                edge(rows.end - 1),
-            ],
-            ..ChartPanel::default()
-        }
+        let drawn = vec![
+            series("measured", Mark::Line, thin(&since), thin(&run.signal)),
+            series("fitted, where used", Mark::Line, &since[rows.clone()], &used.response.fitted[..]),
+            edge(rows.start),
+            edge(rows.end - 1),
+        ];
+        drawn::panel(format!("{}, {body} [{}]", run.id, run.shows.unit()), drawn)
     };
     let panels: Vec<ChartPanel> = all.iter().take(DRAWN).map(panel).collect();
-    let of = if panels.len() < all.len() { format!("the first {} of ", panels.len()) } else { String::new() };
-    Chart {
-        name: "signals".to_owned(),
-        title: "Force and motion, window and fit".to_owned(),
-        caption: format!(
-            "Force on the held body and motion of the free one in {of}the runs, as measured, with the window, and the fit where it was used."
-        ),
-        x_label: "time after the wavemaker's start [s]".to_owned(),
-        panels,
-        ..Chart::default()
-    }
+    let of = first_of(panels.len(), all.len());
+    let caption = format!(
+        "Force on the held body and motion of the free one in {of}the runs, as measured, with the window, and the fit where it was used."
+    );
+    let chart = over_time(["signals", "Force and motion, window and fit"], caption, panels);
+    Chart { x_label: "time after the wavemaker's start [s]".to_owned(), ..chart }
 }
 
 /// The spectrum of what the fits leave of each run.
@@ -189,14 +175,7 @@ fn spectrum(found: &[AtPeriod], runs: &[WaveRun<'_>]) -> Option<Chart> {
         let left: Vec<f64> = run.signal[rows].iter().zip(&used.response.fitted).map(|(x, f)| x - f).collect();
         let (frequency, power) = density(&left, rate_hz, segment).ok()?;
         // The mean was taken off: the first line says nothing.
-        let series = Series {
-            name: run.id.to_owned(),
-            mark: Mark::Line,
-            x: frequency[1..].to_vec(),
-            y: power[1..].to_vec(),
-            ..Series::default()
-        };
-        Some((run.is_held(), series))
+        Some((run.is_held(), series(run.id, Mark::Line, &frequency[1..], &power[1..])))
     };
     let all: Vec<(bool, Series)> = found.iter().flat_map(AtPeriod::used).take(DRAWN).filter_map(of).collect();
     let panel = |is_held: bool, y_label: &str| ChartPanel {

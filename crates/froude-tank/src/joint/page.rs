@@ -2,9 +2,10 @@
 
 use froude_records::block::{Block, Digits, ResultColumn, ResultTable, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, Mark, Series};
+use froude_records::page::{Chart, ChartPanel, Mark};
 
 use super::{Fitted, JointFit, Run, Unknown};
+use crate::drawn::{self, first_of, over_time, series};
 use crate::residual_spectrum::{self, Left};
 
 /// Runs that are drawn; more would be a page of the same.
@@ -100,32 +101,14 @@ fn budget(fit: &JointFit) -> ResultTable {
 fn loads(fit: &JointFit, runs: &[Timed<'_>], &Load { name, unit, .. }: &Load) -> Chart {
     let panel = |((run, time_s), fitted): (&Timed<'_>, &Fitted)| {
         let used = run.motion.samples();
-        let series = |name: &str, mark: Mark, x: &[f64], y: &[f64]| Series {
-            name: name.to_owned(),
-            mark,
-            x: x.to_vec(),
-            y: y.to_vec(),
-            ..Series::default()
-        };
-        ChartPanel {
-            y_label: format!("{} [{unit}]", run.id),
-            series: vec![
-                series("measured", Mark::Points, time_s, run.load),
-                series("fitted, where used", Mark::Line, &time_s[used], &fitted.load),
-            ],
-            ..ChartPanel::default()
-        }
+        let measured = series("measured", Mark::Points, *time_s, run.load);
+        let fitted = series("fitted, where used", Mark::Line, &time_s[used], &fitted.load[..]);
+        drawn::panel(format!("{} [{unit}]", run.id), vec![measured, fitted])
     };
     let panels: Vec<ChartPanel> = runs.iter().zip(&fit.fitted).take(DRAWN).map(panel).collect();
-    let of = if panels.len() < runs.len() { format!("the first {} of ", panels.len()) } else { String::new() };
-    Chart {
-        name: format!("{}s", name.to_lowercase()),
-        title: format!("{name} and fit"),
-        caption: format!("{name} of the rig on the body in {of}the runs, as measured, and the fit where it was used."),
-        x_label: "time [s]".to_owned(),
-        panels,
-        ..Chart::default()
-    }
+    let of = first_of(panels.len(), runs.len());
+    let caption = format!("{name} of the rig on the body in {of}the runs, as measured, and the fit where it was used.");
+    over_time([&format!("{}s", name.to_lowercase()), &format!("{name} and fit")], caption, panels)
 }
 
 /// The spectrum of what the fit leaves.

@@ -2,12 +2,13 @@
 
 use froude_records::block::{Block, ResultColumn, ResultTable, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, Mark, Series};
+use froude_records::page::{Chart, ChartPanel, Mark};
 use froude_records::run::ImportedRun;
 
 use super::point::Load;
 use super::row::Row;
 use super::section::SteadySpec;
+use crate::drawn::{self, first_of, over_time, series};
 use crate::residual_spectrum::{self, Left};
 
 /// Runs that are drawn; more would be a page of the same.
@@ -80,39 +81,25 @@ fn chart(logs: &[ImportedRun], rows: &[Row]) -> Chart {
         let load = point.loads.first()?;
         let values = log.channels.get(&load.name).map_or(&[] as &[f64], |c| c.values.as_slice());
         let window = &point.window;
-        let line = |name: &str, rows: &std::ops::Range<usize>, y: f64| Series {
-            name: name.to_owned(),
-            mark: Mark::Line,
-            x: vec![log.time_s[rows.start], log.time_s[rows.end - 1]],
-            y: vec![y; 2],
-            ..Series::default()
+        let line = |name: &str, rows: &std::ops::Range<usize>, y: f64| {
+            series(name, Mark::Line, [log.time_s[rows.start], log.time_s[rows.end - 1]], [y; 2])
         };
         let mean = |rows: &std::ops::Range<usize>| values[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
-        let mut series = vec![Series {
-            name: "as read".to_owned(),
-            mark: Mark::Points,
-            x: log.time_s.clone(),
-            y: values.to_vec(),
-            ..Series::default()
-        }];
-        series.push(line("window", &window.steady, load.read.value));
+        let mut drawn = vec![
+            series("as read", Mark::Points, &log.time_s[..], values),
+            line("window", &window.steady, load.read.value),
+        ];
         let at_rest = [&window.before, &window.after].into_iter().filter(|rows| rows.len() > 1);
-        series.extend(at_rest.map(|rows| line("at rest", rows, mean(rows))));
+        drawn.extend(at_rest.map(|rows| line("at rest", rows, mean(rows))));
         let unit = unit_of(&load.name);
-        Some(ChartPanel { y_label: format!("{} of {} [{unit}]", load.name, row.run), series, ..ChartPanel::default() })
+        Some(drawn::panel(format!("{} of {} [{unit}]", load.name, row.run), drawn))
     };
     let panels: Vec<ChartPanel> = rows.iter().take(DRAWN).filter_map(panel).collect();
-    let of = if panels.len() < rows.len() { format!("the first {} of ", panels.len()) } else { String::new() };
-    Chart {
-        name: "windows".to_owned(),
-        title: "Load and windows".to_owned(),
-        caption: format!(
-            "The first load in {of}the runs as it was read, its steady window with its mean, and the parts at rest."
-        ),
-        x_label: "time [s]".to_owned(),
-        panels,
-        ..Chart::default()
-    }
+    let of = first_of(panels.len(), rows.len());
+    let caption = format!(
+        "The first load in {of}the runs as it was read, its steady window with its mean, and the parts at rest."
+    );
+    over_time(["windows", "Load and windows"], caption, panels)
 }
 
 /// What the mean leaves of each load in the windows.

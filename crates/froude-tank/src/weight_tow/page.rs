@@ -2,11 +2,12 @@
 
 use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, Mark, Series};
+use froude_records::page::{Chart, ChartPanel, Mark};
 use froude_records::run::ImportedRun;
 
 use super::reduce::Reduced;
 use super::section::WeightTowSpec;
+use crate::drawn::{self, first_of, over_time, series};
 use crate::residual_spectrum::{self, Left};
 use crate::steady::page::load_column;
 use crate::steady::point::Load;
@@ -63,32 +64,15 @@ fn chart(rows: &[Row], reduced: &[Reduced], logs: &[ImportedRun], positions: &[V
     let panel = |(row, found): (&Row, &Reduced)| {
         let at = logs.iter().position(|log| log.log.meta.id == row.run)?;
         let (time_s, position) = (&logs[at].log.time_s, &positions[at]);
-        let series = |name: &str, mark: Mark, range: std::ops::Range<usize>| Series {
-            name: name.to_owned(),
-            mark,
-            x: time_s[range.clone()].to_vec(),
-            y: position[range].to_vec(),
-            ..Series::default()
-        };
-        Some(ChartPanel {
-            y_label: format!("{} [m]", row.run),
-            series: vec![
-                series("track", Mark::Points, 0..position.len()),
-                series("last part of the way", Mark::Line, found.track.window.clone()),
-            ],
-            ..ChartPanel::default()
-        })
+        let window = found.track.window.clone();
+        let track = series("track", Mark::Points, &time_s[..], &position[..]);
+        let last = series("last part of the way", Mark::Line, &time_s[window.clone()], &position[window]);
+        Some(drawn::panel(format!("{} [m]", row.run), vec![track, last]))
     };
     let panels: Vec<ChartPanel> = rows.iter().zip(reduced).take(DRAWN).filter_map(panel).collect();
-    let of = if panels.len() < rows.len() { format!("the first {} of ", panels.len()) } else { String::new() };
-    Chart {
-        name: "tracks".to_owned(),
-        title: "Tracks".to_owned(),
-        caption: format!("Position along the rail in {of}the runs, and the part that the speed is taken over."),
-        x_label: "time [s]".to_owned(),
-        panels,
-        ..Chart::default()
-    }
+    let of = first_of(panels.len(), rows.len());
+    let caption = format!("Position along the rail in {of}the runs, and the part that the speed is taken over.");
+    over_time(["tracks", "Tracks"], caption, panels)
 }
 
 /// What the parabola leaves of the tracks.
