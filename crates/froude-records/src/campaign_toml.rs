@@ -143,38 +143,15 @@ const TANK_METHODS: [(&str, &[&str]); 6] = [
     (ACCELERATED_TOW, &["models", "uncertainty", "plan"]),
 ];
 
-/// The keys of a source.
-const SOURCE_KEYS: &[&str] = &[
-    "name",
-    "kind",
-    "role",
-    "table",
-    "record",
-    "runs",
-    "cases",
-    "mesh",
-    "select",
-    "sidecar",
-    "models",
-    "method",
-    "keep",
-    "group",
-    "uncertainty",
-    "tare",
-    "decay",
-    FORCED_OSCILLATION,
-    ROTATION,
-    STEADY,
-    WEIGHT_TOW,
-    ACCELERATED_TOW,
-    EXCITED_RESPONSE,
-    "added_mass",
-    "cfd",
-    "plan",
-];
+/// What belongs to the rows of a table, and would be passed over elsewhere.
+const OF_TABLES: [&str; 7] = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
+
+/// The keys of a source, beside its inputs, what belongs to rows, and the sections of the methods of the tank.
+const SOURCE_KEYS: [&str; 8] = ["name", "kind", "role", "select", "method", "added_mass", "decay", "cfd"];
 
 fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Source, RecordError> {
-    s.only(SOURCE_KEYS)?;
+    let of_tank = TANK_METHODS.map(|(name, _)| name);
+    s.only(&[&SOURCE_KEYS[..], &INPUTS, &OF_TABLES, &of_tank].concat())?;
     let name =
         s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"circulation tank\", for example"))?.to_owned();
     let kinds = [SourceKind::Tank, SourceKind::Towing, SourceKind::Cfd, SourceKind::Potential, SourceKind::Published];
@@ -233,14 +210,12 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
     if let (Some(value), false) = (s.get("method"), matches!(input, Input::Runs { .. } | Input::Table(_))) {
         return Err(s.wrong("method", value, "says how runs are reduced, but the source names no runs"));
     }
-    // What belongs to the rows of a table would be passed over.
-    let of_tables = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
     let is_method = |name: &str| methods.iter().any(|method| method == name);
     let is_decay = methods.iter().any(|method| method.starts_with("decay"));
     let has_own = |key: &str| TANK_METHODS.iter().any(|(name, own)| is_method(name) && own.contains(&key));
     let is_own = |key: &&str| has_own(key) || (is_decay && *key == "plan");
     let of_table =
-        of_tables.into_iter().filter(|key| !is_own(key)).find_map(|key| s.get(key).map(|value| (key, value)));
+        OF_TABLES.into_iter().filter(|key| !is_own(key)).find_map(|key| s.get(key).map(|value| (key, value)));
     if let (Some((key, value)), Some(instead)) = (of_table, why_no_rows(&input)) {
         return Err(s.wrong(key, value, format!("belongs to the rows of a table; {instead}")));
     }
@@ -257,20 +232,18 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
         let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
     }
-    for (method, _) in TANK_METHODS {
+    for method in of_tank {
         if let (Some(value), false) = (s.get(method), is_method(method)) {
             let problem =
                 format!("describes runs of {method}, but that is no method of the source: write method = {method:?}");
             return Err(s.wrong(method, value, problem));
         }
     }
-    for name in TANK_METHODS.map(|(name, _)| name).into_iter().chain(["decay", "cfd"]) {
-        s.section(name)?;
-    }
+    of_tank.into_iter().chain(["decay", "cfd"]).try_for_each(|name| s.section(name).map(drop))?;
     let blocks = s.sections("plan")?;
-    // The blocks of a plan are of the first method that has a form of its own.
-    let of_its_own = [FORCED_OSCILLATION, ROTATION, EXCITED_RESPONSE, WEIGHT_TOW, ACCELERATED_TOW];
-    let planned = of_its_own.into_iter().find(|name| is_method(name)).or(is_decay.then_some(FREE_DECAY));
+    // The blocks of a plan are of the first method that has a form of its own; steady tows have that of tables.
+    let planned =
+        of_tank.into_iter().find(|name| *name != STEADY && is_method(name)).or(is_decay.then_some(FREE_DECAY));
     let planned_by = planned.filter(|_| !blocks.is_empty());
     let rows = if planned_by.is_some() { &[] } else { blocks.as_slice() };
     let (of_rows, most_rows) = most_of(&input);

@@ -17,7 +17,6 @@
 //! ```
 
 use froude_hydro::swing::Pivot;
-
 use froude_records::RecordError;
 use froude_records::campaign::Source;
 use froude_records::run::{ROTATION, Role, declared};
