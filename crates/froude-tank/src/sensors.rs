@@ -2,6 +2,7 @@
 
 use froude_identify::method::MethodError;
 use froude_records::campaign::{Campaign, SensorSpec};
+use froude_rig::steady::Reading;
 
 /// Channels of one kind: the names of their quantity, and what their twin simulates.
 pub(crate) struct Senses<'a> {
@@ -18,6 +19,20 @@ impl<'a> Senses<'a> {
     /// A sensor with white noise and a resolution.
     pub(crate) fn white(name: &'a str) -> Self {
         Self { names: vec![name], has_memory: false }
+    }
+}
+
+/// How a channel of `[[simulate.sensor]]` is read, with a zero and a gain of its own.
+pub(crate) fn reading(sensors: &[SensorSpec], names: &[&str], zero: f64, gain: f64) -> Reading {
+    let sensor = sensors.iter().find(|s| names.contains(&s.quantity.as_str()));
+    let of = |value: fn(&SensorSpec) -> Option<f64>| sensor.and_then(value).unwrap_or(0.0);
+    Reading {
+        noise: of(|s| s.noise),
+        correlation_s: sensor.and_then(|s| s.correlation_s),
+        step: of(|s| s.resolution),
+        zero: zero + of(|s| s.bias),
+        drift_per_s: 0.0,
+        gain,
     }
 }
 

@@ -10,7 +10,6 @@ use froude_identify::simulate::truth;
 use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
 use froude_records::run::{ACCELERATED_TOW, Role};
 use froude_rig::accelerated_tow::{AcceleratedTrace, Profile, accelerated};
-use froude_rig::steady::Reading;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
@@ -20,7 +19,7 @@ use super::reduce::{Mounted, Setup};
 use super::rows::{TowRun, Way};
 use super::section::{self, AcceleratedPlan};
 use super::source::{declared, no_mass, setup_of};
-use crate::sensors::{Senses, seed_and_sensors};
+use crate::sensors::{Senses, reading, seed_and_sensors};
 
 /// Standard deviation of the zero of a run, N.
 const ZERO_N: f64 = 0.2;
@@ -208,20 +207,10 @@ pub fn simulated(
         .collect::<Option<_>>()?;
     let top = planned.iter().fold(0.0_f64, |m, run| m.max(run.profile.speed_m_s.abs()));
     let tables: Vec<Table> = (0..setup.bodies.len()).map(|b| Table::of(truth, setup, b, 1.01 * top)).collect();
-    let reading = |name: &str, zero: f64, gain: f64| {
-        let sensor = sensors.iter().find(|s| s.quantity == name);
-        Reading {
-            noise: sensor.and_then(|s| s.noise).unwrap_or(0.0),
-            correlation_s: sensor.and_then(|s| s.correlation_s),
-            step: sensor.and_then(|s| s.resolution).unwrap_or(0.0),
-            zero: zero + sensor.and_then(|s| s.bias).unwrap_or(0.0),
-            drift_per_s: 0.0,
-            gain,
-        }
-    };
     let mut out = Vec::new();
     for (i, run) in planned.iter().enumerate() {
-        let readings = [reading("position", 0.0, motion), reading("force", draw(ZERO_N), force)];
+        let readings =
+            [reading(sensors, &["position"], 0.0, motion), reading(sensors, &["force"], draw(ZERO_N), force)];
         let load = |v: f64, a: f64| if run.is_dry { 0.0 } else { tables[run.body].load_n(v, a) };
         let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1);
         let trace = accelerated(run.profile, run.rate_hz, masses[run.body], delay_s, readings, &load, seed);

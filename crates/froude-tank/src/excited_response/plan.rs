@@ -19,11 +19,11 @@ use super::response::{DOF, FEWEST_CYCLES};
 use super::section;
 use super::setup::{Setup, Shows};
 use super::simulate::senses;
-use super::simulate::{Planned, SENSORS, planned, reading, truth};
+use super::simulate::{Planned, SENSORS, planned, truth};
 use super::source::setup_of;
 use super::wave::LEFT_OUT;
 use crate::plan::{self, Expected};
-use crate::sensors::seed_and_sensors;
+use crate::sensors::{reading, seed_and_sensors};
 
 /// What a plan gives at one period.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,7 +89,7 @@ fn at_wave(
     let x = c64::new(rig.restoring_n_m - w * w * (rig.mass_kg + rig.added_kg), w * rig.damping_n_s_m);
     let heave_m = rig.force_n / x.norm_sqr().sqrt();
     let samples = cycles as f64 * period_s * rig.rate_hz;
-    let [reference, force, acceleration] = SENSORS.map(|names| reading(sensors, names));
+    let [reference, force, acceleration] = SENSORS.map(|names| reading(sensors, names, 0.0, 1.0));
     let line = |r: Reading, amplitude: f64, samples: f64| {
         2.0 * (r.noise / amplitude).powi(2) / samples * colour(r, w, rig.rate_hz)
     };

@@ -18,7 +18,7 @@ use super::coefficients::NAMES;
 use super::section::{self, ExcitedPlan};
 use super::setup::{Setup, Shows, WaveRun};
 use super::source::setup_of;
-use crate::sensors::{Senses, seed_and_sensors};
+use crate::sensors::{Senses, reading, seed_and_sensors};
 
 /// Speed of the twin's waves for the phase between wavemaker and body: they have come in by so many turns and a part, whose size does not matter.
 const PHASE_RAD: f64 = -0.7;
@@ -119,21 +119,6 @@ pub fn truth(campaign: &Campaign) -> Result<[f64; 2], MethodError> {
     Ok([need(NAMES[0])?, need(NAMES[1])?])
 }
 
-/// How a channel of `[[simulate.sensor]]` is read.
-#[must_use]
-pub fn reading(sensors: &[SensorSpec], names: &[&str]) -> Reading {
-    let sensor = sensors.iter().find(|s| names.contains(&s.quantity.as_str()));
-    let of = |value: fn(&SensorSpec) -> Option<f64>| sensor.and_then(value).unwrap_or(0.0);
-    Reading {
-        noise: of(|s| s.noise),
-        correlation_s: sensor.and_then(|s| s.correlation_s),
-        step: of(|s| s.resolution),
-        zero: of(|s| s.bias),
-        drift_per_s: 0.0,
-        gain: 1.0,
-    }
-}
-
 /// Quantities of the sensors: wavemaker, force, acceleration.
 pub const SENSORS: [&[&str]; 3] = [&["reference"], &["f_z", "force"], &["acceleration"]];
 
@@ -154,7 +139,7 @@ pub fn simulated(planned: &[Planned], setup: &Setup, sensors: &[SensorSpec], see
     let delay_s = about(setup.delay_s);
     let [on_force, on_acceleration] =
         [setup.force_relative, setup.acceleration_relative].map(|part| about(Uncertain::new(1.0, part)));
-    let [reference, force, acceleration] = SENSORS.map(|names| reading(sensors, names));
+    let [reference, force, acceleration] = SENSORS.map(|names| reading(sensors, names, 0.0, 1.0));
     let one = |(i, run): (usize, &Planned)| {
         let rig = WaveRig { mass_kg, restoring_n_m, ..run.rig };
         let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1);

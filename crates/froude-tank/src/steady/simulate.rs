@@ -12,7 +12,7 @@ use froude_identify::simulate::{planned, truth};
 use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
 use froude_records::run::STEADY;
 use froude_records::units::Dimension;
-use froude_rig::steady::{Reading, Tow, TowTrace, tow as towed};
+use froude_rig::steady::{Tow, TowTrace, tow as towed};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
@@ -20,7 +20,7 @@ use rand_pcg::Pcg64Mcg;
 use super::point::Run;
 use super::section;
 use super::window::Motion;
-use crate::sensors::{Senses, seed_and_sensors};
+use crate::sensors::{Senses, reading, seed_and_sensors};
 
 /// Standard deviation of the zero of a run, N or N m.
 const ZERO: f64 = 0.2;
@@ -120,21 +120,9 @@ pub fn simulated(plan: &Plan, tow: Tow, sensors: &[SensorSpec], budget: &[Budget
                 angle_off += entry.standard * z;
             }
         }
-        let reading = |k: usize, name: &str, zero: f64| {
-            let sensor = sensors.iter().find(|s| s.quantity == name);
-            let noise = sensor.and_then(|s| s.noise).unwrap_or(0.0);
-            Reading {
-                noise,
-                correlation_s: sensor.and_then(|s| s.correlation_s),
-                step: sensor.and_then(|s| s.resolution).unwrap_or(0.0),
-                zero: zero + sensor.and_then(|s| s.bias).unwrap_or(0.0),
-                drift_per_s: 0.0,
-                gain: gains[k],
-            }
-        };
-        let mut readings = vec![reading(0, "speed", 0.0)];
+        let mut readings = vec![reading(sensors, &["speed"], 0.0, gains[0])];
         for (l, name) in plan.law.responses.iter().enumerate() {
-            readings.push(reading(1 + l, name, ZERO * draw()));
+            readings.push(reading(sensors, &[name], ZERO * draw(), gains[1 + l]));
         }
         let (speed, angle) = (value("speed", row), value("angle", row));
         let last: RefCell<Option<(f64, Vec<f64>)>> = RefCell::new(None);

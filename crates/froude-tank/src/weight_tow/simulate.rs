@@ -18,7 +18,7 @@ use super::reduce::WeightRun;
 use super::section::{self, Lens, WeightTowSpec};
 use super::track::metres;
 use crate::declared::needed;
-use crate::sensors::{Senses, seed_and_sensors};
+use crate::sensors::{Senses, reading, seed_and_sensors};
 use crate::steady::simulate::{Plan, loads_at};
 
 /// Part of the moving mass that hangs below the load cell: body and water.
@@ -190,18 +190,9 @@ pub fn simulated(
                 gains[k] *= 1.0 + entry.standard * z;
             }
         }
-        let reading = |k: usize, zero: f64| {
-            let sensor = of(&names[k]);
-            Reading {
-                noise: sensor.and_then(|s| s.noise).unwrap_or(0.0),
-                correlation_s: sensor.and_then(|s| s.correlation_s),
-                step: sensor.and_then(|s| s.resolution).unwrap_or(0.0),
-                zero: zero + sensor.and_then(|s| s.bias).unwrap_or(0.0),
-                drift_per_s: 0.0,
-                gain: gains[k],
-            }
-        };
-        let readings: Vec<Reading> = (0..names.len()).map(|k| reading(k, ZERO_N * draw())).collect();
+        let each = names.iter().zip(&gains);
+        let readings: Vec<Reading> =
+            each.map(|(name, gain)| reading(sensors, &[name], ZERO_N * draw(), *gain)).collect();
         let angle = plan.data.values("angle").map_or(0.0, |a| a[row]);
         let along: Vec<f64> = names.iter().map(|n| if n == "f_x" { angle.cos() } else { -angle.sin() }).collect();
         let rig = WeightRig {
