@@ -20,7 +20,6 @@
 //!
 //! Not here: two axes at once, moments, waves that the tow makes.
 
-pub mod error;
 mod lag;
 pub mod law;
 pub mod page;
@@ -30,5 +29,3 @@ pub mod rows;
 pub mod section;
 pub mod simulate;
 pub mod source;
-
-pub use error::AcceleratedError;

@@ -30,7 +30,6 @@
 
 pub mod camera;
 pub mod coefficients;
-pub mod error;
 pub mod findings;
 pub mod page;
 pub mod plan;
@@ -44,5 +43,4 @@ pub mod wave;
 pub mod window;
 
 pub use coefficients::{AtPeriod, fit};
-pub use error::ExcitedError;
 pub use setup::{Setup, Shows, WaveRun};

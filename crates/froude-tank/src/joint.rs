@@ -21,51 +21,15 @@ pub(crate) mod solve;
 use std::ops::Range;
 
 use froude_fit as ls;
+use froude_fit::Status;
 use froude_fit::budget::{Combined, Part, Uncertain};
-use froude_fit::stream::StreamError;
-use froude_fit::{FitError, Status};
 use froude_records::campaign::{BoundKind, Identify};
 
+use crate::error::TankError;
 use crate::motion::Motion;
 
 /// Name of the delay.
 pub const DELAY: &str = "delay";
-
-/// Why a joint fit gives no coefficients; each message states what to do.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum JointError {
-    /// The fit refused.
-    #[error("the joint fit of {model}: {source}")]
-    Fit {
-        /// The law.
-        model: String,
-        /// Why.
-        #[source]
-        source: FitError,
-    },
-
-    /// Rows that are no numbers, or too large.
-    #[error("the joint fit of {model} cannot be summed: {source}")]
-    Sums {
-        /// The law.
-        model: String,
-        /// Why.
-        #[source]
-        source: StreamError,
-    },
-
-    /// The delay runs away.
-    #[error(
-        "the delay of the load does not converge (last value {delay_s:.3} s, period {period_s:.2} s): check that angle and load are of one clock and of the right sign, or declare the delay"
-    )]
-    Delay {
-        /// The last one.
-        delay_s: f64,
-        /// The shortest period.
-        period_s: f64,
-    },
-}
 
 /// What the load is made of, a number for each sample.
 pub(crate) struct Terms {
@@ -102,9 +66,6 @@ impl Terms {
 
 /// The load on the cell, by a method's law.
 pub(crate) trait Equation {
-    /// Why it cannot be computed.
-    type Error: From<JointError>;
-
     /// At samples `rows` of a run, the motion taken `delay_s` earlier than they are stamped; `moved` adds a number to a declared one, by its place among
     /// the errors of the [`Problem`].
     fn terms(
@@ -113,7 +74,7 @@ pub(crate) trait Equation {
         rows: Range<usize>,
         delay_s: f64,
         moved: Option<(usize, f64)>,
-    ) -> Result<Terms, Self::Error>;
+    ) -> Result<Terms, TankError>;
 }
 
 /// Where a declared error enters.

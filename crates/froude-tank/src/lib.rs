@@ -9,6 +9,7 @@ pub mod conditioning;
 pub mod decay;
 pub mod declared;
 mod drawn;
+mod error;
 pub mod excited_response;
 mod fluid;
 pub mod joint;
@@ -24,3 +25,5 @@ pub mod rotation;
 mod sensors;
 pub mod steady;
 pub mod weight_tow;
+
+pub use error::TankError;

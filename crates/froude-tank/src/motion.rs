@@ -5,11 +5,11 @@ use std::ops::Range;
 use froude_records::run::marks::Mark;
 use froude_records::run::{Extremes, ImportedRun, Oscillating, Stay};
 use froude_records::text::counted;
-use froude_signal::SignalError;
 use froude_signal::harmonic::Harmonics;
 use indexmap::IndexMap;
 
 use crate::conditioning::stretches::{in_words, touching};
+use crate::error::TankError;
 
 /// The motion has begun where the angle is this part of its size away from its middle.
 const BEGUN: f64 = 0.1;
@@ -35,90 +35,6 @@ impl Default for Cycles {
     fn default() -> Self {
         Self { skip: 1, used: None, fewest: 5 }
     }
-}
-
-/// Why the motion of a run cannot be used; each message states what to do.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MotionError {
-    /// Columns of a run differ in length.
-    #[error("run {run:?}: {column} has {found} samples where time has {expected}")]
-    Length {
-        /// The run.
-        run: String,
-        /// The column.
-        column: &'static str,
-        /// Its samples.
-        found: usize,
-        /// Samples of time.
-        expected: usize,
-    },
-
-    /// The angle has no harmonics, or is no record.
-    #[error("run {run:?}: the angle cannot be fitted by harmonics: {source}")]
-    Angle {
-        /// The run.
-        run: String,
-        /// Why.
-        #[source]
-        source: SignalError,
-    },
-
-    /// Too few whole cycles.
-    #[error(
-        "run {run:?} has {} of {period_s:.2} s after {skipped} of start-up; {fewest} are needed: record longer, or lower \
-         cycles.fewest and read the intervals with care",
-        counted(*found, "whole cycle", "whole cycles")
-    )]
-    TooFewCycles {
-        /// The run.
-        run: String,
-        /// Whole cycles.
-        found: usize,
-        /// Their length.
-        period_s: f64,
-        /// Cycles left out.
-        skipped: usize,
-        /// Needed.
-        fewest: usize,
-    },
-
-    /// Cycles that marks touch.
-    #[error(
-        "run {run:?}: of its {whole} whole cycles {left} are left without a mark, and {fewest} are needed: {marks}; repeat the run, or widen the sensor's range"
-    )]
-    Marked {
-        /// The run.
-        run: String,
-        /// Whole cycles.
-        whole: usize,
-        /// Those left.
-        left: usize,
-        /// Needed.
-        fewest: usize,
-        /// The marks in words.
-        marks: String,
-    },
-
-    /// The sensor was at the end of its range.
-    #[error(
-        "run {run:?}: {channel} stays at {value} {unit} for {samples} samples from {from_s:.2} s on, longer than a smooth motion does: it is clipped; \
-         repeat the run with a larger range, or a smaller amplitude"
-    )]
-    Clipped {
-        /// The run.
-        run: String,
-        /// The channel.
-        channel: &'static str,
-        /// Where it stays.
-        value: f64,
-        /// Unit of that.
-        unit: &'static str,
-        /// Samples in a row.
-        samples: usize,
-        /// Time of the first.
-        from_s: f64,
-    },
 }
 
 /// Angle and load of a run, as they were logged.
@@ -208,16 +124,16 @@ impl Motion {
 ///
 /// # Errors
 ///
-/// [`MotionError`].
-pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Result<Motion, MotionError> {
+/// Columns of different lengths, no harmonics, too few cycles, a clipped channel.
+pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Result<Motion, TankError> {
     let (load, load_unit, loads) = run.load;
     let n = run.time_s.len();
     for (column, found) in [("angle", run.angle_rad.len()), (load, loads.len())] {
         if found != n {
-            return Err(MotionError::Length { run: run.id.to_owned(), column, found, expected: n });
+            return Err(TankError::of_run(run.id, format!("{column} has {found} samples where time has {n}")));
         }
     }
-    let refused = |source| MotionError::Angle { run: run.id.to_owned(), source };
+    let refused = |why| TankError::of_run(run.id, format!("the angle cannot be fitted by harmonics: {why}"));
     let rough = Harmonics::fit(run.time_s, run.angle_rad, 1, None).map_err(refused)?;
     let period_s = rough.period_s();
     let marks = run.sampled.marks;
@@ -227,7 +143,11 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
             let recorded = run.sampled.recorded.and_then(|recorded| recorded.get(channel).cloned());
             let extremes = recorded.unwrap_or_else(|| Extremes::of(run.time_s, values));
             if let Some(Stay { value, samples, from_s }) = extremes.clipped(period_s, kind) {
-                return Err(MotionError::Clipped { run: run.id.to_owned(), channel, value, unit, samples, from_s });
+                let what = format!(
+                    "{channel} stays at {value} {unit} for {samples} samples from {from_s:.2} s on, longer than a smooth motion does: it is clipped; \
+                     repeat the run with a larger range, or a smaller amplitude"
+                );
+                return Err(TankError::of_run(run.id, what));
             }
         }
     }
@@ -240,8 +160,14 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     let there = (((end_s - start_s) + step_s) / period_s).max(0.0).floor() as usize;
     let whole = asked.used.map_or(there, |used| used.min(there));
     if whole < asked.fewest.max(1) {
-        let (found, skipped, fewest) = (whole, asked.skip, asked.fewest.max(1));
-        return Err(MotionError::TooFewCycles { run: run.id.to_owned(), found, period_s, skipped, fewest });
+        return Err(TankError::new(format!(
+            "run {:?} has {} of {period_s:.2} s after {} of start-up; {} are needed: record longer, or lower \
+             cycles.fewest and read the intervals with care",
+            run.id,
+            counted(whole, "whole cycle", "whole cycles"),
+            asked.skip,
+            asked.fewest.max(1)
+        )));
     }
     let last = if asked.used.is_some_and(|used| used <= there) { at(start_s + whole as f64 * period_s) } else { end };
     let begins = |cycle: usize| at(start_s + cycle as f64 * period_s);
@@ -250,8 +176,13 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     let (numbers, cycles): (Vec<usize>, Vec<Range<usize>>) = cycles.enumerate().filter(is_free).unzip();
     let dropped = whole - cycles.len();
     if cycles.len() < asked.fewest.max(1) {
-        let (left, fewest, marks) = (cycles.len(), asked.fewest.max(1), in_words(marks));
-        return Err(MotionError::Marked { run: run.id.to_owned(), whole, left, fewest, marks });
+        let what = format!(
+            "of its {whole} whole cycles {} are left without a mark, and {} are needed: {}; repeat the run, or widen the sensor's range",
+            cycles.len(),
+            asked.fewest.max(1),
+            in_words(marks)
+        );
+        return Err(TankError::of_run(run.id, what));
     }
     let whole = cycles.len();
     let used =

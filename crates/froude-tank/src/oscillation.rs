@@ -32,7 +32,6 @@
 //! Not here: moments, two axes at once, the memory of the free surface (C_A is that of the frequencies driven), rods that bend.
 
 pub mod computed;
-pub mod error;
 pub mod findings;
 pub mod fit;
 pub mod forces;
@@ -46,7 +45,6 @@ pub mod simulate;
 pub mod source;
 
 pub use crate::motion::{Cycles, Motion};
-pub use error::OscillationError;
 pub use fit::{OscillationFit, fit};
 pub use forces::Drag;
 pub use froude_hydro::swing::{Medium, Pivot};

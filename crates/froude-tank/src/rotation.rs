@@ -25,7 +25,6 @@
 //! roll damping of a hull with a free surface.
 
 pub mod derive;
-pub mod error;
 pub mod findings;
 pub mod fit;
 pub mod forecast;
@@ -39,7 +38,6 @@ pub mod source;
 
 pub use crate::motion::{Cycles, Motion};
 pub use derive::{Derived, LawBehind, derived, law_behind};
-pub use error::RotationError;
 pub use fit::{RotationFit, fit};
 pub use froude_hydro::swing::Pivot as Axis;
 pub use froude_rig::rotation::Mounted;

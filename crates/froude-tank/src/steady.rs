@@ -21,7 +21,6 @@
 //!
 //! Not here: unsteady motion, waves, moments about another point than the sensor's.
 
-pub mod error;
 pub mod page;
 pub mod plan;
 pub mod point;
@@ -33,7 +32,6 @@ pub mod tare;
 pub mod walls;
 pub mod window;
 
-pub use error::SteadyError;
 pub use point::{Load, Point, Run, point, point_told};
 pub use row::Row;
 pub use window::{Motion, Told, Window, window, window_told};

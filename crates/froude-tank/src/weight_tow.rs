@@ -19,7 +19,6 @@
 //! Not here: tracking the mark in the film, distortion across the rail, two clocks (track and loads stand in one log).
 
 pub mod balance;
-pub mod error;
 pub mod page;
 pub mod plan;
 pub mod reduce;
@@ -27,5 +26,3 @@ pub mod section;
 pub mod simulate;
 pub mod source;
 pub mod track;
-
-pub use error::WeightTowError;

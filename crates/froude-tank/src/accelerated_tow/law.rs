@@ -10,7 +10,7 @@ use froude_records::campaign::{Campaign, Source};
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
-use super::error::AcceleratedError;
+use crate::error::TankError;
 
 /// The drag law where none is asked for.
 const DEFAULT_LAW: &str = "linear_quadratic";
@@ -42,7 +42,12 @@ pub fn asked(campaign: &Campaign, source: &Source, data: &Dataset, axis: &str) -
 /// A law that is not written as a formula.
 pub fn with_acceleration(law: &ForceLaw, data: &Dataset, axis: &str) -> Result<ForceLaw, MethodError> {
     let [load, _, acceleration, added] = names(axis);
-    let refused = || MethodError::refused(AcceleratedError::Law { law: law.name.clone(), axis: axis.to_owned() });
+    let refused = || {
+        MethodError::refused(TankError::new(format!(
+            "the law {} is not written as a formula of the load along {axis}; an accelerated tow takes quadratic, linear_quadratic, or a law of [[identify.model]]",
+            law.name
+        )))
+    };
     let at = law.responses.iter().position(|r| *r == load).ok_or_else(refused)?;
     let (_, text) = law.texts.get_index(at).ok_or_else(refused)?;
     if text.contains(&acceleration) {

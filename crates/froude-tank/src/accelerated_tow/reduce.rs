@@ -21,10 +21,10 @@ use froude_identify::dataset::{Dataset, GroupedBy};
 use froude_identify::uncertainty::SharedError;
 use froude_records::run::Declared;
 
-use super::error::AcceleratedError;
 use super::law::{Channels, data, names};
 use super::rows::{Rows, TowRun, row_errors, rows};
 use crate::between_runs::{BetweenRuns, between_runs};
+use crate::error::TankError;
 
 /// What is declared of body and rig.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,7 +94,7 @@ pub struct Reduced {
     /// What declared errors do to them.
     pub errors: Vec<SharedError>,
     /// Runs that give no rows.
-    pub left_out: Vec<AcceleratedError>,
+    pub left_out: Vec<TankError>,
     /// Whether whole runs tell the scatter.
     pub is_by_run: bool,
     /// How the errors of the rows come about, where they tell it.

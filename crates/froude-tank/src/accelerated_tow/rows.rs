@@ -20,8 +20,8 @@ use froude_fit::serial::{RowErrors, RowWindow, serial};
 use froude_fit::series::{taper, tapered};
 use froude_records::run::marks::Mark;
 
-use super::error::AcceleratedError;
 use crate::conditioning::stretches::longest_free;
+use crate::error::TankError;
 
 /// Fewest samples in a window.
 const FEWEST_SAMPLES: f64 = 8.0;
@@ -158,12 +158,16 @@ impl Window {
 }
 
 /// Windows over a whole run, W/3 apart in each stretch without missing ticks.
-pub(crate) fn windows(run: &TowRun<'_>, window_s: f64) -> Result<Vec<(f64, Window)>, AcceleratedError> {
+pub(crate) fn windows(run: &TowRun<'_>, window_s: f64) -> Result<Vec<(f64, Window)>, TankError> {
     let mut steps: Vec<f64> = run.time_s.windows(2).map(|w| w[1] - w[0]).collect();
     let middle = steps.len() / 2;
     let step_s = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
     if window_s / step_s < FEWEST_SAMPLES {
-        return Err(AcceleratedError::Window { run: run.id.to_owned(), window_s, found: window_s / step_s });
+        let what = format!(
+            "a window of {window_s} s holds {:.1} samples, and 8 are needed; log faster, or write a longer window in [source.accelerated_tow]",
+            window_s / step_s
+        );
+        return Err(TankError::of_run(run.id, what));
     }
     let middles = |part: &[f64]| {
         let (first, last) = (part[0], part[part.len() - 1]);
@@ -179,9 +183,14 @@ pub(crate) fn windows(run: &TowRun<'_>, window_s: f64) -> Result<Vec<(f64, Windo
 ///
 /// # Errors
 ///
-/// [`AcceleratedError`]: no motion, no part at rest, a clipped cell, accelerations below their noise.
-pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, AcceleratedError> {
-    let too_few = |found| AcceleratedError::NoMotion { run: run.id.to_owned(), found, needed: FEWEST_ROWS, window_s };
+/// [`TankError`]: no motion, no part at rest, a clipped cell, accelerations below their noise.
+pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, TankError> {
+    let too_few = |found: usize| {
+        let what = format!(
+            "{found} windows of {window_s} s show motion, and {FEWEST_ROWS} are needed; a run at rest has the role \"still\", and a short one wants a shorter window"
+        );
+        TankError::of_run(run.id, what)
+    };
     let n = match run.way {
         Way::Position(x) => x.len(),
         Way::Speed(v) => v.len(),
@@ -251,7 +260,12 @@ pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, Accel
     out.noise_m_s2 = root_mean_square(&at_rest).max(noise_of_step(run, &all[start].1));
     let rms = root_mean_square(&out.acceleration_m_s2);
     if rms < ABOVE_NOISE * out.noise_m_s2 {
-        return Err(AcceleratedError::NoAcceleration { run: run.id.to_owned(), rms, noise: out.noise_m_s2 });
+        let what = format!(
+            "its acceleration ({rms:.2e} m/s² in the mean square) is not above its noise ({:.2e} m/s²); accelerate harder, or write a longer window in \
+             [source.accelerated_tow]",
+            out.noise_m_s2
+        );
+        return Err(TankError::of_run(run.id, what));
     }
     Ok(out)
 }
@@ -308,7 +322,7 @@ impl Zero {
     }
 }
 
-fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Zero, AcceleratedError> {
+fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Zero, TankError> {
     let t = run.time_s;
     let (first, last) = (t[0], t[t.len() - 1]);
     let free = |rows| longest_free(t, rows, run.marks).unwrap_or(0..0);
@@ -326,12 +340,14 @@ fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Z
         (Some((from, a)), Some((to, b))) => ([(from, tapered(a)), (to, tapered(b))], vec![(from, a), (to, b)]),
         (Some((at, only)), None) | (None, Some((at, only))) => ([(at, tapered(only)); 2], vec![(at, only)]),
         (None, None) => {
-            return Err(AcceleratedError::NoZero {
-                run: run.id.to_owned(),
-                before_s: begins_s - first,
-                after_s: last - ends_s,
-                needed_s: 2.0 * window_s,
-            });
+            let what = format!(
+                "the zero of the cell is unknown: the body stands still for {:.2} s before and {:.2} s after the tow, and {:.2} s are needed once; \
+                 log while it stands still",
+                begins_s - first,
+                last - ends_s,
+                2.0 * window_s
+            );
+            return Err(TankError::of_run(run.id, what));
         }
     };
     let (standards, dof) = of_means(&rests.iter().map(|(_, values)| *values).collect::<Vec<_>>());
@@ -378,7 +394,7 @@ fn of_means(parts: &[&[f64]]) -> (Vec<f64>, f64) {
 }
 
 /// A cell that stands at its largest or smallest reading where it moves. One whose noise is below its step repeats itself at rest, too, and is none.
-fn clipped(run: &TowRun<'_>, begins_s: f64, ends_s: f64) -> Result<(), AcceleratedError> {
+fn clipped(run: &TowRun<'_>, begins_s: f64, ends_s: f64) -> Result<(), TankError> {
     let (low, high) =
         run.force_n.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
     let (from, to) = (run.time_s.partition_point(|t| *t < begins_s), run.time_s.partition_point(|t| *t <= ends_s));
@@ -392,7 +408,11 @@ fn clipped(run: &TowRun<'_>, begins_s: f64, ends_s: f64) -> Result<(), Accelerat
     for value in [low, high] {
         let found = part(value);
         if found >= CLIPPED && low < high && repeats <= REPEATS {
-            return Err(AcceleratedError::Clipped { run: run.id.to_owned(), value, part: 1e2 * found });
+            let what = format!(
+                "force stands at {value} N in {:.0} % of its moving part: the cell is clipped; widen its range, or accelerate less",
+                1e2 * found
+            );
+            return Err(TankError::of_run(run.id, what));
         }
     }
     Ok(())
@@ -457,9 +477,10 @@ mod tests {
             assert!((2.0 * a - f).abs() < 0.01, "{a} {f}");
         }
         // A force that is later than the log is long leaves nothing.
-        assert!(matches!(rows(&run, 0.4, 100.0), Err(AcceleratedError::NoMotion { found: 0, .. })));
+        let refused = |run: &TowRun<'_>, delay_s: f64| rows(run, 0.4, delay_s).unwrap_err().to_string();
+        assert!(refused(&run, 100.0).starts_with("run \"a\": 0 windows of 0.4 s show motion, and 6 are needed"));
         let short = TowRun { way: Way::Speed(&v[..10]), ..run };
-        assert!(matches!(rows(&short, 0.4, 0.0), Err(AcceleratedError::NoMotion { .. })));
+        assert!(refused(&short, 0.0).contains("windows of 0.4 s show motion"));
     }
 
     #[test]
@@ -467,10 +488,11 @@ mod tests {
         let t = times(400);
         let moving: Vec<f64> = t.iter().map(|t| 0.3 + 0.1 * t).collect();
         let run = TowRun { id: "a", time_s: &t, way: Way::Speed(&moving), force_n: &moving, marks: &[] };
-        assert!(matches!(rows(&run, 0.4, 0.0), Err(AcceleratedError::NoZero { .. })));
+        let refused = |run: &TowRun<'_>, window_s: f64| rows(run, window_s, 0.0).unwrap_err().to_string();
+        assert!(refused(&run, 0.4).starts_with("run \"a\": the zero of the cell is unknown"));
         let still = vec![0.0; 400];
         let run = TowRun { way: Way::Speed(&still), ..run };
-        assert!(matches!(rows(&run, 0.4, 0.0), Err(AcceleratedError::NoMotion { found: 0, .. })));
-        assert!(matches!(rows(&run, 0.05, 0.0), Err(AcceleratedError::Window { .. })));
+        assert!(refused(&run, 0.4).starts_with("run \"a\": 0 windows of 0.4 s show motion"));
+        assert!(refused(&run, 0.05).starts_with("run \"a\": a window of 0.05 s holds 5.0 samples"));
     }
 }

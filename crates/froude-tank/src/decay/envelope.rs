@@ -22,6 +22,7 @@ use super::fit::{DecayFit, Method, RunSummary};
 use super::run::{DecayRun, DecaySetup};
 use super::swings::Swings;
 use crate::decay::reduced::Reduced;
+use crate::error::TankError;
 
 /// Added mass and damping from turning points and passages.
 ///
@@ -32,15 +33,17 @@ use crate::decay::reduced::Reduced;
 /// [`DecayError`]: a damaged log, a declared number that cannot be, no release with five peaks, or a restoring moment that is no spring's.
 pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, DecayError> {
     let reduced = Reduced::of(runs, setup, Method::Envelope)?;
-    let not_a_spring = |(run, swings): &(DecayRun<'_>, Swings)| DecayError::NotASpring {
-        run: run.id.to_owned(),
-        peak_rad: swings.turns.iter().map(|t| (t.position - swings.rest).abs()).fold(0.0, f64::max),
-        method: Method::Envelope.name(),
-    };
-    if let (true, Some(run)) = (setup.restoring.is_pendulum(), reduced.runs.first()) {
-        return Err(not_a_spring(run));
+    if let (true, Some((run, swings))) = (setup.restoring.is_pendulum(), reduced.runs.first()) {
+        let peak_rad = swings.turns.iter().map(|t| (t.position - swings.rest).abs()).fold(0.0, f64::max);
+        let what = format!(
+            "a buoyancy at a radius drives back by sin φ, which at {peak_rad:.3} rad is {:.1} % less than φ, and the formulas of {} are those of a \
+             spring; use decay_output_error, or release from less and declare stiffness = B r",
+            100.0 * (1.0 - peak_rad.sin() / peak_rad),
+            Method::Envelope.name()
+        );
+        return Err(TankError::of_run(run.id, what).into());
     }
-    let undetermined = || DecayError::Undetermined { what: "linear and quadratic damping".to_owned() };
+    let undetermined = || DecayError::undetermined("linear and quadratic damping");
     let pooled = reduced.pooled.ok_or_else(undetermined)?;
     let values = pooled.values;
     let [by_inertia, by_stiffness] = DecayFit::by_declared(setup, values);

@@ -73,8 +73,8 @@ pub fn forecast(
             }
         }
     }
-    let what = "added mass, linear and quadratic damping".to_owned();
-    let inverse = inverted(&gram).ok_or(DecayError::Undetermined { what })?;
+    let undetermined = || DecayError::undetermined("added mass, linear and quadratic damping");
+    let inverse = inverted(&gram).ok_or_else(undetermined)?;
     let reach = Mat::from_fn(3, p, |i, j| at.sought[i][j]) * inverse;
     let scatter = &reach * noise * reach.transpose();
     let values = at.values;
@@ -108,7 +108,7 @@ fn exactly(setup: &DecaySetup) -> DecaySetup {
 pub fn peaks_of(found: &Forecast, id: &str) -> usize {
     let used = found.peaks.iter().find(|(run, _)| run == id).map(|(_, peaks)| *peaks);
     let left_out = found.left_out.iter().find_map(|why| match why {
-        DecayError::TooFewPeaks { run, found, .. } if run == id => Some(*found),
+        DecayError::Release { run, peaks, .. } if run == id => *peaks,
         _ => None,
     });
     used.or(left_out).unwrap_or(0)

@@ -142,12 +142,12 @@ impl Model for Releases<'_> {
 ///
 /// # Errors
 ///
-/// [`DecayError`]: as for the envelope, and [`DecayError::Fit`] where the search does not start.
+/// [`DecayError`]: as for the envelope, and where the search does not start.
 pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, DecayError> {
     let reduced = Reduced::of(runs, setup, Method::OutputError)?;
     let model = Releases::of(&reduced, setup);
     let parameters = start(&reduced, setup, &model);
-    let found = minimise(&model, &parameters, &Settings::default()).map_err(|e| DecayError::Fit(e.to_string()))?;
+    let found = minimise(&model, &parameters, &Settings::default()).map_err(|e| DecayError::of_fit(&e.to_string()))?;
     let values = model.sought(&found.values);
     let [by_inertia, by_stiffness] = DecayFit::by_declared(setup, values);
     let summary = |(i, (run, swings)): (usize, &(DecayRun<'_>, Swings))| {
@@ -227,9 +227,9 @@ pub(super) fn linearised(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<Li
     let reduced = Reduced::of(runs, setup, Method::OutputError)?;
     let model = Releases::of(&reduced, setup);
     let parameters = start(&reduced, setup, &model);
-    let found = minimise(&model, &parameters, &Settings::default()).map_err(|e| DecayError::Fit(e.to_string()))?;
+    let found = minimise(&model, &parameters, &Settings::default()).map_err(|e| DecayError::of_fit(&e.to_string()))?;
     let n = model.runs.len();
-    let grown = || DecayError::Fit("the motion of the truth grows beyond all numbers".to_owned());
+    let grown = || DecayError::of_fit("the motion of the truth grows beyond all numbers");
     let derivatives = (0..n).map(|run| model.derivatives(run, &found.values).ok_or_else(grown));
     let mut sought: [Vec<f64>; SOUGHT] = std::array::from_fn(|_| vec![0.0; parameters.len()]);
     let share = if model.has_own { 1.0 / n as f64 } else { 1.0 };

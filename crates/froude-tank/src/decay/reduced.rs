@@ -11,6 +11,7 @@ use crate::decay::fit::{HalfCycle, Method, Range, Scatter};
 use crate::decay::pool::{EIGHT_OVER_3_PI, Estimate, Sums};
 use crate::decay::run::{DecayRun, DecaySetup};
 use crate::decay::swings::Swings;
+use crate::error::TankError;
 
 /// Runs from which leaving one out says how far they scatter.
 pub const FEWEST_RUNS: usize = 3;
@@ -31,19 +32,14 @@ impl<'a> Reduced<'a> {
     pub fn of(runs: &[DecayRun<'a>], setup: &DecaySetup, method: Method) -> Result<Self, DecayError> {
         setup.check()?;
         if runs.is_empty() {
-            return Err(DecayError::NoRuns);
+            return Err(TankError::new("no release was given; a decay test needs at least one").into());
         }
         let (mut used, mut left_out) = (Vec::new(), Vec::new());
         for run in runs {
             match Swings::of(run, setup, method) {
                 Ok(swings) => used.push((*run, swings)),
                 // A release that shows nothing is left out aloud; a damaged log is an error.
-                Err(
-                    why @ (DecayError::NoMotion { .. }
-                    | DecayError::OverDamped { .. }
-                    | DecayError::Irregular { .. }
-                    | DecayError::TooFewPeaks { .. }),
-                ) => left_out.push(why),
+                Err(why @ DecayError::Release { .. }) => left_out.push(why),
                 Err(why) => return Err(why),
             }
         }

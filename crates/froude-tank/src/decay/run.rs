@@ -3,7 +3,7 @@
 use froude_fit::budget::Uncertain;
 use froude_records::campaign::Motion;
 
-use super::error::DecayError;
+use crate::error::TankError;
 
 /// One release: columns of one length, time in even steps.
 #[derive(Debug, Clone, Copy)]
@@ -29,22 +29,25 @@ impl DecayRun<'_> {
     }
 
     /// The run is what [`DecayRun`] says.
-    pub(super) fn check(&self) -> Result<(), DecayError> {
-        let run = || self.id.to_owned();
+    pub(super) fn check(&self) -> Result<(), TankError> {
         let (n, found) = (self.time_s.len(), self.position.len());
         if n != found {
-            return Err(DecayError::Length { run: run(), found, expected: n });
+            return Err(TankError::of_run(self.id, format!("position has {found} samples where time has {n}")));
         }
         for (column, values) in [("time", self.time_s), ("position", self.position)] {
             if let Some(index) = values.iter().position(|x| !x.is_finite()) {
-                return Err(DecayError::NotFinite { run: run(), column, index });
+                return Err(TankError::of_run(self.id, format!("{column} at sample {index} is not finite")));
             }
         }
         let step_s = self.step_s();
         let late = |i: usize| self.time_s[i] - self.time_s[0] - i as f64 * step_s;
         let worst = (0..n).max_by(|&a, &b| late(a).abs().total_cmp(&late(b).abs()));
         if let Some(index) = worst.filter(|&i| step_s.is_nan() || step_s <= 0.0 || late(i).abs() > EVEN * step_s) {
-            return Err(DecayError::UnevenTime { run: run(), index, late_s: late(index), step_s });
+            let what = format!(
+                "sample {index} is {:.3e} s off an even step of {step_s:.3e} s; resample the log to even steps first",
+                late(index)
+            );
+            return Err(TankError::of_run(self.id, what));
         }
         Ok(())
     }
@@ -144,8 +147,9 @@ impl DecaySetup {
         self.window.smallest_over_noise * noise
     }
 
-    pub(super) fn check(&self) -> Result<(), DecayError> {
-        let refuse = |what: &'static str, value, must| Err(DecayError::Declared { what, value, must });
+    pub(super) fn check(&self) -> Result<(), TankError> {
+        let refuse =
+            |what: &str, value: f64, must: &str| Err(TankError::new(format!("{what} is {value}; it must be {must}")));
         let (m, w) = (self.inertia, self.window);
         if !(m.value >= 0.0 && m.value.is_finite()) {
             return refuse("the dry inertia", m.value, "zero or more and finite");

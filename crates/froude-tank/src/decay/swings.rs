@@ -11,6 +11,8 @@ use super::error::DecayError;
 use super::fit::Method;
 use super::local::{self, FEWEST, REACH_RAD, Spot};
 use super::run::{DecayRun, DecaySetup};
+use crate::error::TankError;
+use froude_records::text::counted;
 
 /// The band about rest, as part of the distance that a peak exceeds.
 const BAND: f64 = 0.625;
@@ -42,20 +44,25 @@ impl Swings {
     /// The used part of a run, with as many peaks as a method needs.
     pub fn of(run: &DecayRun<'_>, setup: &DecaySetup, method: Method) -> Result<Self, DecayError> {
         run.check()?;
-        let id = || run.id.to_owned();
         let window = setup.window;
         let first = window.free_from_s.map_or(0, |t| run.time_s.partition_point(|s| *s < t));
         if let (Some(free_from_s), Some(last_s)) =
             (window.free_from_s, run.time_s.last().filter(|_| first == run.time_s.len()))
         {
-            return Err(DecayError::FreeAfterEnd { run: id(), free_from_s, last_s: *last_s });
+            let what = format!(
+                "free_from = {free_from_s} s, and the log ends at {last_s} s: it counts in the log's times, those of a calendar from the first sample"
+            );
+            return Err(TankError::of_run(run.id, what).into());
         }
         let (time_s, q) = (&run.time_s[first..], &run.position[first..]);
         let noise = window.noise.unwrap_or_else(|| local::noise_of(q));
         let mut rest = midrange(&q[q.len() / 2..]);
         let range = q.iter().fold(0.0_f64, |m, x| m.max((x - rest).abs()));
         if range.is_nan() || range <= setup.level(noise) {
-            return Err(DecayError::NoMotion { run: id(), range, noise });
+            let what = format!(
+                "the motion reaches {range:.3e} where the noise of a sample is {noise:.3e}; release from further out"
+            );
+            return Err(DecayError::of_release(run.id, what));
         }
         let level = setup.level(noise).max(NOISELESS * range);
         let band = BAND * level;
@@ -67,20 +74,25 @@ impl Swings {
         }
         let mut crossed = crossings(time_s, q, rest, band);
         let above = crossed.iter().skip(window.skip_half_cycles).take_while(|c| c.furthest > level).count();
-        let few = |found: usize| DecayError::TooFewPeaks {
-            run: id(),
-            found,
-            level,
-            unit: setup.axis.position_unit(),
-            over_noise: window.smallest_over_noise,
-            method: method.name(),
-            needed: method.fewest_peaks(),
-            advice: method.of_few_peaks(),
+        let few = |found: usize| {
+            let why = format!(
+                "{} further than {level:.3e} {} from rest ({} times the noise of a sample), and {} needs {}; {}",
+                counted(found, "peak", "peaks"),
+                setup.axis.position_unit(),
+                window.smallest_over_noise,
+                method.name(),
+                method.fewest_peaks(),
+                method.of_few_peaks()
+            );
+            DecayError::Release { run: run.id.to_owned(), why, peaks: Some(found) }
         };
         if crossed.len() < 2 {
             let tail = &q[q.len() - q.len() / 10 - 1..];
             let is_back = tail.iter().all(|x| (x - rest).abs() <= band);
-            return Err(if is_back && crossed.is_empty() { DecayError::OverDamped { run: id() } } else { few(above) });
+            let over_damped = "the body returns without passing its rest position (over-damped); stiffer springs or a smaller \
+                               release make it swing";
+            let is_damped = is_back && crossed.is_empty();
+            return Err(if is_damped { DecayError::of_release(run.id, over_damped) } else { few(above) });
         }
         let mut gaps: Vec<f64> = crossed.windows(2).map(|w| w[1].time_s - w[0].time_s).collect();
         let middle = gaps.len() / 2;
@@ -89,7 +101,8 @@ impl Swings {
         let in_half_cycle = half_period_s / run.step_s();
         if 2.0 * reach_s / run.step_s() < FEWEST as f64 {
             let needed = (FEWEST as f64 * PI / (2.0 * REACH_RAD)).ceil() as usize;
-            return Err(DecayError::TooCoarse { run: id(), found: in_half_cycle, needed });
+            let what = format!("{in_half_cycle:.1} samples in a half cycle, {needed} are needed; sample faster");
+            return Err(TankError::of_run(run.id, what).into());
         }
         crossed.truncate(window.skip_half_cycles + above);
         let (mut passages, mut turns) = (Vec::new(), Vec::new());
@@ -117,7 +130,12 @@ impl Swings {
             turns.push(turn);
         }
         if turns.len() < method.fewest_peaks() && unread > 0 {
-            return Err(DecayError::Irregular { run: id(), half_cycle: turns.len() });
+            let what = format!(
+                "half cycle {} has no turning point near its middle: two modes beat, or a wave disturbs it; restrain the \
+                 other mode, or count swings only while they are larger (smallest over noise)",
+                turns.len()
+            );
+            return Err(DecayError::of_release(run.id, what));
         }
         if turns.len() < method.fewest_peaks() {
             return Err(few(turns.len()));
@@ -255,22 +273,22 @@ mod tests {
     #[test]
     fn what_does_not_swing_is_refused_with_its_reason() {
         let (t, q) = record(|t| 0.1 * (-t).exp());
-        assert!(matches!(swings(&t, &q), Err(DecayError::OverDamped { .. })), "{:?}", swings(&t, &q));
+        let refused = |t: &[f64], q: &[f64]| swings(t, q).unwrap_err().to_string();
+        assert!(refused(&t, &q).contains("(over-damped)"), "{}", refused(&t, &q));
         let (t, q) = record(|t| if t < 3.0 { t.cos() } else { 0.0 });
         assert!(swings(&t, &q).is_err());
         let (t, q) = record(|_| 0.25);
-        assert!(matches!(swings(&t, &q), Err(DecayError::NoMotion { .. })));
+        assert!(refused(&t, &q).starts_with("run \"r\": the motion reaches 0"), "{}", refused(&t, &q));
         let (t, mut q) = record(f64::cos);
         q[7] = f64::NAN;
-        assert!(matches!(swings(&t, &q), Err(DecayError::NotFinite { index: 7, .. })));
+        assert_eq!(refused(&t, &q), "run \"r\": position at sample 7 is not finite");
         let (mut t, q) = record(f64::cos);
         t[500] += 0.01;
-        let said = swings(&t, &q).unwrap_err().to_string();
         assert_eq!(
-            said,
+            refused(&t, &q),
             "run \"r\": sample 500 is 1.000e-2 s off an even step of 2.000e-2 s; resample the log to even steps first"
         );
-        assert!(matches!(swings(&t[..10], &q), Err(DecayError::Length { .. })));
+        assert_eq!(refused(&t[..10], &q), "run \"r\": position has 1000 samples where time has 10");
         assert!(swings(&[], &[]).is_err() && swings(&[0.0], &[0.0]).is_err());
     }
 }

@@ -6,9 +6,9 @@
 use froude_signal::clock::{Alignment, align};
 
 use super::coefficients::Used;
-use super::error::ExcitedError;
-use super::setup::{Shows, WaveRun};
+use super::setup::{Shows, WaveRun, not_fitted};
 use super::window::up;
+use crate::error::TankError;
 
 /// Periods of a window.
 const PERIODS: usize = 4;
@@ -19,16 +19,16 @@ const FROM: f64 = 0.5;
 ///
 /// # Errors
 ///
-/// [`ExcitedError::Channel`].
+/// A fit that fails.
 #[must_use]
-pub fn camera(run: &WaveRun<'_>, used: &Used, harmonics: usize) -> Option<Result<Alignment, ExcitedError>> {
+pub fn camera(run: &WaveRun<'_>, used: &Used, harmonics: usize) -> Option<Result<Alignment, TankError>> {
     let position = run.camera_m.filter(|_| run.shows == Shows::Acceleration)?;
     let omega = used.wave.omega_rad_s;
     let compared = |from_s: f64| {
         let rows = run.time_s.partition_point(|t| *t < used.wave.start_s + from_s)..run.time_s.len();
         let heave: Vec<f64> = run.signal[rows.clone()].iter().map(|a| -a / (omega * omega)).collect();
         align(&run.time_s[rows.clone()], &heave, &position[rows], omega, PERIODS)
-            .map_err(|source| ExcitedError::Channel { run: run.id.to_owned(), channel: "heave of the camera", source })
+            .map_err(|source| not_fitted(run, "heave of the camera", &source))
     };
     Some(up(run, &used.wave, harmonics, FROM).and_then(compared))
 }

@@ -19,11 +19,11 @@
 use faer::{Mat, c64};
 use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, combine};
 
-use super::error::ExcitedError;
 use super::response::{DOF, Response, response};
 use super::setup::{Setup, Shows, WaveRun};
 use super::wave::{ALIKE, Wave, turn};
 use super::window::window;
+use crate::error::TankError;
 
 /// Names of the two.
 pub const NAMES: [&str; 2] = ["A33", "B33"];
@@ -111,10 +111,12 @@ impl AtPeriod {
 ///
 /// # Errors
 ///
-/// See [`ExcitedError`].
-pub fn fit(runs: &[WaveRun<'_>], setup: &Setup) -> Result<Vec<AtPeriod>, ExcitedError> {
+/// No run with the free body or with the held one, runs of different waves or motions, a window that cannot be used, a fit that fails.
+pub fn fit(runs: &[WaveRun<'_>], setup: &Setup) -> Result<Vec<AtPeriod>, TankError> {
     if runs.iter().all(WaveRun::is_held) {
-        return Err(ExcitedError::NoFree);
+        return Err(TankError::new(
+            "no run with the free body was given (role \"free\"); its motion and the force of a run with the held body give the coefficients",
+        ));
     }
     let waves = runs.iter().map(Wave::of).collect::<Result<Vec<_>, _>>()?;
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -130,7 +132,7 @@ pub fn fit(runs: &[WaveRun<'_>], setup: &Setup) -> Result<Vec<AtPeriod>, Excited
     groups.iter().map(|group| at_period(runs, &waves, group, setup)).collect()
 }
 
-fn at_period(runs: &[WaveRun<'_>], waves: &[Wave], group: &[usize], setup: &Setup) -> Result<AtPeriod, ExcitedError> {
+fn at_period(runs: &[WaveRun<'_>], waves: &[Wave], group: &[usize], setup: &Setup) -> Result<AtPeriod, TankError> {
     let (held, free): (Vec<usize>, Vec<usize>) = group.iter().partition(|&&i| runs[i].is_held());
     if held.is_empty() {
         return Err(no_held(runs, waves, free[0]));
@@ -138,14 +140,27 @@ fn at_period(runs: &[WaveRun<'_>], waves: &[Wave], group: &[usize], setup: &Setu
     let shows = runs[free[0]].shows;
     for &f in &free {
         if runs[f].shows != shows {
-            let [run, first] = [f, free[0]].map(|i| runs[i].id.to_owned());
-            return Err(ExcitedError::Mixed { run, other: runs[f].shows.name(), first, shown: shows.name() });
+            return Err(TankError::new(format!(
+                "run {:?} shows the {} of the body, and run {:?}, of the same wave, its {}; the two have gains of their own; give each a [[source]]",
+                runs[f].id,
+                runs[f].shows.name(),
+                runs[free[0]].id,
+                shows.name()
+            )));
         }
         for &h in &held {
             let (free_m, held_m) = (waves[f].amplitude, waves[h].amplitude);
             if (free_m / held_m - 1.0).abs() > MOST_OTHER {
-                let [free, held] = [f, h].map(|i| runs[i].id.to_owned());
-                return Err(ExcitedError::OtherWave { free, held, free_m, held_m, most: MOST_OTHER });
+                return Err(TankError::new(format!(
+                    "the wavemaker moves by {:.3} mm in run {:?} and by {:.3} mm in run {:?}, a ratio of {:.2}; force and motion can be scaled to one wave within {:.0} %, beyond that the response is not \
+                     known to be linear: repeat one of them",
+                    1e3 * free_m,
+                    runs[f].id,
+                    1e3 * held_m,
+                    runs[h].id,
+                    free_m / held_m,
+                    1e2 * MOST_OTHER
+                )));
             }
         }
     }
@@ -156,7 +171,7 @@ fn at_period(runs: &[WaveRun<'_>], waves: &[Wave], group: &[usize], setup: &Setu
             window(&all, setup.harmonics)?
         }
     };
-    let used = |indices: &[usize]| -> Result<Vec<Used>, ExcitedError> {
+    let used = |indices: &[usize]| -> Result<Vec<Used>, TankError> {
         let one = |&run: &usize| {
             let response = response(&runs[run], &waves[run], window_s, setup.harmonics)?;
             Ok(Used { run, wave: waves[run], response })
@@ -198,12 +213,16 @@ fn at_period(runs: &[WaveRun<'_>], waves: &[Wave], group: &[usize], setup: &Setu
     })
 }
 
-fn no_held(runs: &[WaveRun<'_>], waves: &[Wave], free: usize) -> ExcitedError {
+fn no_held(runs: &[WaveRun<'_>], waves: &[Wave], free: usize) -> TankError {
     let held = || runs.iter().zip(waves).filter(|(run, _)| run.is_held());
     let each: Vec<String> = held().map(|(run, wave)| format!("{:?} of {:.3} s", run.id, wave.period_s())).collect();
     let there =
         if each.is_empty() { "there is none at all".to_owned() } else { format!("there are {}", each.join(", ")) };
-    ExcitedError::NoHeld { run: runs[free].id.to_owned(), period_s: waves[free].period_s(), there }
+    let what = format!(
+        "no run with the held body (role \"held\") has its wave of {:.3} s; {there}: add the run in which the body is held in this wave, or leave this one out",
+        waves[free].period_s()
+    );
+    TankError::of_run(runs[free].id, what)
 }
 
 /// A33 and B33 of X.

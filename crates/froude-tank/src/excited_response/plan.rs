@@ -14,14 +14,14 @@ use froude_records::text::counted;
 use froude_rig::steady::Reading;
 
 use super::coefficients::{NAMES, UNITS, budget, errors, scatter};
-use super::error::ExcitedError;
-use super::response::{DOF, FEWEST_CYCLES};
+use super::response::{DOF, cycles_within};
 use super::section;
 use super::setup::{Setup, Shows};
 use super::simulate::senses;
 use super::simulate::{Planned, SENSORS, planned, truth};
 use super::source::setup_of;
 use super::wave::LEFT_OUT;
+use crate::error::TankError;
 use crate::plan::{self, Expected};
 use crate::sensors::{reading, seed_and_sensors};
 
@@ -48,13 +48,13 @@ pub struct Forecast {
 ///
 /// # Errors
 ///
-/// [`ExcitedError::WindowOutside`], [`ExcitedError::TooFewCycles`], [`ExcitedError::NoHeld`].
+/// A window outside of the log, or of too few cycles.
 pub fn forecast(
     planned: &[Planned],
     setup: &Setup,
     window_s: [f64; 2],
     sensors: &[SensorSpec],
-) -> Result<Vec<Forecast>, ExcitedError> {
+) -> Result<Vec<Forecast>, TankError> {
     let waves = planned.chunk_by(|a, b| a.rig == b.rig);
     waves.map(|runs| at_wave(runs, setup, window_s, sensors)).collect()
 }
@@ -64,25 +64,11 @@ fn at_wave(
     setup: &Setup,
     [from_s, to_s]: [f64; 2],
     sensors: &[SensorSpec],
-) -> Result<Forecast, ExcitedError> {
+) -> Result<Forecast, TankError> {
     let (rig, period_s) = (runs[0].rig, runs[0].period_s);
-    let run = || runs[0].id.clone();
     // The start is seen when the stroke has come up: at most its ramp later.
-    let (start_s, last_s) = (rig.still_s + rig.ramp_s, rig.lasts_s - rig.ramp_s);
-    if to_s > last_s {
-        return Err(ExcitedError::WindowOutside { run: run(), from_s, to_s, start_s, last_s });
-    }
-    let cycles = ((to_s - from_s) / period_s).floor() as usize;
-    if cycles < FEWEST_CYCLES {
-        let length_s = to_s - from_s;
-        return Err(ExcitedError::TooFewCycles {
-            run: run(),
-            found: cycles,
-            fewest: FEWEST_CYCLES,
-            period_s,
-            length_s,
-        });
-    }
+    let ends_s = [rig.still_s + rig.ramp_s, rig.lasts_s - rig.ramp_s];
+    let cycles = cycles_within(&runs[0].id, [from_s, to_s], ends_s, period_s, 0.0)?;
     let held = runs.iter().filter(|run| run.is_held).count();
     let counts = [held, runs.len() - held];
     let w = rig.omega_rad_s;

@@ -11,9 +11,9 @@ use std::ops::Range;
 use faer::c64;
 use froude_signal::harmonic::Harmonics;
 
-use super::error::ExcitedError;
-use super::setup::WaveRun;
+use super::setup::{WaveRun, not_fitted};
 use super::wave::{Wave, turn};
+use crate::error::TankError;
 
 /// Fewest whole cycles of a window.
 pub const FEWEST_CYCLES: usize = 5;
@@ -47,52 +47,31 @@ pub struct Response {
 ///
 /// # Errors
 ///
-/// [`ExcitedError::WindowOutside`], [`ExcitedError::TooFewCycles`], [`ExcitedError::Channel`], [`ExcitedError::Nothing`].
+/// A window outside of the log or of too few cycles, a fit that fails, nothing at the frequency of the wave.
 pub fn response(
     run: &WaveRun<'_>,
     wave: &Wave,
     [from_s, to_s]: [f64; 2],
     harmonics: usize,
-) -> Result<Response, ExcitedError> {
+) -> Result<Response, TankError> {
     let last_s = run.time_s.last().copied().unwrap_or(0.0) - wave.start_s;
-    if to_s > last_s {
-        return Err(ExcitedError::WindowOutside {
-            run: run.id.to_owned(),
-            from_s,
-            to_s,
-            start_s: wave.start_s,
-            last_s,
-        });
-    }
     let period_s = wave.period_s();
-    let cycles = ((to_s - from_s) / period_s + ROUNDING).floor() as usize;
-    if cycles < FEWEST_CYCLES {
-        return Err(ExcitedError::TooFewCycles {
-            run: run.id.to_owned(),
-            found: cycles,
-            fewest: FEWEST_CYCLES,
-            period_s,
-            length_s: to_s - from_s,
-        });
-    }
+    let cycles = cycles_within(run.id, [from_s, to_s], [wave.start_s, last_s], period_s, ROUNDING)?;
     let begin_s = wave.start_s + from_s;
     let rows_of = |from: f64, to: f64| {
         let at = |cycles: f64| run.time_s.partition_point(|t| *t < begin_s + cycles * period_s);
         at(from)..at(to)
     };
     let fit_of = |rows: Range<usize>, signal: &[f64], order: usize, omega: f64| {
-        Harmonics::held(&run.time_s[rows], signal, order, omega).map_err(|source| ExcitedError::Channel {
-            run: run.id.to_owned(),
-            channel: run.shows.name(),
-            source,
-        })
+        Harmonics::held(&run.time_s[rows], signal, order, omega).map_err(|e| not_fitted(run, run.shows.name(), &e))
     };
     let n = cycles as f64;
     let rows = rows_of(0.0, n);
     let fit = fit_of(rows.clone(), &run.signal[rows.clone()], harmonics, wave.omega_rad_s)?;
     let amplitude = fit.amplitude(1);
     if amplitude <= 0.0 {
-        return Err(ExcitedError::Nothing { run: run.id.to_owned(), channel: run.shows.name() });
+        let what = format!("the {} has no part at the wave's frequency; check which column it is", run.shows.name());
+        return Err(TankError::of_run(run.id, what));
     }
     let fitted: Vec<f64> = run.time_s[rows.clone()].iter().map(|t| fit.at(*t)[0]).collect();
     let left: Vec<f64> = run.signal[rows.clone()].iter().zip(&fitted).map(|(x, f)| x - f).collect();
@@ -117,6 +96,32 @@ pub fn response(
         rows,
         fitted,
     })
+}
+
+/// The whole cycles of a window, in turns counted to within `rounding`; `start_s` and `last_s` are the wavemaker's start, and the log's end after it.
+pub(super) fn cycles_within(
+    run: &str,
+    [from_s, to_s]: [f64; 2],
+    [start_s, last_s]: [f64; 2],
+    period_s: f64,
+    rounding: f64,
+) -> Result<usize, TankError> {
+    if to_s > last_s {
+        let what = format!(
+            "the window from {from_s} s to {to_s} s after the wavemaker's start (at {start_s:.2} s of the log) does not lie within the log, which ends {last_s:.2} s after that start; record \
+             longer, or correct window in [source.excited_response]"
+        );
+        return Err(TankError::of_run(run, what));
+    }
+    let cycles = ((to_s - from_s) / period_s + rounding).floor() as usize;
+    if cycles < FEWEST_CYCLES {
+        let what = format!(
+            "the window of {:.2} s holds {cycles} whole cycles of {period_s:.3} s, and {FEWEST_CYCLES} are needed: widen it as far as the reflections allow, or use a longer tank",
+            to_s - from_s
+        );
+        return Err(TankError::of_run(run, what));
+    }
+    Ok(cycles)
 }
 
 /// S/R.

@@ -3,6 +3,9 @@
 use std::borrow::Cow;
 
 use froude_fit::budget::Uncertain;
+use froude_signal::SignalError;
+
+use crate::error::TankError;
 
 /// What the signal of a run shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,4 +103,8 @@ impl Setup {
             harmonics: 3,
         }
     }
+}
+
+pub(super) fn not_fitted(run: &WaveRun<'_>, channel: &str, why: &SignalError) -> TankError {
+    TankError::of_run(run.id, format!("the {channel} cannot be fitted by harmonics: {why}"))
 }

@@ -9,8 +9,8 @@
 use faer::c64;
 use froude_signal::harmonic::Harmonics;
 
-use super::error::ExcitedError;
-use super::setup::WaveRun;
+use super::setup::{WaveRun, not_fitted};
+use crate::error::TankError;
 
 /// It runs where it is further from its rest than this part of its largest.
 const RUNS: f64 = 0.3;
@@ -46,21 +46,22 @@ impl Wave {
     ///
     /// # Errors
     ///
-    /// [`ExcitedError::NoWave`], [`ExcitedError::Channel`], [`ExcitedError::Period`].
-    pub fn of(run: &WaveRun<'_>) -> Result<Self, ExcitedError> {
-        let channel =
-            |source| ExcitedError::Channel { run: run.id.to_owned(), channel: "reference (wavemaker)", source };
+    /// Too few cycles of an even stroke, a fit that fails, another period than the declared one.
+    pub fn of(run: &WaveRun<'_>) -> Result<Self, TankError> {
+        let channel = |why| not_fitted(run, "reference (wavemaker)", &why);
         let mut sorted = run.reference.to_vec();
         sorted.sort_by(f64::total_cmp);
         let rest = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
         let away = |x: &f64| (x - rest).abs();
         let largest = run.reference.iter().map(away).fold(0.0, f64::max);
         let is_on = |x: &f64| away(x) > RUNS * largest;
-        let no_wave = |cycles: f64| ExcitedError::NoWave {
-            run: run.id.to_owned(),
-            cycles: cycles.max(0.0),
-            skipped: LEFT_OUT[0],
-            fewest: FEWEST_CYCLES,
+        let no_wave = |cycles: f64| {
+            let what = format!(
+                "the wavemaker runs for {:.1} cycles with an even stroke (start-up of {} left out), and {FEWEST_CYCLES} are needed: check which column is the reference, or record longer",
+                cycles.max(0.0),
+                LEFT_OUT[0]
+            );
+            TankError::of_run(run.id, what)
         };
         let (Some(first), Some(last)) = (run.reference.iter().position(is_on), run.reference.iter().rposition(is_on))
         else {
@@ -72,7 +73,10 @@ impl Wave {
         };
         let period_s = fitted(first, last)?.period_s();
         if let Some(declared_s) = run.period_s.filter(|declared| (period_s / declared - 1.0).abs() > ALIKE) {
-            return Err(ExcitedError::Period { run: run.id.to_owned(), found_s: period_s, declared_s });
+            let what = format!(
+                "its wavemaker has a period of {period_s:.4} s, and [conditions] period says {declared_s} s; check the sidecar, or which log it belongs to"
+            );
+            return Err(TankError::of_run(run.id, what));
         }
         let from = run.time_s.partition_point(|t| *t < start_s + LEFT_OUT[0] * period_s);
         let to = run.time_s.partition_point(|t| *t < stop_s - LEFT_OUT[1] * period_s);

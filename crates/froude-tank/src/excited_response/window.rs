@@ -4,10 +4,10 @@
 
 use froude_signal::harmonic::Harmonics;
 
-use super::error::ExcitedError;
 use super::response::FEWEST_CYCLES;
-use super::setup::WaveRun;
+use super::setup::{WaveRun, not_fitted};
 use super::wave::Wave;
+use crate::error::TankError;
 
 /// Cycles of one fit.
 const CYCLES: f64 = 4.0;
@@ -18,8 +18,8 @@ const UP: f64 = 0.9;
 ///
 /// # Errors
 ///
-/// [`ExcitedError::NoWindow`], [`ExcitedError::Channel`].
-pub fn window(runs: &[(&WaveRun<'_>, &Wave)], harmonics: usize) -> Result<[f64; 2], ExcitedError> {
+/// No window of enough cycles, a fit that fails.
+pub fn window(runs: &[(&WaveRun<'_>, &Wave)], harmonics: usize) -> Result<[f64; 2], TankError> {
     let (mut from_s, mut to_s, mut period_s) = (0.0_f64, f64::INFINITY, 0.0_f64);
     for (run, wave) in runs {
         from_s = from_s.max(up(run, wave, harmonics, UP)?);
@@ -27,7 +27,10 @@ pub fn window(runs: &[(&WaveRun<'_>, &Wave)], harmonics: usize) -> Result<[f64; 
         period_s = period_s.max(wave.period_s());
     }
     if to_s - from_s < FEWEST_CYCLES as f64 * period_s {
-        return Err(ExcitedError::NoWindow { period_s, from_s, to_s });
+        return Err(TankError::new(format!(
+            "waves of {period_s:.3} s: no window is declared, and none is found: force and motion come to nine tenths of their largest {from_s:.1} s after the wavemaker's start, which stops after {to_s:.1} s; \
+             declare window = {{ from = \"…\", to = \"…\" }} in [source.excited_response], before reflections"
+        )));
     }
     Ok([from_s, to_s])
 }
@@ -36,8 +39,8 @@ pub fn window(runs: &[(&WaveRun<'_>, &Wave)], harmonics: usize) -> Result<[f64; 
 ///
 /// # Errors
 ///
-/// [`ExcitedError::Channel`].
-pub fn up(run: &WaveRun<'_>, wave: &Wave, harmonics: usize, part: f64) -> Result<f64, ExcitedError> {
+/// A fit that fails.
+pub fn up(run: &WaveRun<'_>, wave: &Wave, harmonics: usize, part: f64) -> Result<f64, TankError> {
     let period_s = wave.period_s();
     let fits = (wave.runs_s / period_s - CYCLES).floor().max(0.0) as usize;
     let amplitude = |k: usize| {
@@ -45,7 +48,7 @@ pub fn up(run: &WaveRun<'_>, wave: &Wave, harmonics: usize, part: f64) -> Result
         let rows = at(0.0)..at(CYCLES);
         Harmonics::held(&run.time_s[rows.clone()], &run.signal[rows], harmonics, wave.omega_rad_s)
             .map(|fit| fit.amplitude(1))
-            .map_err(|source| ExcitedError::Channel { run: run.id.to_owned(), channel: run.shows.name(), source })
+            .map_err(|why| not_fitted(run, run.shows.name(), &why))
     };
     let amplitudes = (0..fits).map(amplitude).collect::<Result<Vec<_>, _>>()?;
     let largest = amplitudes.iter().copied().fold(0.0, f64::max);

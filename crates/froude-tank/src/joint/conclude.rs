@@ -24,10 +24,11 @@ use super::forecast::inverted;
 use super::solve::{Solved, values};
 use super::{DeclaredError, Equation, JointFit, Problem, Unknown};
 use crate::between_runs::{BetweenRuns, between_runs};
+use crate::error::TankError;
 
 impl<E: Equation> Problem<'_, E> {
     /// Fits all runs together.
-    pub(crate) fn fit(&self) -> Result<JointFit, E::Error> {
+    pub(crate) fn fit(&self) -> Result<JointFit, TankError> {
         let Solved { beta, by_run, effective } = self.solve()?;
         let condensed = self.condense(&beta, by_run, true)?;
         let fit = self.least_squares(&condensed, effective, false, &beta, None).map_err(|e| self.refused(e))?;

@@ -21,6 +21,7 @@ use froude_records::campaign::SensorSpec;
 use super::conclude::part;
 use super::solve::Columns;
 use super::{Equation, Problem};
+use crate::error::TankError;
 use crate::noise::correlated;
 
 pub use crate::plan::Expected;
@@ -56,7 +57,7 @@ pub(crate) fn forecast<E: Equation>(
     beta: &[f64],
     rates_hz: &[f64],
     load: Option<&SensorSpec>,
-) -> Result<Option<Forecast>, E::Error> {
+) -> Result<Option<Forecast>, TankError> {
     let sigma = load.and_then(|s| s.noise).unwrap_or(0.0);
     let correlation_s = load.and_then(|s| s.correlation_s);
     let (held, excluded) = (problem.held(), problem.excluded());

@@ -18,7 +18,8 @@ use froude_fit::faer::Mat;
 use froude_fit::stream::{Accumulator, Factor, Shape, StreamError};
 use froude_fit::{CovarianceKind, FEWEST_CLUSTERS, FitError};
 
-use super::{Enters, Equation, Fitted, JointError, Problem};
+use super::{Enters, Equation, Fitted, Problem};
+use crate::error::TankError;
 
 /// Steps of Gauss and Newton for the delay.
 const MOST_STEPS: usize = 30;
@@ -55,7 +56,7 @@ pub(crate) struct Solved {
 }
 
 impl<E: Equation> Problem<'_, E> {
-    pub(crate) fn solve(&self) -> Result<Solved, E::Error> {
+    pub(crate) fn solve(&self) -> Result<Solved, TankError> {
         let mut beta = self.start.clone();
         let (mut by_run, mut effective) = (self.runs.len() >= FEWEST_CLUSTERS, self.samples() as f64);
         let period_s = self.period_s();
@@ -76,7 +77,12 @@ impl<E: Equation> Problem<'_, E> {
                 let is_held = std::mem::replace(&mut hold, false);
                 beta = next;
                 if let Some(j) = self.delay_at() {
-                    let runs_away = || JointError::Delay { delay_s: beta[j], period_s }.into();
+                    let runs_away = || {
+                        TankError::new(format!(
+                            "the delay of the load does not converge (last value {:.3} s, period {period_s:.2} s): check that angle and load are of one clock and of the right sign, or declare the delay",
+                            beta[j]
+                        ))
+                    };
                     if beta[j].abs() > period_s || !beta[j].is_finite() {
                         return Err(runs_away());
                     }
@@ -101,12 +107,12 @@ impl<E: Equation> Problem<'_, E> {
         Ok(Solved { beta, by_run, effective })
     }
 
-    pub(super) fn refused(&self, source: FitError) -> E::Error {
-        JointError::Fit { model: self.law.clone(), source }.into()
+    pub(super) fn refused(&self, source: FitError) -> TankError {
+        TankError::new(format!("the joint fit of {}: {source}", self.law))
     }
 
-    fn not_summed(&self, source: StreamError) -> E::Error {
-        JointError::Sums { model: self.law.clone(), source }.into()
+    fn not_summed(&self, source: StreamError) -> TankError {
+        TankError::new(format!("the joint fit of {} cannot be summed: {source}", self.law))
     }
 
     /// Coefficients that are held or zero, bounds and priors.
@@ -147,12 +153,12 @@ impl<E: Equation> Problem<'_, E> {
     }
 
     /// The load at samples of a run, without its zero.
-    fn load(&self, run: usize, rows: Range<usize>, beta: &[f64], delay_s: f64) -> Result<Vec<f64>, E::Error> {
+    fn load(&self, run: usize, rows: Range<usize>, beta: &[f64], delay_s: f64) -> Result<Vec<f64>, TankError> {
         Ok(self.equation.terms(run, rows, delay_s, None)?.load(beta))
     }
 
     /// The triangle of each cycle, or of each run without its zero, as rows of one small problem.
-    pub(super) fn condense(&self, beta: &[f64], by_run: bool, with_errors: bool) -> Result<Condensed, E::Error> {
+    pub(super) fn condense(&self, beta: &[f64], by_run: bool, with_errors: bool) -> Result<Condensed, TankError> {
         let p = self.names.len();
         let n_errors = if with_errors { self.inputs.len() } else { 0 };
         let shape = Shape { regressors: 1 + p, responses: n_errors + 1 };
@@ -212,7 +218,7 @@ impl<E: Equation> Problem<'_, E> {
         beta: &[f64],
         with_errors: bool,
         shape: Shape,
-    ) -> Result<Factor, E::Error> {
+    ) -> Result<Factor, TankError> {
         let ones = vec![1.0; rows.len()];
         let Columns { regressors, errors, measured } = self.columns(r, rows, beta, with_errors)?;
         let regressors: Vec<&[f64]> =
@@ -230,7 +236,7 @@ impl<E: Equation> Problem<'_, E> {
         rows: Range<usize>,
         beta: &[f64],
         with_errors: bool,
-    ) -> Result<Columns, E::Error> {
+    ) -> Result<Columns, TankError> {
         let delay_s = self.delay_s(beta);
         let terms = self.equation.terms(r, rows.clone(), delay_s, None)?;
         let mut measured: Vec<f64> = self.runs[r].load[rows.clone()].to_vec();
@@ -261,7 +267,7 @@ impl<E: Equation> Problem<'_, E> {
         rows: Range<usize>,
         beta: &[f64],
         delay_s: f64,
-    ) -> Result<Vec<f64>, E::Error> {
+    ) -> Result<Vec<f64>, TankError> {
         let standard = self.inputs[k].declared.standard;
         let (sign, step) = match self.inputs[k].enters {
             Enters::Load => {
@@ -271,7 +277,7 @@ impl<E: Equation> Problem<'_, E> {
             Enters::Angle => (-1.0, STEP),
             Enters::Constant(size) => (1.0, STEP * size),
         };
-        let at = |by: f64| -> Result<Vec<f64>, E::Error> {
+        let at = |by: f64| -> Result<Vec<f64>, TankError> {
             Ok(self.equation.terms(r, rows.clone(), delay_s, Some((k, by)))?.load(beta))
         };
         // What is there is made by q + e, what is fitted by q.
@@ -280,7 +286,7 @@ impl<E: Equation> Problem<'_, E> {
     }
 
     /// Residuals and zeros of all runs.
-    pub(super) fn fitted(&self, beta: &[f64]) -> Result<Vec<Fitted>, E::Error> {
+    pub(super) fn fitted(&self, beta: &[f64]) -> Result<Vec<Fitted>, TankError> {
         let delay_s = self.delay_s(beta);
         (self.runs.iter().enumerate())
             .map(|(r, run)| {

@@ -10,9 +10,9 @@ use froude_fit::budget::Uncertain;
 use froude_hydro::swing::{Medium, Pivot};
 use froude_records::campaign::Identify;
 
-use super::error::OscillationError;
 use super::forces::{Drag, Factors, Values};
 use super::setup::{OscillationRun, Setup};
+use crate::error::TankError;
 use crate::joint::{Enters, Equation, Input, JointFit, Problem, Run, Terms};
 use crate::motion::Motion;
 
@@ -34,17 +34,17 @@ pub type OscillationFit = JointFit;
 ///
 /// # Errors
 ///
-/// [`OscillationError`]: impossible declarations, a law that cannot be used, what the least squares refuse, a delay that runs away.
+/// [`TankError`]: impossible declarations, a law that cannot be used, what the least squares refuse, a delay that runs away.
 pub fn fit(
     runs: &[OscillationRun<'_>],
     motions: &[Motion],
     setup: &Setup,
     drag: &Drag,
     identify: &Identify,
-) -> Result<OscillationFit, OscillationError> {
+) -> Result<OscillationFit, TankError> {
     setup.check()?;
     if !runs.iter().any(|run| run.medium == Medium::Water) {
-        return Err(OscillationError::NoRuns);
+        return Err(TankError::new("no run in water was given; a forced oscillation needs at least one"));
     }
     problem(runs, motions, setup, drag, identify).fit()
 }
@@ -64,15 +64,13 @@ pub(super) struct Swing<'a> {
 }
 
 impl Equation for Swing<'_> {
-    type Error = OscillationError;
-
     fn terms(
         &self,
         run: usize,
         rows: Range<usize>,
         delay_s: f64,
         moved: Option<(usize, f64)>,
-    ) -> Result<Terms, OscillationError> {
+    ) -> Result<Terms, TankError> {
         let mut values = Values::of(self.setup);
         if let Some((k, by)) = moved {
             self.errs[k].shift(&mut values, by);

@@ -12,8 +12,8 @@ use froude_identify::dataset::Dataset;
 use froude_identify::law::{ForceLaw, Kind};
 use froude_records::units::Dimension;
 
-use super::error::OscillationError;
 use super::setup::{OscillationRun, Setup};
+use crate::error::TankError;
 use crate::motion::Motion;
 
 /// The load that the cell shows.
@@ -35,9 +35,9 @@ impl Drag {
     ///
     /// # Errors
     ///
-    /// [`OscillationError::Law`] of any other.
-    pub fn new(law: ForceLaw) -> Result<Self, OscillationError> {
-        let refuse = |why: &str| Err(OscillationError::Law { model: law.name.clone(), why: why.to_owned() });
+    /// Any other.
+    pub fn new(law: ForceLaw) -> Result<Self, TankError> {
+        let refuse = |why: &str| Err(TankError::new(format!("model {} {why}", law.name)));
         let Some(response) = law.responses.iter().position(|r| r == LOAD) else {
             return refuse("states no f_y, the force across the body; write one, or leave the model out");
         };
@@ -105,7 +105,7 @@ impl Factors {
         rows: Range<usize>,
         delay_s: f64,
         (setup, values, drag): (&Setup, &Values, &Drag),
-    ) -> Result<Self, OscillationError> {
+    ) -> Result<Self, TankError> {
         let body = &setup.bodies[run.body];
         let n = rows.len();
         let flow = run.flow_m_s * values.flow_factor;

@@ -2,12 +2,12 @@
 
 use froude_records::campaign::{Identify, SensorSpec};
 
-use super::error::OscillationError;
 use super::fit::{Swing, problem};
 use super::forces::{Drag, LOAD};
 use super::motions;
 use super::setup::{OscillationRun, Setup};
 use super::simulate::{Planned, Truths, simulated};
+use crate::error::TankError;
 use crate::joint::Problem;
 
 pub use crate::joint::forecast::{Expected, Forecast};
@@ -16,7 +16,7 @@ pub use crate::joint::forecast::{Expected, Forecast};
 ///
 /// # Errors
 ///
-/// [`OscillationError`]: runs too short for their cycles, coefficients that the plan does not determine.
+/// [`TankError`]: runs too short for their cycles, coefficients that the plan does not determine.
 pub fn forecast(
     planned: &[Planned],
     setup: &Setup,
@@ -24,7 +24,7 @@ pub fn forecast(
     drag: &Drag,
     sensors: &[SensorSpec],
     identify: &Identify,
-) -> Result<Forecast, OscillationError> {
+) -> Result<Forecast, TankError> {
     let exact = exactly(setup);
     let logged = simulated(planned, &exact, truth, &[], 0);
     let runs: Vec<OscillationRun<'_>> = logged.iter().map(super::simulate::Simulated::view).collect();
@@ -33,9 +33,11 @@ pub fn forecast(
     let rates: Vec<f64> = planned.iter().map(|run| run.rate_hz).collect();
     let of_force = sensors.iter().find(|s| ["force", LOAD].contains(&s.quantity.as_str()));
     let found = crate::joint::forecast::forecast(&problem, &true_values(&problem, setup, truth), &rates, of_force)?;
-    found.ok_or_else(|| OscillationError::Law {
-        model: drag.law.name.clone(),
-        why: "has coefficients that the planned runs do not tell apart: plan a second frequency, a second configuration for terms of head and tail, or declare the buoyancy".to_owned(),
+    found.ok_or_else(|| {
+        TankError::new(format!(
+            "model {} has coefficients that the planned runs do not tell apart: plan a second frequency, a second configuration for terms of head and tail, or declare the buoyancy",
+            drag.law.name
+        ))
     })
 }
 

@@ -3,7 +3,7 @@
 use froude_fit::budget::Uncertain;
 use froude_hydro::swing::{Medium, Pivot};
 
-use super::error::OscillationError;
+use crate::error::TankError;
 use crate::motion::{Cycles, Logged, Motion, Sampled, motion};
 
 /// One run: columns of one length, time increasing.
@@ -84,9 +84,9 @@ impl Setup {
     }
 
     /// The numbers are possible.
-    pub(super) fn check(&self) -> Result<(), OscillationError> {
+    pub(super) fn check(&self) -> Result<(), TankError> {
         let refuse =
-            |what: String, value: f64, must: &'static str| Err(OscillationError::Declared { what, value, must });
+            |what: String, value: f64, must: &str| Err(TankError::new(format!("{what} is {value}; it must be {must}")));
         if !(self.radius_m.value != 0.0 && self.radius_m.value.is_finite()) {
             return refuse("the radius".to_owned(), self.radius_m.value, "finite and not zero");
         }
@@ -118,8 +118,8 @@ impl Setup {
 ///
 /// # Errors
 ///
-/// [`OscillationError::Motion`] of the first run that has one.
-pub fn motions(runs: &[OscillationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, OscillationError> {
+/// That of the first run whose motion cannot be used.
+pub fn motions(runs: &[OscillationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, TankError> {
     runs.iter().map(|run| of_run(run, setup, Sampled::default())).collect()
 }
 
@@ -132,12 +132,12 @@ pub fn motions_without(
     runs: &[OscillationRun<'_>],
     setup: &Setup,
     sampled: &[Sampled<'_>],
-) -> Result<Vec<Motion>, OscillationError> {
+) -> Result<Vec<Motion>, TankError> {
     runs.iter().zip(sampled).map(|(run, sampled)| of_run(run, setup, *sampled)).collect()
 }
 
-fn of_run(run: &OscillationRun<'_>, setup: &Setup, sampled: Sampled<'_>) -> Result<Motion, OscillationError> {
+fn of_run(run: &OscillationRun<'_>, setup: &Setup, sampled: Sampled<'_>) -> Result<Motion, TankError> {
     let OscillationRun { id, time_s, angle_rad, force_n, .. } = *run;
     let of = Logged { id, time_s, angle_rad, load: ("force", "N", force_n), sampled };
-    Ok(motion(&of, setup.cycles, setup.harmonics)?)
+    motion(&of, setup.cycles, setup.harmonics)
 }

@@ -19,8 +19,8 @@ use froude_hydro::swing::Pivot;
 use froude_records::campaign::Identify;
 use froude_rig::rotation::Mounted;
 
-use super::error::RotationError;
 use super::setup::{RotationRun, Setup};
+use crate::error::TankError;
 use crate::joint::{DELAY, Enters, Equation, Input, JointFit, Problem, Run, Terms};
 use crate::motion::Motion;
 
@@ -48,13 +48,13 @@ pub type RotationFit = JointFit;
 ///
 /// # Errors
 ///
-/// [`RotationError`]: no run of the body in water, an inertia that nobody knows, what the least squares refuse, a delay that runs away.
+/// [`TankError`]: no run of the body in water, an inertia that nobody knows, what the least squares refuse, a delay that runs away.
 pub fn fit(
     runs: &[RotationRun<'_>],
     motions: &[Motion],
     setup: &Setup,
     identify: &Identify,
-) -> Result<RotationFit, RotationError> {
+) -> Result<RotationFit, TankError> {
     problem(runs, motions, setup, identify)?.fit()
 }
 
@@ -72,15 +72,13 @@ pub(super) struct Turning<'a> {
 }
 
 impl Equation for Turning<'_> {
-    type Error = RotationError;
-
     fn terms(
         &self,
         run: usize,
         rows: Range<usize>,
         delay_s: f64,
         moved: Option<(usize, f64)>,
-    ) -> Result<Terms, RotationError> {
+    ) -> Result<Terms, TankError> {
         let shift = |errs: Errs| moved.map_or(0.0, |(k, by)| if self.errs[k] == errs { by } else { 0.0 });
         let of = |known: Option<Uncertain>| known.map_or(0.0, |k| k.value);
         let gain = 1.0 + shift(Errs::Angle);
@@ -124,17 +122,22 @@ pub(super) fn problem<'a>(
     motions: &'a [Motion],
     setup: &'a Setup,
     identify: &'a Identify,
-) -> Result<Problem<'a, Turning<'a>>, RotationError> {
+) -> Result<Problem<'a, Turning<'a>>, TankError> {
     let is_there = |mounted: Mounted| runs.iter().any(|run| run.mounted == mounted);
     let (in_air, shaft_alone) = (is_there(Mounted::BodyInAir), is_there(Mounted::Shaft));
     if !is_there(Mounted::Body) {
-        return Err(RotationError::NoRuns);
+        return Err(TankError::new(
+            "no run with the body in water was given; a rotation needs at least one of the role test",
+        ));
     }
     if setup.inertia_kg_m2.is_none() && !in_air {
-        return Err(RotationError::NoInertia);
+        return Err(no_inertia());
     }
     if shaft_alone && setup.tare_inertia_kg_m2.is_none() {
-        return Err(RotationError::NoTareInertia);
+        return Err(TankError::new(
+            "there are runs of the shaft alone (role = \"tare\"), and its own inertia is not declared: write [source.rotation] tare_inertia, of all that moves below the torque cell \
+             without the body",
+        ));
     }
     let mut names: Vec<(String, String)> = Vec::new();
     let (mut start, mut priors) = (Vec::new(), Vec::new());
@@ -190,6 +193,13 @@ pub(super) fn problem<'a>(
         priors,
         identify,
     })
+}
+
+pub(super) fn no_inertia() -> TankError {
+    TankError::new(
+        "the inertia of the body is neither declared nor measured, and added inertia cannot be told from it: write [source.rotation] inertia = { value = \
+         \"3.4e-3 kg m^2\", standard = \"1e-5 kg m^2\" }, or turn the body in air (role = \"dry_air\")",
+    )
 }
 
 /// A declared number that errs.

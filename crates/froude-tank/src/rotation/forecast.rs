@@ -3,11 +3,11 @@
 use froude_fit::budget::Uncertain;
 use froude_records::campaign::{Identify, SensorSpec};
 
-use super::error::RotationError;
 use super::fit::{INERTIA, LAMBDAS, RESTORING, RESTORING_IN_AIR, TARES, problem};
 use super::motions;
 use super::setup::{RotationRun, Setup};
 use super::simulate::{Planned, Simulated, Truths, simulated};
+use crate::error::TankError;
 use crate::joint::DELAY;
 
 pub use crate::joint::forecast::{Expected, Forecast};
@@ -16,14 +16,14 @@ pub use crate::joint::forecast::{Expected, Forecast};
 ///
 /// # Errors
 ///
-/// [`RotationError`]: runs too short for their cycles, coefficients that the plan does not determine.
+/// [`TankError`]: runs too short for their cycles, coefficients that the plan does not determine.
 pub fn forecast(
     planned: &[Planned],
     setup: &Setup,
     truth: &Truths,
     sensors: &[SensorSpec],
     identify: &Identify,
-) -> Result<Forecast, RotationError> {
+) -> Result<Forecast, TankError> {
     let logged = simulated(planned, &exactly(setup), truth, &[], 0);
     let runs: Vec<RotationRun<'_>> = logged.iter().map(Simulated::view).collect();
     let motions = motions(&runs, setup)?;
@@ -31,7 +31,11 @@ pub fn forecast(
     let beta: Vec<f64> = problem.names.iter().map(|(name, _)| true_value(name, setup, truth)).collect();
     let rates: Vec<f64> = planned.iter().map(|run| run.rate_hz).collect();
     let of_torque = sensors.iter().find(|s| s.quantity == "torque");
-    crate::joint::forecast::forecast(&problem, &beta, &rates, of_torque)?.ok_or(RotationError::Alike)
+    crate::joint::forecast::forecast(&problem, &beta, &rates, of_torque)?.ok_or_else(|| {
+        TankError::new(
+            "the planned runs do not tell lambda_1, lambda_2 and lambda_3 apart; plan a second amplitude or frequency, and runs in water (role = \"test\")",
+        )
+    })
 }
 
 /// Everything as declared, without errors: what the plan is linearised at.

@@ -5,7 +5,7 @@ use froude_hydro::Link;
 use froude_hydro::swing::Pivot;
 use froude_rig::rotation::Mounted;
 
-use super::error::RotationError;
+use crate::error::TankError;
 use crate::motion::{Cycles, Logged, Motion, Sampled, motion};
 
 /// One run: columns of one length, time increasing.
@@ -74,8 +74,8 @@ impl Setup {
 ///
 /// # Errors
 ///
-/// [`RotationError::Motion`] of the first run that has one.
-pub fn motions(runs: &[RotationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, RotationError> {
+/// That of the first run whose motion cannot be used.
+pub fn motions(runs: &[RotationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, TankError> {
     runs.iter().map(|run| of_run(run, setup, Sampled::default())).collect()
 }
 
@@ -88,12 +88,12 @@ pub fn motions_without(
     runs: &[RotationRun<'_>],
     setup: &Setup,
     sampled: &[Sampled<'_>],
-) -> Result<Vec<Motion>, RotationError> {
+) -> Result<Vec<Motion>, TankError> {
     runs.iter().zip(sampled).map(|(run, sampled)| of_run(run, setup, *sampled)).collect()
 }
 
-fn of_run(run: &RotationRun<'_>, setup: &Setup, sampled: Sampled<'_>) -> Result<Motion, RotationError> {
+fn of_run(run: &RotationRun<'_>, setup: &Setup, sampled: Sampled<'_>) -> Result<Motion, TankError> {
     let RotationRun { id, time_s, angle_rad, torque_n_m, .. } = *run;
     let of = Logged { id, time_s, angle_rad, load: ("torque", "N m", torque_n_m), sampled };
-    Ok(motion(&of, setup.cycles, setup.harmonics)?)
+    motion(&of, setup.cycles, setup.harmonics)
 }

@@ -12,8 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
-use super::error::RotationError;
-use super::fit::{INERTIA, LAMBDAS, RESTORING, RESTORING_IN_AIR, TARES};
+use super::fit::{INERTIA, LAMBDAS, RESTORING, RESTORING_IN_AIR, TARES, no_inertia};
 use super::section::{self, RotationPlan};
 use super::setup::{RotationRun, Setup};
 use super::source::setup_of;
@@ -165,7 +164,7 @@ impl Truths {
             None if plans(Role::DryAir) => {
                 need(INERTIA)?;
             }
-            None => return Err(MethodError::refused(RotationError::NoInertia)),
+            None => return Err(MethodError::refused(no_inertia())),
         }
         Ok(Self {
             lambdas: three(LAMBDAS)?,

@@ -7,9 +7,9 @@ use std::ops::Range;
 
 use froude_fit::series::{Mean, mean, tapered};
 
-use super::error::SteadyError;
 use super::section::SteadySpec;
 use super::window::{Motion, Told, Window, window_told};
+use crate::error::TankError;
 
 /// A sensor that stands at its largest or smallest reading in this part of a window is clipped …
 const CLIPPED: f64 = 0.2;
@@ -78,8 +78,8 @@ pub struct Point {
 ///
 /// # Errors
 ///
-/// [`SteadyError`]: columns that do not match, no window, a clipped sensor, no zero.
-pub fn point(run: &Run<'_>, spec: &SteadySpec) -> Result<Point, SteadyError> {
+/// [`TankError`]: columns that do not match, no window, a clipped sensor, no zero.
+pub fn point(run: &Run<'_>, spec: &SteadySpec) -> Result<Point, TankError> {
     point_told(run, spec, &Told::default())
 }
 
@@ -88,7 +88,7 @@ pub fn point(run: &Run<'_>, spec: &SteadySpec) -> Result<Point, SteadyError> {
 /// # Errors
 ///
 /// As [`point`]; a window that holds marks, or is none.
-pub fn point_told(run: &Run<'_>, spec: &SteadySpec, told: &Told<'_>) -> Result<Point, SteadyError> {
+pub fn point_told(run: &Run<'_>, spec: &SteadySpec, told: &Told<'_>) -> Result<Point, TankError> {
     let n = run.time_s.len();
     let lengths = run.loads.iter().map(|(name, values)| (*name, values.len())).chain(match run.motion {
         Motion::Speed(v) => Some(("speed", v.len())),
@@ -97,12 +97,8 @@ pub fn point_told(run: &Run<'_>, spec: &SteadySpec, told: &Told<'_>) -> Result<P
     });
     for (column, found) in lengths {
         if found != n || n < 4 {
-            return Err(SteadyError::Length {
-                run: run.id.to_owned(),
-                column: column.to_owned(),
-                found,
-                needed: n.max(4),
-            });
+            let what = format!("{column} has {found} samples, {} are needed", n.max(4));
+            return Err(TankError::of_run(run.id, what));
         }
     }
     let window = window_told(run.id, run.time_s, run.motion, spec, told)?;
@@ -110,7 +106,7 @@ pub fn point_told(run: &Run<'_>, spec: &SteadySpec, told: &Told<'_>) -> Result<P
 }
 
 /// The observation of a run whose parts are known.
-pub(crate) fn observed(run: &Run<'_>, window: Window, spec: &SteadySpec) -> Result<Point, SteadyError> {
+pub(crate) fn observed(run: &Run<'_>, window: Window, spec: &SteadySpec) -> Result<Point, TankError> {
     let loads = run.loads.iter().enumerate().map(|(l, (name, values))| load(run, &window, (l, name), values, spec));
     let loads = loads.collect::<Result<_, _>>()?;
     let speed_m_s = match run.motion {
@@ -135,7 +131,7 @@ fn load(
     (l, name): (usize, &str),
     values: &[f64],
     spec: &SteadySpec,
-) -> Result<Load, SteadyError> {
+) -> Result<Load, TankError> {
     clipped(run.id, name, values, window)?;
     let step_s = (run.time_s[values.len() - 1] - run.time_s[0]) / (values.len() - 1) as f64;
     let read = mean(&values[window.steady.clone()], step_s);
@@ -154,8 +150,15 @@ fn load(
         (Some((_, only)), None) | (None, Some((_, only))) => (only.value, only.standard, None),
         (None, None) => {
             let elsewhere = run.zero.as_ref().and_then(|zeros| zeros.get(l));
-            let zero =
-                elsewhere.ok_or_else(|| SteadyError::NoZero { run: run.id.to_owned(), needed_s: spec.block_s })?;
+            let none = || {
+                let what = format!(
+                    "nothing tells the zero of the sensor: the log has no part at rest of {} s or more, and there is no run of the role \"still\" with \
+                     [conditions] at = \"…\" in the folder; log some seconds at rest before each tow",
+                    spec.block_s
+                );
+                TankError::of_run(run.id, what)
+            };
+            let zero = elsewhere.ok_or_else(none)?;
             (zero.value, zero.standard, None)
         }
     };
@@ -164,7 +167,7 @@ fn load(
 }
 
 /// A channel whose window stands at the largest or smallest reading of its log.
-fn clipped(run: &str, name: &str, values: &[f64], window: &Window) -> Result<(), SteadyError> {
+fn clipped(run: &str, name: &str, values: &[f64], window: &Window) -> Result<(), TankError> {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
     let at_rest = if window.before.is_empty() { &window.after } else { &window.before };
@@ -180,7 +183,11 @@ fn clipped(run: &str, name: &str, values: &[f64], window: &Window) -> Result<(),
     for value in [low, high] {
         let part = values[rows.clone()].iter().filter(|x| **x == value).count() as f64 / rows.len() as f64;
         if part >= CLIPPED {
-            return Err(SteadyError::Clipped { run: run.to_owned(), channel: name.to_owned(), value, part });
+            let what = format!(
+                "{name} stands at {value} in {:.0} % of its steady window: the sensor is clipped; widen its range, or tow more slowly",
+                1e2 * part
+            );
+            return Err(TankError::of_run(run, what));
         }
     }
     Ok(())
@@ -231,7 +238,8 @@ mod tests {
             point(&run, &SteadySpec::default())
         };
         let found = reduced(&noisy.iter().map(|f| f.max(-0.6)).collect::<Vec<f64>>());
-        assert!(matches!(found, Err(SteadyError::Clipped { part, .. }) if part > 0.99), "{found:?}");
+        let refused = found.unwrap_err().to_string();
+        assert!(refused.contains("f_x stands at -0.6 in 100 % of its steady window"), "{refused}");
         let coarse = reduced(&noisy.iter().map(|f| (f / 0.05).round() * 0.05).collect::<Vec<f64>>()).unwrap();
         assert!((coarse.loads[0].value + 0.8).abs() < 1e-9);
     }

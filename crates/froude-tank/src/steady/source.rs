@@ -13,7 +13,6 @@ use froude_records::run::{ImportedRun, Role, STEADY};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
-use super::error::SteadyError;
 use super::point::{Point, Run, Zero, point_told};
 use super::row::{Row, table};
 use super::section::{self, SteadySpec};
@@ -22,6 +21,7 @@ use super::walls::Walls;
 use super::window::{Motion, Told};
 use super::{page, plan, simulate};
 use crate::conditioning::stretches::{in_words, longest_free, rows};
+use crate::error::TankError;
 use crate::logs::{self, Logs};
 
 /// Windows of raw runs as observations.
@@ -132,7 +132,7 @@ fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Re
     let (mut findings, mut steps) = (Vec::new(), Vec::new());
     let stills = stills(logs)?;
     let (mut rows, mut tares) = (Vec::new(), Vec::new());
-    let mut first: Option<SteadyError> = None;
+    let mut first: Option<TankError> = None;
     for log in logs.iter().filter(|log| log.log.meta.role != Role::Still) {
         let mut run = run(log)?;
         let angle_rad = run.angle_rad;
@@ -362,7 +362,7 @@ fn zero(
     run: &Run<'_>,
     stills: &[Still],
     spec: &SteadySpec,
-) -> Result<Option<Result<Vec<Zero>, SteadyError>>, MethodError> {
+) -> Result<Option<Result<Vec<Zero>, TankError>>, MethodError> {
     let Some(at_s) = logs::condition(log, "at", Dimension::TIME)?.filter(|_| !stills.is_empty()) else {
         return Ok(None);
     };
@@ -371,8 +371,12 @@ fn zero(
     let away_s = [before, after].iter().flatten().map(|s| (s.at_s - at_s).abs()).fold(f64::INFINITY, f64::min);
     let drift_n = spec.drift.map_or(0.0, |drift| drift.rate_n_s * away_s);
     if let Some(drift) = spec.drift.filter(|drift| drift_n > drift.most_n) {
-        let run = run.id.to_owned();
-        return Ok(Some(Err(SteadyError::OldZero { run, away_s, drift_n, most_n: drift.most_n })));
+        let what = format!(
+            "the nearest still run is {away_s:.0} s away, over which the zero may drift by {drift_n:.3e} N, and {:.3e} N is allowed; take a still run \
+             nearer to it, or state a smaller drift (drift in [source.steady])",
+            drift.most_n
+        );
+        return Ok(Some(Err(TankError::of_run(run.id, what))));
     }
     let of = |still: &Still, name: &str| still.loads.iter().find(|(n, _)| n == name).map(|(_, zero)| *zero);
     let one = |name: &str| -> Option<Zero> {

@@ -5,9 +5,9 @@
 
 use froude_identify::uncertainty::SharedError;
 
-use super::error::SteadyError;
 use super::point::Point;
 use super::row::Row;
+use crate::error::TankError;
 
 /// Speeds alike, as part of them.
 const SAME_SPEED: f64 = 0.02;
@@ -27,8 +27,8 @@ pub struct Tare {
 ///
 /// # Errors
 ///
-/// [`SteadyError::NoTare`] for the first observation without one.
-pub fn subtract(points: &mut [Row], tares: &[Tare], source: &str) -> Result<Vec<SharedError>, SteadyError> {
+/// The first observation without one.
+pub fn subtract(points: &mut [Row], tares: &[Tare], source: &str) -> Result<Vec<SharedError>, TankError> {
     // Tares of one setting are a group; observations name theirs.
     let mut groups: Vec<Vec<usize>> = Vec::new();
     let mut uses: Vec<(usize, f64)> = Vec::new();
@@ -45,12 +45,13 @@ pub fn subtract(points: &mut [Row], tares: &[Tare], source: &str) -> Result<Vec<
             let nearest = tares.iter().min_by(|a, b| away(a).total_cmp(&away(b))).map_or_else(String::new, |t| {
                 format!("{:.4} m/s, {:.2} deg", t.point.speed_m_s, t.angle_rad.to_degrees())
             });
-            return Err(SteadyError::NoTare {
-                run: run.clone(),
-                speed_m_s: point.speed_m_s,
-                angle_deg: angle_rad.to_degrees(),
-                nearest,
-            });
+            let what = format!(
+                "no run of the role \"tare\" is at its speed and angle ({:.4} m/s, {:.2} deg); the nearest is at {nearest}; tow the rig without the body there, \
+                 or subtract a fitted tare (tare = {{ record = \"…\" }})",
+                point.speed_m_s,
+                angle_rad.to_degrees()
+            );
+            return Err(TankError::of_run(run, what));
         }
         let speed = own.iter().map(|&t| tares[t].point.speed_m_s).sum::<f64>() / own.len() as f64;
         let ratio = (point.speed_m_s / speed).powi(2);

@@ -9,9 +9,9 @@ use std::ops::Range;
 
 use froude_records::run::marks::{Mark, Segment, SegmentKind};
 
-use super::error::SteadyError;
 use super::section::SteadySpec;
 use crate::conditioning::stretches::{in_words, longest_free, rows, touching};
+use crate::error::TankError;
 
 /// What moves more slowly than this part of the largest speed is at rest.
 const AT_REST: f64 = 0.02;
@@ -71,25 +71,25 @@ pub struct Window {
 ///
 /// # Errors
 ///
-/// [`SteadyError::NoMotion`], [`SteadyError::NoWindow`].
-pub fn window(run: &str, time_s: &[f64], motion: Motion<'_>, spec: &SteadySpec) -> Result<Window, SteadyError> {
+/// No motion, no window.
+pub fn window(run: &str, time_s: &[f64], motion: Motion<'_>, spec: &SteadySpec) -> Result<Window, TankError> {
     let n = time_s.len();
     let step_s = (time_s[n - 1] - time_s[0]) / (n - 1) as f64;
     let samples = |seconds: f64| (seconds / step_s).round() as usize;
     let settle = samples(spec.settle_s);
     let needed_s = spec.settle_s + spec.shortest_s;
+    let no_window = |longest_s: f64, from_s: f64, speed_m_s: f64, needed_s: f64| {
+        let what = format!(
+            "no steady window: the speed stays within ± {:.2} % for {longest_s:.2} s at most (from {from_s:.2} s, {speed_m_s:.4} m/s), and {needed_s:.2} s are \
+             needed, settling included; tow longer, or allow more (tolerance, shortest and settle in [source.steady])",
+            1e2 * spec.tolerance
+        );
+        TankError::of_run(run, what)
+    };
     if let Motion::Stream(speed_m_s) = motion {
         let steady = settle.min(n)..n;
         if (steady.len() as f64) * step_s < spec.shortest_s {
-            let (tolerance, longest_s) = (spec.tolerance, n as f64 * step_s);
-            return Err(SteadyError::NoWindow {
-                run: run.to_owned(),
-                tolerance,
-                longest_s,
-                from_s: time_s[0],
-                speed_m_s,
-                needed_s,
-            });
+            return Err(no_window(n as f64 * step_s, time_s[0], speed_m_s, needed_s));
         }
         return Ok(Window { steady, before: 0..0, after: n..n });
     }
@@ -98,7 +98,7 @@ pub fn window(run: &str, time_s: &[f64], motion: Motion<'_>, spec: &SteadySpec) 
     let speeds: Vec<f64> = (0..count).map(|b| motion.mean_m_s(time_s, b * block..(b + 1) * block)).collect();
     let top = speeds.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     if count == 0 || top.is_nan() || top <= 0.0 {
-        return Err(SteadyError::NoMotion { run: run.to_owned() });
+        return Err(TankError::of_run(run, "the body does not move; a run at rest has the role \"still\""));
     }
     let blocks = longest(&speeds, spec.tolerance, MOVES * top);
     let long_s = blocks.len() as f64 * block as f64 * step_s;
@@ -107,14 +107,9 @@ pub fn window(run: &str, time_s: &[f64], motion: Motion<'_>, spec: &SteadySpec) 
     let steady = (blocks.start * block + settle).min(ends)..ends;
     if (steady.len() as f64) * step_s < spec.shortest_s {
         let from = (blocks.start * block).min(n - 1);
-        return Err(SteadyError::NoWindow {
-            run: run.to_owned(),
-            tolerance: spec.tolerance,
-            longest_s: long_s,
-            from_s: time_s[from],
-            speed_m_s: if blocks.is_empty() { 0.0 } else { motion.mean_m_s(time_s, from..blocks.end * block) },
-            needed_s: needed_s + if blocks.end == count { 0.0 } else { spec.block_s },
-        });
+        let speed_m_s = if blocks.is_empty() { 0.0 } else { motion.mean_m_s(time_s, from..blocks.end * block) };
+        let needed_s = needed_s + if blocks.end == count { 0.0 } else { spec.block_s };
+        return Err(no_window(long_s, time_s[from], speed_m_s, needed_s));
     }
     let moves = |v: &f64| v.abs() > AT_REST * top;
     let first = speeds.iter().position(moves).unwrap_or(0);
@@ -132,25 +127,30 @@ pub fn window(run: &str, time_s: &[f64], motion: Motion<'_>, spec: &SteadySpec) 
 ///
 /// # Errors
 ///
-/// As [`window`]; [`SteadyError::Marked`] where marks leave no window, [`SteadyError::Declared`] for one that a person has named and that is none.
+/// As [`window`]; also where marks leave no window, and for one that a person has named and that is none.
 pub fn window_told(
     run: &str,
     time_s: &[f64],
     motion: Motion<'_>,
     spec: &SteadySpec,
     told: &Told<'_>,
-) -> Result<Window, SteadyError> {
+) -> Result<Window, TankError> {
     let named = |kind: SegmentKind| told.segments.iter().filter(move |segment| segment.kind == kind);
     let mut found = match named(SegmentKind::Steady).next() {
         Some(segment) => {
             let steady = rows(time_s, segment.from_s, segment.to_s);
             if steady.len() < FEWEST {
-                let (from_s, to_s, samples) = (segment.from_s, segment.to_s, steady.len());
-                return Err(SteadyError::Declared { run: run.to_owned(), from_s, to_s, samples });
+                let what = format!(
+                    "the segment steady, from {:.3} s to {:.3} s, has {} samples of the log; correct it in [[segments]] of its sidecar",
+                    segment.from_s,
+                    segment.to_s,
+                    steady.len()
+                );
+                return Err(TankError::of_run(run, what));
             }
             let marks = touching(time_s, &steady, told.marks);
             if !marks.is_empty() {
-                return Err(SteadyError::Marked { run: run.to_owned(), marks: in_words(&marks) });
+                return Err(marked(run, &marks));
             }
             // At rest is what the rule says, where there is a rule that finds anything.
             let by_rule = window(run, time_s, motion, spec).ok();
@@ -177,6 +177,14 @@ pub fn window_told(
     Ok(found)
 }
 
+fn marked(run: &str, marks: &[Mark]) -> TankError {
+    let what = format!(
+        "its steady window holds {}; what is left of it is too short: tow longer, widen the sensor's range, or name a window without marks ([[segments]] name = \"steady\")",
+        in_words(marks)
+    );
+    TankError::of_run(run, what)
+}
+
 /// The window by the rule, between the marks where it holds one.
 fn between(
     run: &str,
@@ -184,7 +192,7 @@ fn between(
     motion: Motion<'_>,
     spec: &SteadySpec,
     marks: &[Mark],
-) -> Result<Window, SteadyError> {
+) -> Result<Window, TankError> {
     let whole = window(run, time_s, motion, spec)?;
     let within = touching(time_s, &whole.steady, marks);
     if within.is_empty() {
@@ -195,7 +203,7 @@ fn between(
     match longest_free(time_s, whole.steady.clone(), marks).filter(|rows| rows.len() as f64 * step_s >= spec.shortest_s)
     {
         Some(steady) => Ok(Window { steady, ..whole }),
-        None => Err(SteadyError::Marked { run: run.to_owned(), marks: in_words(&within) }),
+        None => Err(marked(run, &within)),
     }
 }
 
@@ -265,15 +273,12 @@ mod tests {
     fn a_run_that_never_settles_says_how_long_it_nearly_did() {
         let (time_s, speed) = trapezoid();
         let spec = SteadySpec { shortest_s: 8.0, ..SteadySpec::default() };
-        let Err(SteadyError::NoWindow { longest_s, speed_m_s, .. }) =
-            window("a", &time_s, Motion::Speed(&speed), &spec)
-        else {
-            panic!("a window of 8 s in 6 s");
-        };
-        assert!((longest_s - 6.0).abs() < 1e-9 && (speed_m_s - 0.4).abs() < 1e-9, "{longest_s} {speed_m_s}");
+        let refused = window("a", &time_s, Motion::Speed(&speed), &spec).unwrap_err().to_string();
+        assert!(refused.contains("for 6.00 s at most (from 5.00 s, 0.4000 m/s)"), "{refused}");
         let still = vec![0.0; 800];
         let found = window("a", &time_s, Motion::Speed(&still), &spec);
-        assert_eq!(found, Err(SteadyError::NoMotion { run: "a".to_owned() }));
+        let refused = found.unwrap_err().to_string();
+        assert_eq!(refused, "run \"a\": the body does not move; a run at rest has the role \"still\"");
     }
 
     #[test]

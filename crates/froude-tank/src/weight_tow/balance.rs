@@ -10,7 +10,7 @@
 use froude_fit::faer::Mat;
 use froude_fit::faer::prelude::*;
 
-use super::error::WeightTowError;
+use crate::error::TankError;
 
 /// s beforehand: the mean and standard deviation of what lies evenly between 0 and 1.
 const SHARE: [f64; 2] = [0.5, 0.288_675_134_594_812_9];
@@ -54,7 +54,7 @@ pub struct Balance {
 ///
 /// # Errors
 ///
-/// [`WeightTowError::NoTerminal`] of a track that no drag explains.
+/// A track that no drag explains.
 pub fn balance(
     run: &str,
     time_s: &[f64],
@@ -62,8 +62,8 @@ pub fn balance(
     (speed_m_s, noise_m): (f64, f64),
     pull: Pull,
     (near, share_off): (Option<[f64; 4]>, f64),
-) -> Result<Balance, WeightTowError> {
-    let refuse = |what| WeightTowError::NoTerminal { run: run.to_owned(), what };
+) -> Result<Balance, TankError> {
+    let refuse = |what| no_terminal(run, what);
     let n = position_m.len();
     let noise_m = noise_m.max(LEAST_NOISE * (position_m[n - 1] - position_m[0]).abs());
     let first = (n / 10).max(1);
@@ -136,6 +136,13 @@ pub fn balance(
         residual_m: noise_m * of_track.sqrt(),
         solution: at,
     })
+}
+
+pub(super) fn no_terminal(run: &str, what: &str) -> TankError {
+    let what = format!(
+        "no terminal speed explains the track with this weight and mass: it goes {what}; check weight, friction and moving_mass"
+    );
+    TankError::of_run(run, what)
 }
 
 /// v̇ = a − b v − c v|v|.

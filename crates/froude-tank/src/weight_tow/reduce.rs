@@ -7,10 +7,10 @@
 use froude_records::run::Declared;
 use froude_rig::weight_tow::G_M_S2;
 
-use super::balance::{Balance, Pull, balance};
-use super::error::WeightTowError;
+use super::balance::{Balance, Pull, balance, no_terminal};
 use super::section::WeightTowSpec;
 use super::track::{Track, track};
+use crate::error::TankError;
 use crate::steady::point::{Load, Point, Run, observed};
 use crate::steady::section::SteadySpec;
 use crate::steady::window::{Motion, Window};
@@ -92,8 +92,8 @@ pub const ERRORS: [&str; 4] =
 ///
 /// # Errors
 ///
-/// [`WeightTowError`]: no motion, neither steady nor to be balanced, loads that give none.
-pub fn reduce(run: &WeightRun<'_>, spec: &WeightTowSpec, noise_m: Option<f64>) -> Result<Reduced, WeightTowError> {
+/// [`TankError`]: no motion, neither steady nor to be balanced, loads that give none.
+pub fn reduce(run: &WeightRun<'_>, spec: &WeightTowSpec, noise_m: Option<f64>) -> Result<Reduced, TankError> {
     let mut track = track(run.id, run.time_s, run.position_m, spec.window_m)?;
     if let Some(noise_m) = noise_m {
         track.change[1] = track.change_per_noise * noise_m;
@@ -125,15 +125,25 @@ pub fn reduce(run: &WeightRun<'_>, spec: &WeightTowSpec, noise_m: Option<f64>) -
         Some(mass) if !is_steady => mass,
         _ if is_steady => Declared::exact(0.0),
         _ => {
-            let (run, tolerance, window_m) = (run.id.to_owned(), spec.tolerance, spec.window_m);
-            return Err(WeightTowError::NotSteady { run, change, standard, tolerance, window_m });
+            let what = format!(
+                "not steady: the speed changes by {:.1} ± {:.1} % over the last {:.3} m, and {:.1} % is allowed; declare moving_mass in [source.weight_tow], so that it \
+                 can be balanced, or use a longer way",
+                1e2 * change,
+                1e2 * standard,
+                spec.window_m,
+                1e2 * spec.tolerance
+            );
+            return Err(TankError::of_run(run.id, what));
         }
     };
     if force_n <= 0.0 {
-        let (weight_n, friction_n) = (run.weight_n, spec.friction_n.value);
-        return Err(WeightTowError::NoPull { run: run.id.to_owned(), weight_n, friction_n });
+        let what = format!(
+            "the weight of {:.4} N is not above the friction of {:.4} N that is declared, and yet the wagon moves; check both",
+            run.weight_n, spec.friction_n.value
+        );
+        return Err(TankError::of_run(run.id, what));
     }
-    let at = |moved: Moved| -> Result<(f64, Option<Balance>), WeightTowError> {
+    let at = |moved: Moved| -> Result<(f64, Option<Balance>), TankError> {
         let force_n = (force_n - moved.friction_n).max(0.1 * force_n);
         if is_steady {
             return Ok((force_n, None));
@@ -144,15 +154,12 @@ pub fn reduce(run: &WeightRun<'_>, spec: &WeightTowSpec, noise_m: Option<f64>) -
     };
     let (drag_n, found) = at(Moved::default())?;
     if drag_n <= 0.0 {
-        return Err(WeightTowError::NoTerminal {
-            run: run.id.to_owned(),
-            what: "faster than its weight could drive it",
-        });
+        return Err(no_terminal(run.id, "faster than its weight could drive it"));
     }
     along_the_rail(run, &mut point, drag_n)?;
     let (sin, cos) = run.angle_rad.sin_cos();
     let near = found.map(|b| b.solution);
-    let by = |speed_m_s: f64, moved: Moved, is_there: bool| -> Result<Moves, WeightTowError> {
+    let by = |speed_m_s: f64, moved: Moved, is_there: bool| -> Result<Moves, TankError> {
         let drag = if is_there { at(Moved { near, ..moved })?.0 - drag_n } else { 0.0 };
         let loads = point.loads.iter().map(|l| if l.name == "f_x" { -drag * cos } else { drag * sin });
         Ok(Moves { speed_m_s, loads_n: loads.collect() })
@@ -176,7 +183,7 @@ fn balanced(
     track: &Track,
     pull: Pull,
     moved: &Moved,
-) -> Result<Balance, WeightTowError> {
+) -> Result<Balance, TankError> {
     let larger = 1.0 + moved.scale;
     let sense = (run.position_m[run.position_m.len() - 1] - run.position_m[0]).signum();
     let positions: Vec<f64> = run.position_m[track.moving.clone()].iter().map(|x| larger * sense * x).collect();
@@ -190,18 +197,20 @@ fn balanced(
         (moved.near, moved.share),
     )?;
     if moved.near.is_none() && track.speed_m_s < spec.reached * found.terminal_m_s {
-        return Err(WeightTowError::TooSlow {
-            run: run.id.to_owned(),
-            speed_m_s: track.speed_m_s,
-            terminal_m_s: found.terminal_m_s,
-            needed: spec.reached,
-        });
+        let (speed_m_s, terminal_m_s) = (track.speed_m_s, found.terminal_m_s);
+        let what = format!(
+            "only {:.0} % of its terminal speed is reached ({speed_m_s:.3} of {terminal_m_s:.3} m/s), and {:.0} % is needed; use a longer way, a lighter wagon, or a body with \
+             more drag",
+            1e2 * speed_m_s / terminal_m_s,
+            1e2 * spec.reached
+        );
+        return Err(TankError::of_run(run.id, what));
     }
     Ok(found)
 }
 
 /// Sets the force along the rail, leaving that across it; without a cell the body must lie along the rail.
-fn along_the_rail(run: &WeightRun<'_>, point: &mut Point, drag_n: f64) -> Result<(), WeightTowError> {
+fn along_the_rail(run: &WeightRun<'_>, point: &mut Point, drag_n: f64) -> Result<(), TankError> {
     if point.loads.is_empty() {
         point.loads.push(by_weight(run, drag_n)?);
         return Ok(());
@@ -219,10 +228,10 @@ fn along_the_rail(run: &WeightRun<'_>, point: &mut Point, drag_n: f64) -> Result
 }
 
 /// Without a load cell the drag along the rail is what pulls; across it nothing is known, so that the body must lie along the rail.
-fn by_weight(run: &WeightRun<'_>, force_n: f64) -> Result<Load, WeightTowError> {
+fn by_weight(run: &WeightRun<'_>, force_n: f64) -> Result<Load, TankError> {
     if run.angle_rad != 0.0 {
         let what = "at an angle and without a load cell, so that what acts across the rail is unknown";
-        return Err(WeightTowError::NoTerminal { run: run.id.to_owned(), what });
+        return Err(no_terminal(run.id, what));
     }
     let read = froude_fit::series::Mean {
         value: -force_n,

@@ -13,13 +13,13 @@ use froude_records::run::step::Step;
 use froude_records::run::{ImportedRun, Role, WEIGHT_TOW};
 use froude_records::units::Dimension;
 
-use super::error::WeightTowError;
 use super::reduce::{ERRORS, Reduced, WeightRun, reduce};
 use super::section::WeightTowSpec;
 use super::track::metres;
 use super::{page, plan, section, simulate};
 use crate::conditioning::stretches::{in_words, touching};
 use crate::declared::check;
+use crate::error::TankError;
 use crate::logs::{self, Logs};
 use crate::steady::row::{Row, table};
 
@@ -61,7 +61,7 @@ impl Method for WeightTow {
         progress("reading the tracks");
         let positions = logs.iter().map(|log| position(log, &spec)).collect::<Result<Vec<_>, _>>()?;
         let (mut rows, mut reduced) = (Vec::new(), Vec::new());
-        let mut first: Option<WeightTowError> = None;
+        let mut first: Option<TankError> = None;
         for (log, position_m) in logs.iter().zip(&positions) {
             let run = run(log, position_m)?;
             match reduce(&run, &spec, None).and_then(|found| without_marks(log, found)) {
@@ -127,14 +127,20 @@ impl Method for WeightTow {
 }
 
 /// A reduced run, where nothing of what it was reduced from is marked.
-fn without_marks(log: &ImportedRun, found: Reduced) -> Result<Reduced, WeightTowError> {
+fn without_marks(log: &ImportedRun, found: Reduced) -> Result<Reduced, TankError> {
     let used = if found.balance.is_some() { &found.track.moving } else { &found.track.window };
     let marks = touching(&log.log.time_s, used, &log.declared.marks);
     if marks.is_empty() {
         return Ok(found);
     }
-    let (run, marks) = (log.log.meta.id.clone(), in_words(&marks));
-    Err(WeightTowError::Marked { run, marks, is_balanced: found.balance.is_some() })
+    let marks = in_words(&marks);
+    let what = if found.balance.is_some() {
+        "what moves, which the equation of motion is fitted to"
+    } else {
+        "the last part of its way"
+    };
+    let what = format!("{what}, holds {marks}; film it again, or give the camera a view without what was marked");
+    Err(TankError::of_run(&log.log.meta.id, what))
 }
 
 /// The last part of the way as a step.

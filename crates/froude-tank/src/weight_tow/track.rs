@@ -9,8 +9,8 @@ use std::ops::Range;
 
 use froude_fit::autocorrelation::integrated_time;
 
-use super::error::WeightTowError;
 use super::section::Lens;
+use crate::error::TankError;
 
 /// The wagon moves from this part of its way …
 const FROM: f64 = 0.01;
@@ -63,15 +63,18 @@ pub struct Track {
 ///
 /// # Errors
 ///
-/// [`WeightTowError::NoMotion`], [`WeightTowError::TooFewFrames`].
-pub fn track(run: &str, time_s: &[f64], position_m: &[f64], window_m: f64) -> Result<Track, WeightTowError> {
+/// No motion, too few frames.
+pub fn track(run: &str, time_s: &[f64], position_m: &[f64], window_m: f64) -> Result<Track, TankError> {
     let n = position_m.len();
     let way = position_m[n - 1] - position_m[0];
     let sense = way.signum();
     let progress = |i: usize| sense * (position_m[i] - position_m[0]);
     let moved_m = way.abs();
     if moved_m.is_nan() || moved_m < window_m {
-        return Err(WeightTowError::NoMotion { run: run.to_owned(), moved_m, window_m });
+        let what = format!(
+            "the mark moves {moved_m:.3} m, and the last {window_m:.3} m of its way are looked at; check the scale, or state a shorter window in [source.weight_tow]"
+        );
+        return Err(TankError::of_run(run, what));
     }
     let start = (0..n).rev().find(|&i| progress(i) < FROM * moved_m).map_or(0, |i| i + 1);
     // Its last step may hold the stop.
@@ -82,8 +85,11 @@ pub fn track(run: &str, time_s: &[f64], position_m: &[f64], window_m: f64) -> Re
     let first = (start..end).find(|&i| progress(i) >= from).unwrap_or(end);
     let window = first..end;
     if window.len() < FEWEST_FRAMES {
-        let (found, needed) = (window.len(), FEWEST_FRAMES);
-        return Err(WeightTowError::TooFewFrames { run: run.to_owned(), found, needed, window_m });
+        let what = format!(
+            "{} frames in the last {window_m:.3} m of the way, {FEWEST_FRAMES} are needed; film faster, or state a longer window in [source.weight_tow]",
+            window.len()
+        );
+        return Err(TankError::of_run(run, what));
     }
     let t = &time_s[window.clone()];
     let x: Vec<f64> = window.clone().map(progress).collect();

@@ -7,13 +7,12 @@ use std::path::Path;
 use froude::fit::budget::Uncertain;
 use froude::fit::coverage::Count;
 use froude::hydro::swing::{Kinematics, Medium, Pivot};
+use froude::methods::tank::TankError;
 use froude::methods::tank::oscillation::forecast::{Forecast, forecast};
 use froude::methods::tank::oscillation::section::plan;
 use froude::methods::tank::oscillation::simulate::{Planned, Truths, configurations, planned, simulated};
 use froude::methods::tank::oscillation::source::{declared, drags, setup_of};
-use froude::methods::tank::oscillation::{
-    Cycles, Drag, OscillationError, OscillationFit, OscillationRun, Setup, fit, motions,
-};
+use froude::methods::tank::oscillation::{Cycles, Drag, OscillationFit, OscillationRun, Setup, fit, motions};
 use froude::records::campaign::{Campaign, Identify, SensorSpec, Source, read_campaign};
 use rayon::prelude::*;
 
@@ -145,7 +144,7 @@ fn fitted(
     runs: &[Sine],
     drag: &Drag,
     identify: &Identify,
-) -> Result<OscillationFit, OscillationError> {
+) -> Result<OscillationFit, TankError> {
     let views: Vec<OscillationRun<'_>> = runs
         .iter()
         .map(|run| OscillationRun {
@@ -255,12 +254,7 @@ fn pivots(claims: &mut Claims, case: &Case) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn expected(
-    case: &Case,
-    setup: &Setup,
-    sensors: &[SensorSpec],
-    identify: &Identify,
-) -> Result<Forecast, OscillationError> {
+fn expected(case: &Case, setup: &Setup, sensors: &[SensorSpec], identify: &Identify) -> Result<Forecast, TankError> {
     forecast(&case.planned, setup, &case.truth, &case.f4, sensors, identify)
 }
 
@@ -409,7 +403,7 @@ fn one(
     planned: &[Planned],
     sensors: &[SensorSpec],
     seed: u64,
-) -> Result<(OscillationFit, Vec<f64>), OscillationError> {
+) -> Result<(OscillationFit, Vec<f64>), TankError> {
     let truth = drawn(case, seed);
     let logged = simulated(planned, &case.setup, &truth, sensors, 1 + seed);
     let runs: Vec<OscillationRun<'_>> =

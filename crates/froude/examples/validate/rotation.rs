@@ -6,13 +6,14 @@ use std::path::Path;
 use froude::fit::budget::Uncertain;
 use froude::fit::coverage::Count;
 use froude::hydro::link_parameters::{LinkCoefficients, LinkParameters, YawDrag, YawInertia};
+use froude::methods::tank::TankError;
 use froude::methods::tank::rotation::derive::C_F_DIFFERENCE;
 use froude::methods::tank::rotation::fit::LAMBDAS;
 use froude::methods::tank::rotation::forecast::{Forecast, forecast, true_value};
 use froude::methods::tank::rotation::section::plan;
 use froude::methods::tank::rotation::simulate::{Planned, Simulated, Truths, planned, simulated};
 use froude::methods::tank::rotation::source::setup_of;
-use froude::methods::tank::rotation::{Derived, RotationError, RotationFit, RotationRun, Setup, derived, fit, motions};
+use froude::methods::tank::rotation::{Derived, RotationFit, RotationRun, Setup, derived, fit, motions};
 use froude::records::campaign::{Identify, SensorSpec, read_campaign};
 use rayon::prelude::*;
 
@@ -40,7 +41,7 @@ impl Case {
         Ok(Self { setup, truth, planned: planned(&blocks), sensors })
     }
 
-    fn forecast(&self, setup: &Setup, sensors: &[SensorSpec]) -> Result<Forecast, RotationError> {
+    fn forecast(&self, setup: &Setup, sensors: &[SensorSpec]) -> Result<Forecast, TankError> {
         forecast(&self.planned, setup, &self.truth, sensors, &Identify::default())
     }
 }

@@ -6,11 +6,12 @@ use std::path::Path;
 use froude::fit::coverage::Count;
 use froude::identify::reduce::reduce_table;
 use froude::identify::source::identify_observations;
+use froude::methods::tank::TankError;
 use froude::methods::tank::steady::plan::{Expected, expected};
+use froude::methods::tank::steady::point;
 use froude::methods::tank::steady::row::{Row, table};
 use froude::methods::tank::steady::section::declared;
 use froude::methods::tank::steady::simulate::{Plan, plan_of, simulated};
-use froude::methods::tank::steady::{SteadyError, point};
 use froude::records::campaign::{Campaign, SensorSpec, Source, read_campaign};
 use froude::records::estimate::Coefficient;
 use indexmap::IndexMap;
@@ -75,7 +76,7 @@ fn one(
             point: point(&run.view(), &spec)?,
         })
     });
-    let rows: Vec<Row> = rows.collect::<Result<_, SteadyError>>()?;
+    let rows: Vec<Row> = rows.collect::<Result<_, TankError>>()?;
     let observations = reduce_table(campaign, source, &table(source.input.path(), &rows), Vec::new())?;
     let mut result = identify_observations(campaign, source, observations, "steady", &|_| {})?;
     Ok((result.estimates.remove(0).coefficients, of_scatter(&result.findings)))
