@@ -7,13 +7,16 @@
 
 use froude_control::request::{Move, Request};
 use froude_control::status::Phase;
-use froude_rig::catalogue::{Catalogue, Sweep};
 use froude_rig::defaults::control_config;
 use froude_rig::{AxisParameters, ClosedLoop, Load, Mounting, TwinConfig};
 use std::time::Instant;
 
+#[path = "../tests/faults/mod.rs"]
+mod faults;
 #[path = "../tests/hosts/mod.rs"]
 mod hosts;
+
+use faults::{Catalogue, Sweep};
 
 fn main() -> std::process::ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -5,7 +5,6 @@
 
 /// One thing that breaks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub enum Injection {
     /// Both encoder lines die.
     EncoderSilent,

@@ -12,7 +12,7 @@
 //! | [`carriage`] | what a campaign drives, and the runs that it asks for |
 //! | [`campaign`] | a whole campaign: planned, checked, driven, recorded, resumed |
 //! | [`closed_loop`], [`defaults`] | the controller on the twin, and its configuration for this rig |
-//! | [`injection`], [`catalogue`] | what can be broken, and what the controller must say then |
+//! | [`injection`] | what can be broken |
 //! | [`planar`] | motion in the plane with rotation |
 //! | [`decay`] | a body on springs, let go |
 //! | [`oscillation`] | a body on a rod that a servo swings |
@@ -48,7 +48,6 @@ pub mod accelerated_tow;
 pub mod amplifier;
 pub mod campaign;
 pub mod carriage;
-pub mod catalogue;
 pub mod closed_loop;
 pub mod decay;
 pub mod defaults;
@@ -70,7 +69,6 @@ mod swung;
 pub mod twin;
 pub mod weight_tow;
 
-pub use catalogue::Catalogue;
 pub use closed_loop::ClosedLoop;
 pub use injection::{Injection, Scheduled};
 pub use load::{HungWeight, Load, Mounting, Strut, TowedBody};

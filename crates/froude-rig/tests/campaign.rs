@@ -1,8 +1,11 @@
 //! A whole small campaign on the twin: driven, stopped, resumed, and what happens when something breaks.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod faults;
+
 use std::path::Path;
 
+use faults::Faults;
 use froude_control::fault::StopCategory;
 use froude_control::request::Request;
 use froude_control::status::Phase;

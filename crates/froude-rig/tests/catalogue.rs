@@ -1,7 +1,9 @@
 //! Random faults on random moves; the validation runs 10⁵.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use froude_rig::catalogue::{Catalogue, Sweep};
+mod faults;
+
+use faults::{Catalogue, Sweep};
 
 /// Runs in the pipeline.
 const RUNS: u64 = 5_000;

@@ -1,6 +1,7 @@
 //! Random faults with two hosts on the line and a late operator; the endurance example runs 10⁵.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod faults;
 mod hosts;
 
 use hosts::{Hosts, Sweep};

@@ -3,7 +3,7 @@
 //! **Setting.** The firmware's application steps the controller on the twin; hosts speak to it in frames. The first host has the board,
 //! says every 20 ms that it is there and asks for the moves of the catalogue's scene; its operator is late, and it goes on giving signs
 //! of life meanwhile or does not. The second host says whatever it can, at random: hello, heartbeats, requests, configurations,
-//! lock step, stops, other versions. Something breaks on a moving axis, as in [`froude_rig::catalogue`]. In the end both fall silent.
+//! lock step, stops, other versions. Something breaks on a moving axis, as in [`crate::faults`]. In the end both fall silent.
 //!
 //! **What must hold**, in every run:
 //!
@@ -18,6 +18,7 @@
 //!
 //! A current that is not a number cannot come out of a converter; where the catalogue draws one the amplifier fails instead.
 
+use crate::faults::{Faults, MOUNTINGS, Scene};
 use std::collections::{BTreeMap, VecDeque};
 
 use froude_board::application::Application;
@@ -32,7 +33,6 @@ use froude_link::frame::{FrameWriter, MAX_WIRE};
 use froude_link::session::{AFTER_SILENCE_US, NOBODY};
 use froude_link::status::BoardId;
 use froude_link::{HostFrame, ToBoard};
-use froude_rig::catalogue::{MOUNTINGS, Scene};
 use froude_rig::defaults::control_config;
 use froude_rig::injection::{Injection, Scheduled};
 use froude_rig::load::Load;

@@ -21,23 +21,41 @@
 //! run the loads stay off their hard stops and no command that is not finite reaches an amplifier. The chain break is the
 //! exception that the table states: a load without a chain coasts as far as its own friction lets it.
 
-use crate::closed_loop::ClosedLoop;
-use crate::defaults::control_config;
-use crate::injection::{Injection, Scheduled};
-use crate::load::{Load, Mounting};
-use crate::twin::{TICK_S, TwinConfig};
+#![allow(dead_code)] // Each program uses a part.
+
 use froude_control::config::ConfigError;
 use froude_control::fault::Fault;
 use froude_control::request::{Move, Request};
 use froude_control::status::Phase;
+use froude_rig::closed_loop::ClosedLoop;
+use froude_rig::defaults::control_config;
+use froude_rig::injection::{Injection, Scheduled};
+use froude_rig::load::{Load, Mounting};
+use froude_rig::twin::{TICK_S, TwinConfig};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
 
-impl Injection {
+/// What an injected fault must come to.
+pub trait Faults: Sized {
     /// Faults that the controller may latch for it; empty when none can be asked for.
-    #[must_use]
-    pub fn accepted(&self) -> &'static [Fault] {
+    fn accepted(&self) -> &'static [Fault];
+
+    /// Its name in tables.
+    fn name(&self) -> &'static str;
+
+    /// Latest detection after it acts, s.
+    fn latest_s(&self) -> f64;
+
+    /// Broken within the last counts of a move, these show nothing until the axis is asked to move again.
+    fn is_unseen_at_rest(&self) -> bool;
+
+    /// A random one, strong enough to matter.
+    fn random(rng: &mut impl Rng) -> Self;
+}
+
+impl Faults for Injection {
+    fn accepted(&self) -> &'static [Fault] {
         match self {
             Self::EmergencyStop => &[Fault::EmergencyStop],
             Self::LowEndSwitch | Self::HighEndSwitch => &[Fault::EndSwitch],
@@ -67,9 +85,7 @@ impl Injection {
         }
     }
 
-    /// Its name in tables.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
+    fn name(&self) -> &'static str {
         match self {
             Self::EncoderSilent => "encoder silent",
             Self::EncoderStuck => "encoder stuck",
@@ -90,9 +106,7 @@ impl Injection {
         }
     }
 
-    /// Latest detection after it acts, s.
-    #[must_use]
-    pub fn latest_s(&self) -> f64 {
+    fn latest_s(&self) -> f64 {
         match self {
             Self::EmergencyStop
             | Self::LowEndSwitch
@@ -110,9 +124,7 @@ impl Injection {
         }
     }
 
-    /// Broken within the last counts of a move, these show nothing until the axis is asked to move again.
-    #[must_use]
-    pub fn is_unseen_at_rest(&self) -> bool {
+    fn is_unseen_at_rest(&self) -> bool {
         matches!(
             self,
             Self::TorqueLoss(_)
@@ -123,9 +135,7 @@ impl Injection {
         )
     }
 
-    /// A random one, strong enough to matter.
-    #[must_use]
-    pub fn random(rng: &mut impl Rng) -> Self {
+    fn random(rng: &mut impl Rng) -> Self {
         match rng.random_range(0..16) {
             0 => Self::EncoderSilent,
             1 => Self::EncoderStuck,
