@@ -11,7 +11,7 @@
 //! | J_eff = J_m + M(R/n)² and so on | [`AxisParameters::effective`] | MCD eq. 3b |
 //! | (2πf)² = K_e (1/M + (R/n)²/J_m) | [`AxisParameters::motor_side_mode_hz`] | both masses free |
 //! | (2πf)² = K_e / M | [`AxisParameters::load_mode_hz`] | motor held by the position loop |
-//! | the values | [`declared`] | MCD Table II; chosen; derived |
+//! | the values | [`AxisParameters::long`], [`AxisParameters::short`] | MCD Table II; chosen; derived |
 //!
 //! Two things to keep apart. The **motor-side mode** (13 Hz, 45 Hz) is the free-free one: the motor swings against the load, and
 //! the drive current sees it. The **load mode** is what the load does when a stiff loop holds the motor still: it is lower
@@ -116,12 +116,13 @@ impl AxisParameters {
     /// The long axis `y`, bare, with the published sums; the gear has the declared efficiency of 0.8.
     #[must_use]
     pub const fn long() -> Self {
-        let motor_inertia_kg_m2 = 4.0e-6;
+        let motor_inertia_kg_m2 = 4.0e-6; // chosen: rotor of a 60 W motor, gearbox and coupling
         let load_mass_kg = (J_EFF_KG_M2 - motor_inertia_kg_m2) / (CHAIN_M_RAD * CHAIN_M_RAD);
-        let load_viscous_n_s_m = 1.0;
-        let motor_coulomb_n_m = 0.4 * C_EFF_N_M;
-        let rolling_coefficient = 0.01;
+        let load_viscous_n_s_m = 1.0; // chosen: about half of B_eff
+        let motor_coulomb_n_m = 0.4 * C_EFF_N_M; // chosen: 40 % of C_eff at brushes and gear
+        let rolling_coefficient = 0.01; // chosen: rollers on ball bearings, C − C_0 = μ_r · wheel load
         let load_total_n = (C_EFF_N_M - motor_coulomb_n_m) / CHAIN_M_RAD;
+        // Damping ratio chosen: a plastic chain with steel wire.
         let (stiffness_n_m, chain_damping_n_s_m) = spring(LONG_MODE_HZ, 0.05, motor_inertia_kg_m2, load_mass_kg);
         Self {
             motor_inertia_kg_m2,
@@ -133,12 +134,12 @@ impl AxisParameters {
             motor_coulomb_n_m,
             load_coulomb_n: load_total_n - rolling_coefficient * load_mass_kg * GRAVITY_M_S2,
             rolling_coefficient,
-            stribeck_excess: 0.1,
-            stribeck_speed_m_s: 0.005,
-            bump: 0.2,
+            stribeck_excess: 0.1,      // chosen: breakaway 10 % above sliding friction of the load
+            stribeck_speed_m_s: 0.005, // chosen: below the slowest tow, 1 % of the excess left at 0.05 m/s
+            bump: 0.2,                 // friction grows mid-tank (seen, not modelled, in MCD)
             asymmetry: 0.0,
-            efficiency_forward: 0.8,
-            efficiency_backward: 0.75,
+            efficiency_forward: 0.8,   // chosen: two-stage planetary gearbox; MCD leaves it out
+            efficiency_backward: 0.75, // chosen: back-driven it loses more
             torque_constant_n_m_a: TORQUE_CONSTANT_N_M_A,
             gear_ratio: GEAR_RATIO,
             sprocket_radius_m: SPROCKET_RADIUS_M,
@@ -147,26 +148,26 @@ impl AxisParameters {
             hard_low_m: -0.05,
             hard_high_m: 4.95,
             switch_margin_m: 0.05,
-            strut_drag_n_s2_m2: 1.5,
+            strut_drag_n_s2_m2: 1.5, // chosen: tare of the strut when the body is wet
         }
     }
 
     /// The short axis `x`, bare: all chosen but the 45 Hz, and the drive line, which the paper says is the same on both axes.
     #[must_use]
     pub const fn short() -> Self {
-        let motor_inertia_kg_m2 = 1.2e-6;
-        let load_mass_kg = 1.5;
+        let motor_inertia_kg_m2 = 1.2e-6; // chosen: rotor of a 20 W motor, gearbox and coupling
+        let load_mass_kg = 1.5; // chosen: the platform alone
         let (stiffness_n_m, chain_damping_n_s_m) = spring(SHORT_MODE_HZ, 0.05, motor_inertia_kg_m2, load_mass_kg);
         Self {
             motor_inertia_kg_m2,
             load_mass_kg,
             stiffness_n_m,
             chain_damping_n_s_m,
-            motor_viscous_n_m_s_rad: 1.0e-6,
-            load_viscous_n_s_m: 0.5,
-            motor_coulomb_n_m: 0.9e-3,
-            load_coulomb_n: 0.5,
-            hard_high_m: 1.15,
+            motor_viscous_n_m_s_rad: 1.0e-6, // chosen: half of the long axis's
+            load_viscous_n_s_m: 0.5,         // chosen: linear shaft bearings
+            motor_coulomb_n_m: 0.9e-3,       // chosen: a smaller motor
+            load_coulomb_n: 0.5,             // chosen: linear shaft bearings
+            hard_high_m: 1.15,               // chosen: the tank's width less the platform
             ..Self::long()
         }
     }
@@ -279,102 +280,6 @@ const fn spring(mode_hz: f64, damping: f64, motor_inertia_kg_m2: f64, load_mass_
     (omega * omega * reduced_kg, 2.0 * damping * omega * reduced_kg)
 }
 
-/// Where a value comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Origin {
-    /// Printed in MCD.
-    Published,
-    /// Never published; a plausible value was chosen.
-    Chosen,
-    /// Follows from published and chosen values.
-    Derived,
-}
-
-/// One row of the table of declared values.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Declared {
-    /// `y`, `x`, or `yx` for both.
-    pub axis: &'static str,
-    /// The paper's letter where it has one.
-    pub symbol: &'static str,
-    /// Value in SI.
-    pub value: f64,
-    /// Unit.
-    pub unit: &'static str,
-    /// Where it comes from.
-    pub origin: Origin,
-    /// Why this value.
-    pub reason: &'static str,
-}
-
-/// Every constant of the twin's axes with its origin: the table that a report prints.
-#[must_use]
-pub fn declared() -> Vec<Declared> {
-    use Origin::{Chosen, Derived, Published};
-    let (y, x) = (AxisParameters::long(), AxisParameters::short());
-    let row = |axis, symbol, value, unit, origin, reason| Declared { axis, symbol, value, unit, origin, reason };
-    vec![
-        row("y", "J_eff", J_EFF_KG_M2, "kg m^2", Published, "Table II"),
-        row("y", "B_eff", B_EFF_N_M_S_RAD, "N m s/rad", Published, "Table II (printed Ns)"),
-        row("y", "C_eff", C_EFF_N_M, "N m", Published, "Table II"),
-        row("yx", "K_T", TORQUE_CONSTANT_N_M_A, "N m/A", Published, "Table II (printed N/m)"),
-        row("yx", "K_amp", AMPLIFIER_A_V, "A/V", Published, "Table II"),
-        row("yx", "n", GEAR_RATIO, "1", Published, "Table II"),
-        row("yx", "R", SPROCKET_RADIUS_M, "m", Published, "Table II"),
-        row("yx", "counts", COUNTS_PER_REVOLUTION, "1", Published, "1000 lines, decoded four times"),
-        row("y", "f", LONG_MODE_HZ, "Hz", Published, "mode of the long axis, bare carriage, both masses free"),
-        row("x", "f", SHORT_MODE_HZ, "Hz", Published, "mode of the short axis, likewise"),
-        row("y", "J_m", y.motor_inertia_kg_m2, "kg m^2", Chosen, "rotor of a 60 W motor, gearbox and coupling"),
-        row("y", "M", y.load_mass_kg, "kg", Derived, "(J_eff - J_m)(n/R)^2"),
-        row("y", "K_e", y.stiffness_n_m, "N/m", Derived, "from 13 Hz, J_m and M"),
-        row("y", "zeta", 0.05, "1", Chosen, "damping of the free-free mode: a plastic chain with steel wire"),
-        row("y", "B_e", y.chain_damping_n_s_m, "N s/m", Derived, "from the damping ratio"),
-        row("y", "B", y.load_viscous_n_s_m, "N s/m", Chosen, "split: about half of B_eff"),
-        row("y", "B_m", y.motor_viscous_n_m_s_rad, "N m s/rad", Derived, "B_eff - B (R/n)^2"),
-        row("y", "C_m", y.motor_coulomb_n_m, "N m", Chosen, "split: 40 % of C_eff at brushes and gear"),
-        row(
-            "y",
-            "C",
-            y.load_friction_n(y.load_mass_kg * GRAVITY_M_S2),
-            "N",
-            Derived,
-            "(C_eff - C_m) n/R, bare carriage",
-        ),
-        row("y", "C_0", y.load_coulomb_n, "N", Derived, "part of C that the wheel load does not change"),
-        row("yx", "mu_r", y.rolling_coefficient, "1", Chosen, "rollers on ball bearings: C - C_0 = mu_r x wheel load"),
-        row("x", "J_m", x.motor_inertia_kg_m2, "kg m^2", Chosen, "rotor of a 20 W motor, gearbox and coupling"),
-        row("x", "M", x.load_mass_kg, "kg", Chosen, "the platform alone"),
-        row("x", "K_e", x.stiffness_n_m, "N/m", Derived, "from 45 Hz, J_m and M"),
-        row("x", "B_e", x.chain_damping_n_s_m, "N s/m", Derived, "from the same damping ratio"),
-        row("x", "B", x.load_viscous_n_s_m, "N s/m", Chosen, "linear shaft bearings"),
-        row("x", "B_m", x.motor_viscous_n_m_s_rad, "N m s/rad", Chosen, "half of the long axis's"),
-        row("x", "C_m", x.motor_coulomb_n_m, "N m", Chosen, "a smaller motor"),
-        row("x", "C_0", x.load_coulomb_n, "N", Chosen, "linear shaft bearings"),
-        row("yx", "stribeck", y.stribeck_excess, "1", Chosen, "breakaway 10 % above sliding friction of the load"),
-        row(
-            "yx",
-            "v_s",
-            y.stribeck_speed_m_s,
-            "m/s",
-            Chosen,
-            "below the slowest tow: 1 % of the excess left at 0.05 m/s",
-        ),
-        row("yx", "bump", y.bump, "1", Chosen, "friction grows mid-tank (seen, not modelled, in MCD)"),
-        row("yx", "eta", y.efficiency_forward, "1", Chosen, "two-stage planetary gearbox; MCD leaves it out"),
-        row("yx", "eta_b", y.efficiency_backward, "1", Chosen, "back-driven it loses more"),
-        row(
-            "y",
-            "travel",
-            y.hard_high_m - y.hard_low_m,
-            "m",
-            Chosen,
-            "between hard stops; end switches 50 mm before them",
-        ),
-        row("x", "travel", x.hard_high_m - x.hard_low_m, "m", Chosen, "the tank's width less the platform"),
-        row("yx", "strut", y.strut_drag_n_s2_m2, "N s^2/m^2", Chosen, "tare of the strut when the body is wet"),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -410,12 +315,5 @@ mod tests {
         assert!(y.load_mode_hz(bare) < y.motor_side_mode_hz(bare));
         // With an endless load only the motor swings, with an endless motor only the load.
         agree(y.motor_side_mode_hz(f64::INFINITY), y.load_mode_hz(y.motor_mass_kg()));
-    }
-
-    #[test]
-    fn every_declared_value_is_positive_and_has_a_reason() {
-        for d in declared() {
-            assert!(d.value > 0.0 && d.value.is_finite() && !d.reason.is_empty(), "{d:?}");
-        }
     }
 }
