@@ -13,7 +13,6 @@
 //! | [`campaign`] | a whole campaign: planned, checked, driven, recorded, resumed |
 //! | [`closed_loop`], [`defaults`] | the controller on the twin, and its configuration for this rig |
 //! | [`injection`] | what can be broken |
-//! | [`planar`] | motion in the plane with rotation |
 //! | [`decay`] | a body on springs, let go |
 //! | [`oscillation`] | a body on a rod that a servo swings |
 //! | [`rotation`] | a body that a motor turns to and fro about its own centre |
@@ -41,7 +40,7 @@
 //! # Ok::<(), froude_control::config::ConfigError>(())
 //! ```
 //!
-//! Not here: drivers of the real carriage (yet), torque ripple, waves and wake, coupling of the two axes in [`twin`] ([`planar`] has it).
+//! Not here: drivers of the real carriage (yet), torque ripple, waves and wake, coupling of the two axes in [`twin`].
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod accelerated_tow;
@@ -60,7 +59,6 @@ pub mod load;
 pub mod noise;
 pub mod oscillation;
 pub mod parameters;
-pub mod planar;
 pub mod plant;
 pub mod propagator;
 pub mod rotation;
