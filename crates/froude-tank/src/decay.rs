@@ -16,7 +16,6 @@
 //! | [`fit`]          | coefficients, scatter, what M and C do to them                   | Efron & Stein 1981, GUM      |
 //! | [`record`]        | estimate, rows and line for the page                             | –                            |
 //! | [`section`]      | what a campaign declares and plans                               | –                            |
-//! | [`simulate`]     | releases as a rig would log them                                 | –                            |
 //! | [`releases`]     | those that a campaign plans, on the twin of its rig              | –                            |
 //! | [`forecast`]     | the interval to expect of each coefficient                       | Ljung 1999, GUM              |
 //! | [`plan`]         | run matrix, time, peaks and those intervals                      | –                            |
@@ -39,7 +38,6 @@ mod reduced;
 pub mod releases;
 pub mod run;
 pub mod section;
-pub mod simulate;
 pub mod source;
 mod swings;
 

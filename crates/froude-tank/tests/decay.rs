@@ -1,14 +1,17 @@
 //! The decay test: laws that hold for any release, bias, findings, coverage of the intervals.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod scenario;
+
 use froude_fit::budget::{OUTSIDE_95, Uncertain, combine};
 use froude_fit::coverage::{Count, z_limit};
 use froude_records::campaign::Motion;
-use froude_tank::decay::simulate::{Logged, Scenario};
+use froude_tank::decay::releases::Logged;
 use froude_tank::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method, Restoring, envelope, output_error};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
+use scenario::Scenario;
 
 /// What [`Scenario::heave`] is made of: A33, D_z_I, D_z_II.
 const TRUTH: [f64; 3] = [8.0, 4.0, 40.0];

@@ -7,8 +7,8 @@ use froude_fit::budget::Uncertain;
 use froude_records::campaign::{Motion, SensorSpec};
 use froude_rig::decay::Release;
 use froude_tank::decay::forecast::{forecast, peaks_of};
+use froude_tank::decay::releases::Logged;
 use froude_tank::decay::releases::{Planned, simulated};
-use froude_tank::decay::simulate::Logged;
 use froude_tank::decay::{DecayError, DecayRun, DecaySetup, DecayWindow, Restoring, envelope, output_error};
 
 /// The snake robot Mamba, H1LT on a rod of 0.476 m: A = 1.277 · 1025 · 1.2723e-3 r², the drag of the paper's f4 in the circulation tank.

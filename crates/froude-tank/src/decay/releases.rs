@@ -11,9 +11,8 @@ use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
 use super::record::LAW;
-use super::run::{DecaySetup, Restoring};
+use super::run::{DecayRun, DecaySetup, Restoring};
 use super::section::DecayPlan;
-use super::simulate::Logged;
 use crate::sensors::{Senses, seed_and_sensors};
 
 /// Standard deviation of the zero of a release, as part of its displacement.
@@ -30,6 +29,25 @@ pub struct Planned {
     pub release: Release,
     /// Samples a second.
     pub rate_hz: f64,
+}
+
+/// A release that owns its columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Logged {
+    /// See [`DecayRun::id`].
+    pub id: String,
+    /// See [`DecayRun::time_s`].
+    pub time_s: Vec<f64>,
+    /// See [`DecayRun::position`].
+    pub position: Vec<f64>,
+}
+
+impl Logged {
+    /// The release as the reduction takes it.
+    #[must_use]
+    pub fn view(&self) -> DecayRun<'_> {
+        DecayRun { id: &self.id, time_s: &self.time_s, position: &self.position }
+    }
 }
 
 /// The run matrix of a plan.

@@ -1,11 +1,10 @@
-//! Releases as a rig would log them, for tests and plans: the motion of the fit, with friction, a second mode, noise and steps.
+//! Releases as a rig would log them: the motion of the fit, with friction, a second mode, noise and steps.
 
+use froude_tank::decay::motion::Motion;
+use froude_tank::decay::releases::Logged;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
-
-use super::motion::Motion;
-use super::run::DecayRun;
 
 /// What is released, and how it is logged.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,24 +103,5 @@ impl Scenario {
             position.push(if self.step > 0.0 { (sensed / self.step).round() * self.step } else { sensed });
         }
         Logged { id: format!("release {}", which + 1), time_s, position }
-    }
-}
-
-/// A release that owns its columns.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Logged {
-    /// See [`DecayRun::id`].
-    pub id: String,
-    /// See [`DecayRun::time_s`].
-    pub time_s: Vec<f64>,
-    /// See [`DecayRun::position`].
-    pub position: Vec<f64>,
-}
-
-impl Logged {
-    /// The release as the reduction takes it.
-    #[must_use]
-    pub fn view(&self) -> DecayRun<'_> {
-        DecayRun { id: &self.id, time_s: &self.time_s, position: &self.position }
     }
 }
