@@ -15,9 +15,12 @@ use froude_swim::gait::{Envelope, Gait};
 use froude_swim::spatial::attitude::{LEVEL, world_from_body};
 use froude_swim::spatial::chain::{Chain, Link};
 use froude_swim::spatial::drag::LinkDrag;
-use froude_swim::spatial::driven::Driven;
 use froude_swim::spatial::engine::{Head, Workspace};
 use froude_swim::spatial::vector::{Axis, Inertia};
+use spatial_driven::Driven;
+
+#[path = "../tests/spatial_driven/mod.rs"]
+mod spatial_driven;
 
 fn main() {
     let mut bytes = Vec::new();

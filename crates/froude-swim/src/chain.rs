@@ -13,7 +13,7 @@
 //! `Full` conserves energy and both momenta of body and fluid, `Usr` the energy only.
 
 use crate::drag::LinkDrag;
-use crate::planar::{Inertia, Load, Motion, turned};
+use crate::planar::{Inertia, Motion};
 
 /// Load of the fluid's inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -87,19 +87,6 @@ impl Chain {
     #[must_use]
     pub fn energy_j(&self, motions: &[Motion]) -> f64 {
         self.links.iter().zip(motions).map(|(link, m)| link.inertia().energy(*m)).sum()
-    }
-
-    /// What a link's momenta need where its axes turn, without its drag: p of I ṁ + p.
-    #[inline(always)]
-    pub(crate) fn bias(&self, link: &Link, motion: Motion) -> Load {
-        let rigid = turned(motion, link.rigid.times(motion));
-        match self.added_mass {
-            AddedMass::Usr => rigid,
-            AddedMass::Full => {
-                let added = turned(motion, link.added.times(motion));
-                [rigid[0] + added[0], rigid[1] + added[1], rigid[2] + added[2]]
-            }
-        }
     }
 }
 

@@ -150,21 +150,6 @@ impl<'a, D: Drive> Driven<'a, D> {
         add(state, h, mean);
         Some(())
     }
-
-    /// Kinetic energy of body and water, J, and their momentum, kg m/s, with its moment about the origin of the tank, kg m²/s, of the state that was evaluated last.
-    #[must_use]
-    pub fn energy_and_momentum(&self, state: &[f64]) -> (f64, [f64; 3]) {
-        let motions = self.work.motions();
-        let places = self.chain.places([state[0], state[1]], state[2], &state[3..]);
-        let mut sum = [0.0; 3];
-        for ((link, motion), (place, heading)) in self.chain.links.iter().zip(motions).zip(places) {
-            let [turn, along, across] = link.inertia().times(*motion);
-            let (s, c) = heading.sin_cos();
-            let (x, y) = (c * along - s * across, s * along + c * across);
-            sum = [sum[0] + x, sum[1] + y, sum[2] + turn + place[0] * y - place[1] * x];
-        }
-        (self.chain.energy_j(motions), sum)
-    }
 }
 
 /// Rates, compiled for what the processor has.

@@ -10,12 +10,10 @@
 //! | [`draws`]         | coefficients drawn from their covariance                             |
 //! | [`sensitivity`]   | what speed and cost owe to each coefficient                          |
 //! | [`engine`]      | accelerations and joint torques in O(n)                              |
-//! | [`closed_form`] | the same in absolute angles, dense: the reference                    |
 //! | [`driven`]        | a swimmer with torques at its joints over time                       |
 //! | [`drive`]         | servos, motors and friction of the joints                            |
 //! | [`joints`]          | what joints allow, and what drives them                              |
 //! | [`stability`]       | how long a step may be                                               |
-//! | [`adaptive`]      | a path to a stated accuracy                                          |
 //! | [`front`]         | gaits that no other beats in both of two objectives                  |
 //! | [`gait`]        | joint angles over time                                               |
 //! | [`course`]        | joint angles that were recorded, or grow from straight               |
@@ -39,11 +37,9 @@
 #![allow(clippy::inline_always)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-pub mod adaptive;
 mod added;
 pub mod blueprint;
 pub mod chain;
-pub mod closed_form;
 pub mod course;
 pub mod drag;
 mod drag_lanes;

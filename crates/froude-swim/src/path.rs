@@ -5,7 +5,6 @@
 //!
 //! **Frame.** A uniform steady current only carries the place along.
 
-use crate::adaptive::{PathError, path};
 use crate::chain::Chain;
 use crate::engine::{Given, Joints, Workspace};
 use crate::gait::{Course, Shape};
@@ -128,21 +127,6 @@ impl<'a> Swimmer<'a> {
         let k3 = self.rates(time_s + 0.5 * h, &state.moved(0.5 * h, &k2))?;
         let k4 = self.rates(time_s + h, &state.moved(h, &k3))?;
         Some(state.moved(h / 6.0, k1).moved(h / 3.0, &k2).moved(h / 3.0, &k3).moved(h / 6.0, &k4))
-    }
-
-    /// States at `times_s`, which grow, from `start` at the first of them, to a relative tolerance of each step.
-    ///
-    /// # Errors
-    ///
-    /// [`PathError`]: no positive inertia, steps that become too many or too small.
-    pub fn path(&mut self, times_s: &[f64], start: &State, tolerance: f64) -> Result<Vec<State>, PathError> {
-        let rates = |time_s: f64, numbers: &[f64], out: &mut [f64]| {
-            let found = self.rates(time_s, &State::of(numbers.try_into().ok()?))?;
-            out.copy_from_slice(&found.numbers());
-            Some(())
-        };
-        let found = path(times_s, &start.numbers(), tolerance, rates)?;
-        Ok(found.iter().filter_map(|n| Some(State::of(n.as_slice().try_into().ok()?))).collect())
     }
 
     /// Kinetic energy of body and water at the last evaluation, J.

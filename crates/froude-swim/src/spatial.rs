@@ -7,9 +7,7 @@
 //! | [`drag`]      | drag of a link by strips, across it in two directions              |
 //! | [`chain`]     | links with inertia, weight and buoyancy, and the joints between them |
 //! | [`engine`]    | accelerations and joint torques in O(n)                            |
-//! | [`dense`]     | the same from the links one by one and their constraints: the reference |
 //! | [`path`]        | a swimmer with a gait over time, its work and loss                 |
-//! | [`driven`]      | a swimmer with torques at its joints over time                     |
 //! | [`gait`]        | a wave of the joints that yaw and one of those that pitch          |
 //! | [`period`]      | the motion that repeats, its speed, powers, attitude and stability |
 //! | [`robot`]       | a chain from a robot file and the records that it names            |
@@ -25,9 +23,7 @@
 
 pub mod attitude;
 pub mod chain;
-pub mod dense;
 pub mod drag;
-pub mod driven;
 pub mod engine;
 pub mod gait;
 pub mod path;

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use froude_swim::adaptive::path;
+mod adaptive;
+
+use adaptive::path;
 use froude_swim::chain::{AddedMass, Chain, Link};
 use froude_swim::course::Recorded;
 use froude_swim::drag::{LinkDrag, Turning};
@@ -46,7 +48,7 @@ fn steps_of_a_driven_chain_are_of_fourth_order() {
     let (following, motor) = (servos(2.0), Motor::default());
     let mut driven = Driven::new(&chain, Servo::new(&gait, &following, &motor));
     let start = vec![0.0; driven.size()];
-    let exact = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| driven.rates(t, x, out)).unwrap().remove(1);
+    let exact = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| driven.rates(t, x, out)).remove(1);
     // Without the positive and the absolute power, which have corners.
     let smooth = driven.at(Energy::Positive);
     let mut error = |steps: u32| {

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use froude_swim::adaptive::path;
+mod adaptive;
+
+use adaptive::path;
 use froude_swim::chain::{AddedMass, Chain, Link};
 use froude_swim::drag::{LinkDrag, Turning};
 use froude_swim::drive::Limp;
@@ -29,12 +31,26 @@ fn thrown(added_mass: AddedMass) -> [(f64, [f64; 3]); 2] {
     let mut swimmer = Driven::new(&chain, Limp);
     let mut rng = Pcg64Mcg::seed_from_u64(8);
     let start: Vec<f64> = (0..swimmer.size()).map(|_| rng.random_range(-1.0..1.0)).collect();
-    let end = path(&[0.0, 1.5], &start, 1e-13, |t, x, out| swimmer.rates(t, x, out)).unwrap().remove(1);
+    let end = path(&[0.0, 1.5], &start, 1e-13, |t, x, out| swimmer.rates(t, x, out)).remove(1);
     let mut scratch = vec![0.0; start.len()];
     [start, end].map(|state| {
         swimmer.rates(0.0, &state, &mut scratch).unwrap();
-        swimmer.energy_and_momentum(&state)
+        energy_and_momentum(&swimmer, &state)
     })
+}
+
+/// Kinetic energy of body and water, J, and their momentum, kg m/s, with its moment about the origin of the tank, kg m²/s, of the state that was evaluated last.
+fn energy_and_momentum(swimmer: &Driven<'_, Limp>, state: &[f64]) -> (f64, [f64; 3]) {
+    let (chain, motions) = (swimmer.chain, swimmer.work.motions());
+    let places = chain.places([state[0], state[1]], state[2], &state[3..]);
+    let mut sum = [0.0; 3];
+    for ((link, motion), (place, heading)) in chain.links.iter().zip(motions).zip(places) {
+        let [turn, along, across] = link.inertia().times(*motion);
+        let (s, c) = heading.sin_cos();
+        let (x, y) = (c * along - s * across, s * along + c * across);
+        sum = [sum[0] + x, sum[1] + y, sum[2] + turn + place[0] * y - place[1] * x];
+    }
+    (chain.energy_j(motions), sum)
 }
 
 fn drift(a: [f64; 3], b: [f64; 3], k: usize) -> f64 {
@@ -67,7 +83,7 @@ fn the_steps_of_a_gait_are_of_fourth_order() {
     let chain = Chain { links: vec![link(drag); 5], added_mass: AddedMass::Full };
     let gait = Gait { amplitude: 0.5, frequency: 1.4, phase: 0.7, turn: 0.0, envelope: Envelope::Lateral };
     let mut swimmer = Swimmer::new(&chain, &gait);
-    let exact = swimmer.path(&[0.0, 2.0], &State::default(), 1e-13).unwrap()[1];
+    let exact = adaptive::in_plane(&mut swimmer, &[0.0, 2.0], &State::default(), 1e-13)[1];
     let mut error = |steps: u32| {
         let h = 2.0 / f64::from(steps);
         let end = (0..steps).fold(State::default(), |s, i| swimmer.step(h * f64::from(i), h, &s).unwrap());
@@ -87,8 +103,8 @@ fn a_swimmer_does_not_know_a_uniform_current() {
     let start: Vec<f64> = (0..still.size()).map(|_| rng.random_range(-0.5..0.5)).collect();
     let mut stream = still.clone();
     stream.current_m_s = [0.3, -0.2];
-    let a = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| still.rates(t, x, out)).unwrap().remove(1);
-    let b = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| stream.rates(t, x, out)).unwrap().remove(1);
+    let a = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| still.rates(t, x, out)).remove(1);
+    let b = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| stream.rates(t, x, out)).remove(1);
     for k in 0..a.len() {
         let carried = [0.3, -0.2].get(k).copied().unwrap_or(0.0);
         // Steps of their own, each exact to 1e-13; corners of the drag cost ten times as much.
@@ -104,7 +120,7 @@ fn a_link_that_glides_slows_down_as_its_law_says() {
     let mut glider = Driven::new(&chain, Limp);
     let mut start = vec![0.0; glider.size()];
     start[4] = 0.8;
-    let state = path(&[0.0, 20.0], &start, 1e-13, |t, x, out| glider.rates(t, x, out)).unwrap().remove(1);
+    let state = path(&[0.0, 20.0], &start, 1e-13, |t, x, out| glider.rates(t, x, out)).remove(1);
     let expected = 0.8 / (1.0 + 0.4 * 0.8 * 20.0 / 1.443);
     assert!((state[4] - expected).abs() < 1e-11, "{} {expected}", state[4]);
     let lost = 0.5 * 1.443 * (0.8 * 0.8 - expected * expected);

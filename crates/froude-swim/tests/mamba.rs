@@ -5,6 +5,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod adaptive;
+
 use std::f64::consts::PI;
 
 use froude_hydro::{Body, CrossTerm, DragModel, Setting};
@@ -175,8 +177,8 @@ fn a_minute_closes_its_energy_and_has_converged() {
     };
     let start = State::default();
     let at_start = energy(&mut swimmer, 0.0, &start);
-    let found = swimmer.path(&times, &start, 1e-14).unwrap();
-    let finer = swimmer.path(&times, &start, 1e-15).unwrap();
+    let found = adaptive::in_plane(&mut swimmer, &times, &start, 1e-14);
+    let finer = adaptive::in_plane(&mut swimmer, &times, &start, 1e-15);
     for ((time, state), finer) in times.iter().zip(&found).zip(&finer) {
         let away = (state.place_m[0] - finer.place_m[0]).hypot(state.place_m[1] - finer.place_m[1]);
         assert!(away < 1e-8, "{time} s: {away} m");

@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod adaptive;
+mod dense;
+
 use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_swim::chain::{AddedMass, Chain as Planar, Link as PlanarLink};
 use froude_swim::drag::{Cross, LinkDrag as PlanarDrag, Turning};
@@ -11,7 +14,6 @@ use froude_swim::path::{State as PlanarState, Swimmer as PlanarSwimmer};
 use froude_swim::planar;
 use froude_swim::spatial::attitude::{LEVEL, of_angles, world_from_body};
 use froude_swim::spatial::chain::{Chain, Link};
-use froude_swim::spatial::dense;
 use froude_swim::spatial::drag::LinkDrag;
 use froude_swim::spatial::engine::{Head, Workspace};
 use froude_swim::spatial::path::{State, Swimmer};
@@ -208,9 +210,9 @@ fn in_the_plane_a_path_of_ten_seconds_is_that_of_the_plane() {
     let gait = gait();
     let times: Vec<f64> = (0..=10).map(f64::from).collect();
     let start = PlanarState { head: [0.1, 0.2, 0.0], ..PlanarState::default() };
-    let expected = PlanarSwimmer::new(&plane, &gait).path(&times, &start, 1e-13).unwrap();
+    let expected = adaptive::in_plane(&mut PlanarSwimmer::new(&plane, &gait), &times, &start, 1e-13);
     let start = State { head: [0.0, 0.0, 0.1, 0.2, 0.0, 0.0], ..State::default() };
-    let found = Swimmer::new(&spatial, &gait).path(&times, &start, 1e-13).unwrap();
+    let found = adaptive::in_space(&mut Swimmer::new(&spatial, &gait), &times, &start, 1e-13);
     for (a, b) in expected.iter().zip(&found) {
         let away = (a.place_m[0] - b.place_m[0]).hypot(a.place_m[1] - b.place_m[1]);
         assert!(away < 1e-9, "{away} m");
@@ -235,7 +237,7 @@ fn a_mass_below_the_joints_rolls() {
         let gait = Gait { turn, ..gait() };
         let start = State { attitude: LEVEL, head: [0.0, 0.0, 0.0, 0.2, 0.0, 0.0], ..State::default() };
         let times: Vec<f64> = (0..=100).map(|k| 0.1 * f64::from(k)).collect();
-        let found = Swimmer::new(&spatial, &gait).path(&times, &start, 1e-10).unwrap();
+        let found = adaptive::in_space(&mut Swimmer::new(&spatial, &gait), &times, &start, 1e-10);
         found.iter().map(|s| world_from_body(s.attitude)[2][1].asin().abs()).fold(0.0, f64::max)
     };
     let (straight, turning) = (rolled(0.0), rolled(0.2));

@@ -2,19 +2,22 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod adaptive;
+mod spatial_driven;
+
+use adaptive::path;
 use froude_hydro::similarity::GRAVITY_M_S2;
-use froude_swim::adaptive::path;
 use froude_swim::drive::Limp;
 use froude_swim::driven::Energy;
 use froude_swim::gait::{Envelope, Gait};
 use froude_swim::spatial::attitude::{LEVEL, angles, of_angles, unit};
 use froude_swim::spatial::chain::{Chain, Link};
 use froude_swim::spatial::drag::LinkDrag;
-use froude_swim::spatial::driven::Driven;
 use froude_swim::spatial::path::{State, Swimmer};
 use froude_swim::spatial::vector::{Axis, Inertia};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use spatial_driven::Driven;
 
 const MASS_KG: f64 = 1.343;
 const ADDED: [f64; 6] = [0.1, 1.653, 0.742, 2e-4, 2.0e-3, 4.463e-3];
@@ -77,7 +80,7 @@ fn limp(link: &Link) -> [([f64; 2], [[f64; 3]; 2]); 2] {
     let chain = chain(link, 6);
     let mut swimmer = Driven::new(&chain, Limp);
     let start = thrown(&swimmer, 1.0);
-    let end = path(&[0.0, 1.5], &start, 1e-13, |t, x, out| swimmer.rates(t, x, out)).unwrap().remove(1);
+    let end = path(&[0.0, 1.5], &start, 1e-13, |t, x, out| swimmer.rates(t, x, out)).remove(1);
     let mut scratch = vec![0.0; start.len()];
     [start, end].map(|state| {
         swimmer.rates(0.0, &state, &mut scratch).unwrap();
@@ -126,7 +129,7 @@ fn a_neutral_link_rolls_and_pitches_with_the_period_of_its_righting_moment() {
         start[3..7].copy_from_slice(&of_angles(away));
         let omega = (MASS_KG * GRAVITY_M_S2 * (below + above) / inertia).sqrt();
         let times = [0.0, 0.5, 1.0, 1.25].map(|periods| periods * std::f64::consts::TAU / omega);
-        let found = path(&times, &start, 1e-13, |t, x, out| swimmer.rates(t, x, out)).unwrap();
+        let found = path(&times, &start, 1e-13, |t, x, out| swimmer.rates(t, x, out));
         for (state, expected) in found.iter().zip([1e-4, -1e-4, 1e-4, 0.0]) {
             let angle = angles(std::array::from_fn(|k| state[3 + k]))[which];
             assert!((angle - expected).abs() < 1e-10, "{which}: {angle} {expected}");
@@ -150,7 +153,7 @@ fn a_heavy_link_sinks_as_its_law_says() {
     let terminal = (excess / 9.0).sqrt();
     let settles = (MASS_KG + ADDED[2]) / (9.0 * terminal);
     let times = [0.0, 0.5 * settles, 2.0 * settles, 20.0 * settles];
-    let found = path(&times, &start, 1e-13, |t, x, out| swimmer.rates(t, x, out)).unwrap();
+    let found = path(&times, &start, 1e-13, |t, x, out| swimmer.rates(t, x, out));
     let w = swimmer.head_at() + 5;
     for (time, state) in times.iter().zip(&found) {
         let expected = terminal * (time / settles).tanh();
@@ -173,8 +176,8 @@ fn a_swimmer_does_not_know_a_uniform_current() {
     let start = thrown(&still, 0.5);
     let mut stream = still.clone();
     stream.current_m_s = [0.3, -0.2, 0.1];
-    let a = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| still.rates(t, x, out)).unwrap().remove(1);
-    let b = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| stream.rates(t, x, out)).unwrap().remove(1);
+    let a = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| still.rates(t, x, out)).remove(1);
+    let b = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| stream.rates(t, x, out)).remove(1);
     for k in 0..a.len() {
         let carried = [0.3, -0.2, 0.1].get(k).copied().unwrap_or(0.0);
         // Steps of their own, some hundred, each exact to 1e-13.
@@ -198,7 +201,7 @@ fn steps_are_of_fourth_order_and_stay_on_the_sphere() {
     let gait = gait();
     let mut swimmer = Swimmer::new(&chain, &gait);
     let start = State { attitude: of_angles([0.3, -0.2, 1.0]), ..State::default() };
-    let exact = swimmer.path(&[0.0, 2.0], &start, 1e-13).unwrap()[1];
+    let exact = adaptive::in_space(&mut swimmer, &[0.0, 2.0], &start, 1e-13)[1];
     let mut error = |steps: u32| {
         let h = 2.0 / f64::from(steps);
         let end = (0..steps).fold(start, |s, i| swimmer.step(h * f64::from(i), h, &s).unwrap());
@@ -210,7 +213,7 @@ fn steps_are_of_fourth_order_and_stay_on_the_sphere() {
     // Driven, the same steps.
     let mut limp = Driven::new(&chain, Limp);
     let start = thrown(&limp, 0.5);
-    let exact = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| limp.rates(t, x, out)).unwrap().remove(1);
+    let exact = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| limp.rates(t, x, out)).remove(1);
     let mut error = |steps: u32| {
         let (h, mut state) = (1.0 / f64::from(steps), start.clone());
         for i in 0..steps {
@@ -234,7 +237,7 @@ fn a_gait_closes_its_energy() {
         swimmer.energy_j(state).iter().sum::<f64>()
     };
     let at_start = energy(0.0, &start);
-    let end = Swimmer::new(&chain, &gait).path(&[0.0, 10.0], &start, 1e-13).unwrap()[1];
+    let end = adaptive::in_space(&mut Swimmer::new(&chain, &gait), &[0.0, 10.0], &start, 1e-13)[1];
     let residual = end.work_j - end.loss_j - (energy(10.0, &end) - at_start);
     assert!(end.absolute_j > 1.0, "{end:?}");
     assert!(residual.abs() < 1e-10 * end.absolute_j, "{residual} J of {}", end.absolute_j);

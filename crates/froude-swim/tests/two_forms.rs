@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod closed_form;
+
+use closed_form::{Absolute, motions, places, rates};
 use froude_swim::chain::{AddedMass, Chain, Link};
-use froude_swim::closed_form::{Absolute, motions, places, rates};
 use froude_swim::drag::{Cross, LinkDrag, Turning};
 use froude_swim::engine::{Given, Joints, Workspace};
 use froude_swim::planar::Inertia;

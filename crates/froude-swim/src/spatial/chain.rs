@@ -7,7 +7,7 @@
 //! The load of the fluid's inertia is Kirchhoff's, −(A ṁ + m ×* A m): Lamb (1932), §124. Weight acts at the centre of mass and buoyancy at that of the displaced water.
 
 use super::drag::LinkDrag;
-use super::vector::{Axis, Inertia, Load, Motion, Turn, cross, joined, parts, turned};
+use super::vector::{Axis, Inertia, Load, Motion, Turn, cross, joined, turned};
 
 /// One link.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,22 +114,6 @@ impl Chain {
     #[must_use]
     pub fn potential_j(&self, head: Pose, angle: &[f64]) -> f64 {
         self.links.iter().zip(self.poses(head, angle)).map(|(link, pose)| link.potential_j(&pose)).sum()
-    }
-
-    /// Momentum of body and water, kg m/s, and its moment about the tank's origin, kg m²/s.
-    #[must_use]
-    pub fn momentum(&self, motions: &[Motion], head: Pose, angle: &[f64]) -> [[f64; 3]; 2] {
-        let mut sum = [[0.0; 3]; 2];
-        for ((link, motion), pose) in self.links.iter().zip(motions).zip(self.poses(head, angle)) {
-            let [turning, moving] =
-                parts(link.inertia().times(*motion)).map(|x| super::attitude::to_world(&pose.world_from_link, x));
-            let about = cross(pose.place_m, moving);
-            for k in 0..3 {
-                sum[0][k] += moving[k];
-                sum[1][k] += turning[k] + about[k];
-            }
-        }
-        sum
     }
 
     /// Centre of mass, m.

@@ -10,7 +10,6 @@ use super::attitude::{LEVEL, Quaternion, rate, to_world, unit, world_from_body};
 use super::chain::{Chain, Pose};
 use super::engine::{Head, Workspace};
 use super::vector::{Motion, parts};
-use crate::adaptive::{PathError, path};
 use crate::engine::{Given, Joints};
 use crate::gait::{Course, Shape};
 
@@ -149,25 +148,6 @@ impl<'a> Swimmer<'a> {
         let k4 = self.rates(time_s + h, &state.moved(h, &k3))?;
         let end = state.moved(h / 6.0, &k1).moved(h / 3.0, &k2).moved(h / 3.0, &k3).moved(h / 6.0, &k4);
         Some(State { attitude: unit(end.attitude), ..end })
-    }
-
-    /// States at `times_s`, which grow, from `start` at the first of them, to a relative tolerance of each step.
-    ///
-    /// # Errors
-    ///
-    /// [`PathError`]: no positive inertia, steps that become too many or too small.
-    pub fn path(&mut self, times_s: &[f64], start: &State, tolerance: f64) -> Result<Vec<State>, PathError> {
-        let rates = |time_s: f64, numbers: &[f64], out: &mut [f64]| {
-            let found = self.rates(time_s, &State::of(numbers.try_into().ok()?))?;
-            out.copy_from_slice(&found.numbers());
-            Some(())
-        };
-        let found = path(times_s, &start.numbers(), tolerance, rates)?;
-        let state = |n: &Vec<f64>| {
-            let state = State::of(n.as_slice().try_into().ok()?);
-            Some(State { attitude: unit(state.attitude), ..state })
-        };
-        Ok(found.iter().filter_map(state).collect())
     }
 
     /// Kinetic energy of body and water and potential energy of weight and buoyancy, at the state of the last evaluation, J.

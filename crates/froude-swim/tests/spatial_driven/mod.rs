@@ -5,13 +5,15 @@
 //!
 //! **Units.** SI.
 
-use super::attitude::{rate, to_world, unit, world_from_body};
-use super::chain::{Chain, Pose};
-use super::engine::{Head, Workspace};
-use super::vector::{Motion, parts};
-use crate::drive::Drive;
-use crate::driven::Energy;
-use crate::engine::{Given, Joints};
+#![allow(dead_code)]
+
+use froude_swim::drive::Drive;
+use froude_swim::driven::Energy;
+use froude_swim::engine::{Given, Joints};
+use froude_swim::spatial::attitude::{rate, to_world, unit, world_from_body};
+use froude_swim::spatial::chain::{Chain, Pose};
+use froude_swim::spatial::engine::{Head, Workspace};
+use froude_swim::spatial::vector::{Motion, cross, parts};
 
 /// Number of integrals.
 const ENERGIES: usize = 5;
@@ -36,7 +38,6 @@ pub struct Driven<'a, D> {
 
 impl<'a, D: Drive> Driven<'a, D> {
     /// In still water.
-    #[must_use]
     pub fn new(chain: &'a Chain, drive: D) -> Self {
         let (work, torque) = (Workspace::new(chain), vec![0.0; chain.joints.len()]);
         let stages = [(); 3].map(|()| vec![0.0; 13 + 2 * chain.joints.len() + ENERGIES]);
@@ -44,25 +45,21 @@ impl<'a, D: Drive> Driven<'a, D> {
     }
 
     /// Length of a state.
-    #[must_use]
     pub fn size(&self) -> usize {
         self.stages[0].len()
     }
 
     /// Where an integral stands in a state.
-    #[must_use]
     pub fn at(&self, energy: Energy) -> usize {
         13 + 2 * self.chain.joints.len() + energy as usize
     }
 
     /// Where the head's motion stands in a state.
-    #[must_use]
     pub fn head_at(&self) -> usize {
         7 + self.chain.joints.len()
     }
 
     /// Where the head of a state lies.
-    #[must_use]
     pub fn pose(state: &[f64]) -> Pose {
         let attitude = std::array::from_fn(|k| state[3 + k]);
         Pose { place_m: std::array::from_fn(|k| state[k]), world_from_link: world_from_body(attitude) }
@@ -131,15 +128,23 @@ impl<'a, D: Drive> Driven<'a, D> {
     }
 
     /// Kinetic and potential energy, J, of the state that was evaluated last.
-    #[must_use]
     pub fn energy_j(&self, state: &[f64]) -> [f64; 2] {
         [self.chain.kinetic_j(self.work.motions()), self.chain.potential_j(Self::pose(state), &state[7..])]
     }
 
     /// Momentum of body and water, kg m/s, and its moment about the tank's origin, kg m²/s, of the state that was evaluated last.
-    #[must_use]
     pub fn momentum(&self, state: &[f64]) -> [[f64; 3]; 2] {
-        self.chain.momentum(self.work.motions(), Self::pose(state), &state[7..])
+        let mut sum = [[0.0; 3]; 2];
+        let poses = self.chain.poses(Self::pose(state), &state[7..]);
+        for ((link, motion), pose) in self.chain.links.iter().zip(self.work.motions()).zip(poses) {
+            let [turning, moving] = parts(link.inertia().times(*motion)).map(|x| to_world(&pose.world_from_link, x));
+            let about = cross(pose.place_m, moving);
+            for k in 0..3 {
+                sum[0][k] += moving[k];
+                sum[1][k] += turning[k] + about[k];
+            }
+        }
+        sum
     }
 }
 

@@ -14,8 +14,8 @@
 use faer::Mat;
 use faer::prelude::*;
 
-use crate::chain::Chain;
-use crate::planar::Motion;
+use froude_swim::chain::{AddedMass, Chain, Link};
+use froude_swim::planar::{Load, Motion, dot, turned};
 
 /// A state in absolute angles; all motion is through the water.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +38,6 @@ pub struct Rates {
 }
 
 /// G: n × n, m.
-#[must_use]
 pub fn places(chain: &Chain) -> Mat<f64> {
     let n = chain.links.len();
     let half = |k: usize| chain.links[k].half_length_m;
@@ -57,7 +56,6 @@ pub fn places(chain: &Chain) -> Mat<f64> {
 }
 
 /// Motions of the links in their own axes.
-#[must_use]
 pub fn motions(places: &Mat<f64>, state: &Absolute) -> Vec<Motion> {
     let n = state.heading.len();
     let sum = |i: usize, of: &dyn Fn(usize) -> f64| (0..n).map(|k| places[(i, k)] * of(k)).sum::<f64>();
@@ -72,7 +70,6 @@ pub fn motions(places: &Mat<f64>, state: &Absolute) -> Vec<Motion> {
 }
 
 /// Accelerations under torques on φ, N m; `None` where the matrix of masses is not positive definite.
-#[must_use]
 pub fn rates(chain: &Chain, state: &Absolute, torque: &[f64]) -> Option<Rates> {
     let n = chain.links.len();
     let g = places(chain);
@@ -99,12 +96,12 @@ pub fn rates(chain: &Chain, state: &Absolute, torque: &[f64]) -> Option<Rates> {
         let [x, y] = own(squares(&f64::cos), squares(&f64::sin));
         let bias = [0.0, x + w * v, y - w * u];
         let inertia = link.inertia();
-        let (from_bias, from_turning) = (inertia.times(bias), chain.bias(link, moving[i]));
+        let (from_bias, from_turning) = (inertia.times(bias), turning(chain.added_mass, link, moving[i]));
         let drag = link.drag.load(link.half_length_m, moving[i]);
         for a in 0..n + 2 {
             let ja = column(a);
             for b in 0..n + 2 {
-                mass[(a, b)] += crate::planar::dot(inertia.times(column(b)), ja);
+                mass[(a, b)] += dot(inertia.times(column(b)), ja);
             }
             right[(a, 0)] += (0..3).map(|k| ja[k] * (drag[k] - from_bias[k] - from_turning[k])).sum::<f64>();
         }
@@ -115,4 +112,16 @@ pub fn rates(chain: &Chain, state: &Absolute, torque: &[f64]) -> Option<Rates> {
     }
     let found = mass.llt(faer::Side::Lower).ok()?.solve(&right);
     Some(Rates { turn: (0..n).map(|k| found[(k, 0)]).collect(), velocity: [found[(n, 0)], found[(n + 1, 0)]] })
+}
+
+/// What the momenta make of axes that turn with the link.
+fn turning(added_mass: AddedMass, link: &Link, motion: Motion) -> Load {
+    let rigid = turned(motion, link.rigid.times(motion));
+    match added_mass {
+        AddedMass::Usr => rigid,
+        AddedMass::Full => {
+            let added = turned(motion, link.added.times(motion));
+            [rigid[0] + added[0], rigid[1] + added[1], rigid[2] + added[2]]
+        }
+    }
 }

@@ -14,16 +14,16 @@
 use faer::Mat;
 use faer::prelude::*;
 
-use super::attitude::{to_world, world_from_body};
-use super::chain::Chain;
-use super::vector::{Load, Motion, cross, joined, parts};
-use crate::engine::Given;
+use froude_swim::engine::Given;
+use froude_swim::spatial::attitude::{Quaternion, to_world, world_from_body};
+use froude_swim::spatial::chain::Chain;
+use froude_swim::spatial::vector::{Load, Motion, cross, joined, parts};
 
 /// A state; all motion is through the water.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     /// How the head lies.
-    pub attitude: super::attitude::Quaternion,
+    pub attitude: Quaternion,
     /// Its motion in its own axes.
     pub head: Motion,
     /// φ, rad.
