@@ -35,7 +35,7 @@ pub(crate) fn added_masses(file: &RobotFile) -> Result<(Vec<Added>, Vec<String>)
     let (mut all, mut ids) = (Vec::with_capacity(file.modules.len()), Vec::new());
     let mut known: Vec<(&FromRecord, f64, Added)> = Vec::new();
     for module in &file.modules {
-        let from = module.spatial.added.as_ref().unwrap_or(&file.added_mass);
+        let from = module.added.as_ref().unwrap_or(&file.added_mass);
         let found = match from {
             AddedFile::Declared(matrix) => Added { matrix: *matrix, is_by_link: false },
             AddedFile::Record(from) => {

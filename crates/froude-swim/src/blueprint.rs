@@ -14,7 +14,7 @@ use crate::chain::{AddedMass, Chain, Link};
 use crate::drag::{Cross, LinkDrag, Turning};
 use crate::planar::Inertia;
 use crate::robot::{Robot, RobotError, law, selected, setting};
-use crate::robot_file::{AddedFile, AddedForm, DragForm, FromRecord, RobotFile};
+use crate::robot_file::{AddedFile, FromRecord, RobotFile};
 use crate::shares::{Distribution, Torque, gains, shares};
 
 /// Up to which speed drag must resist where the record does not say at what it was fitted, m/s.
@@ -157,14 +157,7 @@ impl Blueprint {
     fn by(file: &RobotFile, drag: Fitted) -> Result<Self, RobotError> {
         let setting = setting(file, &drag.estimate)?;
         let (model, values) = law(&file.drag, &drag.estimate)?;
-        let distribution = if file.model.is_by_origin { Distribution::ByOrigin } else { Distribution::Uniform };
-        let torque = match file.model.drag {
-            DragForm::Strip => Torque::Strip,
-            DragForm::Friction => Torque::Friction,
-            DragForm::CrossFlow => Torque::CrossFlow,
-            DragForm::Lumped => Torque::None,
-        };
-        if torque == Torque::Friction && model == DragModel::F6 {
+        if file.model.torque == Torque::Friction && model == DragModel::F6 {
             let (id, law) = (drag.estimate.id.clone(), drag.estimate.law.name.clone());
             return Err(RobotError::NoFriction { id, law });
         }
@@ -174,7 +167,7 @@ impl Blueprint {
         let (added, added_ids) = added_masses(file)?;
         let (mut known, mut by_link): (Vec<&FromRecord>, _) = (Vec::new(), Vec::new());
         for (module, added) in file.modules.iter().zip(&added) {
-            let from = match module.spatial.added.as_ref().unwrap_or(&file.added_mass) {
+            let from = match module.added.as_ref().unwrap_or(&file.added_mass) {
                 AddedFile::Record(from) if added.is_by_link => from,
                 _ => {
                     by_link.push(None);
@@ -194,18 +187,15 @@ impl Blueprint {
         }
         let mass_kg = file.modules.iter().map(|m| m.mass_kg).sum();
         let displaced: Option<f64> = file.modules.iter().map(|m| Some(m.volume_m3? * file.density_kg_m3)).sum();
-        let masses = file.modules.iter().map(|m| Inertia::rigid(m.mass_kg, m.inertia_kg_m2, m.ahead_m));
+        let masses = file.modules.iter().map(|m| Inertia::rigid(m.mass_kg, m.inertia_kg_m2[2], m.centre_of_mass_m[0]));
         Ok(Self {
             masses: masses.collect(),
             half_lengths_m: file.modules.iter().map(|m| m.link.half_length_m).collect(),
             model,
             setting,
-            forms: (distribution, torque),
+            forms: (file.model.distribution, file.model.torque),
             added,
-            added_mass: match file.model.added_mass {
-                AddedForm::Full => AddedMass::Full,
-                AddedForm::Usr => AddedMass::Usr,
-            },
+            added_mass: file.model.added_mass,
             added_ids,
             by_link,
             mass_kg,

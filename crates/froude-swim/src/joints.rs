@@ -16,6 +16,18 @@ pub struct Limits {
     pub torque_n_m: Option<f64>,
 }
 
+impl Limits {
+    /// With those of another where it has none.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            angle_rad: self.angle_rad.or(other.angle_rad),
+            rate_rad_s: self.rate_rad_s.or(other.rate_rad_s),
+            torque_n_m: self.torque_n_m.or(other.torque_n_m),
+        }
+    }
+}
+
 /// All joints, from the head.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Drives {
@@ -37,23 +49,9 @@ impl Drives {
     /// The joints of a robot file, without a motor's curve: what all have, and each of them.
     #[must_use]
     pub fn of(all: &JointFile, each: &[JointFile]) -> Self {
-        let limits = |file: &JointFile| Limits {
-            angle_rad: file.limit_rad,
-            rate_rad_s: file.rate_rad_s,
-            torque_n_m: file.torque_n_m,
-        };
-        let following = |file: &JointFile| {
-            let servo = file.servo?;
-            Some(Following {
-                stiffness_n_m: servo.stiffness_n_m,
-                damping_n_m_s: servo.damping_n_m_s,
-                torque_n_m: file.torque_n_m,
-                viscous_n_m_s: servo.friction.viscous_n_m_s,
-                dry_n_m: servo.friction.dry_n_m,
-            })
-        };
+        let following = |file: &JointFile| Some(Following { torque_n_m: file.limits.torque_n_m, ..file.servo? });
         Self {
-            limits: each.iter().map(limits).collect(),
+            limits: each.iter().map(|file| file.limits).collect(),
             following: each.iter().filter_map(following).collect(),
             motor: Motor { curve: Vec::new(), efficiency: all.efficiency, regeneration: all.regeneration },
         }

@@ -149,7 +149,7 @@ impl Robot {
     ///
     /// [`RobotError`]: records that cannot be read, estimates that are none of a robot, numbers without what they refer to.
     pub fn of(file: &RobotFile) -> Result<Self, RobotError> {
-        if file.spatial.is_3d {
+        if file.model.is_3d {
             return Err(RobotError::Space);
         }
         Self::in_plane(file)

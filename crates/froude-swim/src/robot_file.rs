@@ -69,14 +69,17 @@ use froude_records::section::{self, Section, Source, found};
 use froude_records::section_values::{count, one_of};
 use froude_records::units::Dimension;
 use froude_records::{Place, RecordError};
+pub use joint::JointFile;
 pub(crate) use joint::part;
-pub use joint::{FrictionFile, JointFile, ServoFile};
-pub use joints::JointAxis;
 use joints::joints;
-pub use spatial::{AddedFile, MOTIONS, SpatialModel, SpatialModule, negative};
+pub use spatial::{AddedFile, MOTIONS, negative};
 pub use start::StartFile;
 use start::start;
 pub use urdf::{UrdfLink, parse_urdf};
+
+use crate::chain::AddedMass;
+use crate::shares::{Distribution, SMOOTH_M_S, Torque};
+use crate::spatial::vector::Axis;
 
 /// Largest robot file.
 const LIMIT: u64 = 1 << 20;
@@ -102,14 +105,12 @@ pub struct RobotFile {
     pub added_mass: AddedFile,
     /// How it is modelled.
     pub model: ModelFile,
-    /// The same for three dimensions.
-    pub spatial: SpatialModel,
     /// What its joints allow, and what drives them, where they have nothing of their own.
     pub joint: JointFile,
     /// Each of them, from the head.
     pub joints: Vec<JointFile>,
     /// What each turns about.
-    pub axes: Vec<JointAxis>,
+    pub axes: Vec<Axis>,
     /// Where a trajectory begins; `None`: with the motion that repeats.
     pub start: Option<StartFile>,
     /// What a URDF was taken as: links in others, joints of the opposite sign.
@@ -125,16 +126,18 @@ pub struct ModuleFile {
     pub link: Link,
     /// kg.
     pub mass_kg: f64,
-    /// About its centre of mass, kg m².
-    pub inertia_kg_m2: f64,
-    /// Of its centre of mass ahead of its centre, m.
-    pub ahead_m: f64,
+    /// Of roll, pitch and yaw about its centre of mass, kg m².
+    pub inertia_kg_m2: [f64; 3],
+    /// Ahead, to starboard and down from its centre, m.
+    pub centre_of_mass_m: [f64; 3],
+    /// The same.
+    pub centre_of_buoyancy_m: [f64; 3],
     /// What it displaces, m³.
     pub volume_m3: Option<f64>,
     /// By which part of itself its mass may differ from the water that it displaces, by the digits in which mass, volume and density are written: half a unit of the last of each.
     pub neutral_within: f64,
-    /// What the plane does not see.
-    pub spatial: SpatialModule,
+    /// Its own added mass.
+    pub added: Option<AddedFile>,
 }
 
 /// An estimate in a record.
@@ -148,39 +151,23 @@ pub struct FromRecord {
     pub place: Place,
 }
 
-/// Load of the fluid's inertia.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AddedForm {
-    /// Kirchhoff's.
-    Full,
-    /// As USR eq. 4 prints it.
-    Usr,
-}
-
-/// How drag across a module turns it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DragForm {
-    /// By strips.
-    Strip,
-    /// Lumped, with the torque of skin friction.
-    Friction,
-    /// Lumped, with the torque of cross-flow.
-    CrossFlow,
-    /// Lumped, without a torque.
-    Lumped,
-}
-
 /// `[model]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModelFile {
     /// Load of the fluid's inertia.
-    pub added_mass: AddedForm,
-    /// Form of the drag.
-    pub drag: DragForm,
-    /// Whether head, links and tail have what is theirs; else every module the same.
-    pub is_by_origin: bool,
+    pub added_mass: AddedMass,
+    /// Who has which part of the drag.
+    pub distribution: Distribution,
+    /// How drag across a module turns it.
+    pub torque: Torque,
     /// ε, m/s.
     pub smooth_m_s: f64,
+    /// Whether it swims in three dimensions.
+    pub is_3d: bool,
+    /// Drag up and down over that across; `None`: by the areas.
+    pub heave_drag: Option<f64>,
+    /// Of a module about its own axis, linear and quadratic: N m s, N m s².
+    pub roll_drag: [f64; 2],
 }
 
 /// Reads a robot file.
@@ -252,30 +239,34 @@ fn parse(path: &Path, text: &str, chain: Option<&[UrdfLink]>) -> Result<RobotFil
         .section("drag")?
         .ok_or_else(|| coefficients.missing("drag", "write drag = { record = \"tank.json\", select = \"tank/f2\" }"))?;
     let drag = from_record(source, &drag)?;
-    let (model, spatial) = match root.section("model")? {
-        Some(section) => (model(&section)?, spatial::model(&section)?),
-        None => (
-            ModelFile { added_mass: AddedForm::Full, drag: DragForm::Strip, is_by_origin: false, smooth_m_s: 1e-3 },
-            SpatialModel::default(),
-        ),
+    let model = match root.section("model")? {
+        Some(section) => model(&section)?,
+        None => ModelFile {
+            added_mass: AddedMass::Full,
+            distribution: Distribution::Uniform,
+            torque: Torque::Strip,
+            smooth_m_s: SMOOTH_M_S,
+            is_3d: false,
+            heave_drag: None,
+            roll_drag: [0.0; 2],
+        },
     };
-    let added_mass = added_mass(source, &coefficients, spatial.is_3d)?;
-    if let (Some(_), true) = (chain, spatial.is_3d) {
+    let is_3d = model.is_3d;
+    let added_mass = added_mass(source, &coefficients, is_3d)?;
+    if let (Some(_), true) = (chain, is_3d) {
         return Err(root.missing("model", "a URDF is read as a chain in a plane: write space = \"planar\" in [model]"));
     }
     let modules = match chain {
         Some(chain) => urdf::modules(&root, chain)?,
-        None => modules(source, &root, spatial.is_3d)?,
+        None => modules(source, &root, is_3d)?,
     };
     let density_digit = root.section("fluid")?.map_or(0.0, |fluid| fluid.half_digit("density"));
     let modules: Vec<ModuleFile> =
         modules.into_iter().map(|m| ModuleFile { neutral_within: m.neutral_within + density_digit, ..m }).collect();
     let names: Vec<&str> = modules.iter().map(|m| m.name.as_str()).collect();
-    let (joint, mut joints, axes) = joints(&root, &names, spatial.is_3d)?;
+    let (joint, mut joints, axes) = joints(&root, &names, is_3d)?;
     for (own, link) in joints.iter_mut().zip(chain.unwrap_or_default()) {
-        own.limit_rad = own.limit_rad.or(link.joint.limit_rad);
-        own.rate_rad_s = own.rate_rad_s.or(link.joint.rate_rad_s);
-        own.torque_n_m = own.torque_n_m.or(link.joint.torque_n_m);
+        own.limits = own.limits.or(link.limits);
     }
     let start = root.section("start")?.map(|s| start(&s)).transpose()?;
     Ok(RobotFile {
@@ -286,7 +277,6 @@ fn parse(path: &Path, text: &str, chain: Option<&[UrdfLink]>) -> Result<RobotFil
         drag,
         added_mass,
         model,
-        spatial,
         joint,
         joints,
         axes,
@@ -364,11 +354,11 @@ fn added_mass(source: Source<'_>, coefficients: &Section<'_>, is_3d: bool) -> Re
 fn model(s: &Section<'_>) -> Result<ModelFile, RecordError> {
     s.only(&["added_mass", "drag", "torque", "distribution", "epsilon", "space", "heave_drag", "roll_drag"])?;
     let added_mass =
-        one_of(s, "added_mass", &["full", "usr"], &[AddedForm::Full, AddedForm::Usr])?.unwrap_or(AddedForm::Full);
+        one_of(s, "added_mass", &["full", "usr"], &[AddedMass::Full, AddedMass::Usr])?.unwrap_or(AddedMass::Full);
     let is_strip = one_of(s, "drag", &["strip", "lumped"], &[true, false])?.unwrap_or(true);
-    let torques = [DragForm::Friction, DragForm::CrossFlow, DragForm::Lumped];
+    let torques = [Torque::Friction, Torque::CrossFlow, Torque::None];
     let torque = one_of(s, "torque", &["friction", "cross_flow", "none"], &torques)?;
-    let drag = match (is_strip, torque, s.get("torque")) {
+    let torque = match (is_strip, torque, s.get("torque")) {
         (true, Some(_), Some(value)) => {
             let problem = format!(
                 "is {}, and strips have their torque already: both would count it twice; leave it out, or write drag = \"lumped\"",
@@ -376,16 +366,18 @@ fn model(s: &Section<'_>) -> Result<ModelFile, RecordError> {
             );
             return Err(s.wrong("torque", value, problem));
         }
-        (true, _, _) => DragForm::Strip,
+        (true, _, _) => Torque::Strip,
         (false, Some(torque), _) => torque,
         (false, None, _) => {
             return Err(s.missing("torque", "lumped drag needs one: torque = \"friction\", \"cross_flow\" or \"none\""));
         }
     };
-    let is_by_origin = one_of(s, "distribution", &["uniform", "by-origin"], &[false, true])?.unwrap_or(false);
-    let smooth_m_s = s.positive("epsilon", Dimension::SPEED)?.unwrap_or(1e-3);
-    if one_of(s, "space", &["planar", "3d"], &[false, true])? == Some(true) {
-        if let (AddedForm::Usr, Some(value)) = (added_mass, s.get("added_mass")) {
+    let distributions = [Distribution::Uniform, Distribution::ByOrigin];
+    let distribution = one_of(s, "distribution", &["uniform", "by-origin"], &distributions)?.unwrap_or_default();
+    let smooth_m_s = s.positive("epsilon", Dimension::SPEED)?.unwrap_or(SMOOTH_M_S);
+    let is_3d = one_of(s, "space", &["planar", "3d"], &[false, true])?.unwrap_or(false);
+    if is_3d {
+        if let (AddedMass::Usr, Some(value)) = (added_mass, s.get("added_mass")) {
             let problem = "is \"usr\", which is printed for the plane only; three dimensions have \"full\"";
             return Err(s.wrong("added_mass", value, problem));
         }
@@ -394,7 +386,8 @@ fn model(s: &Section<'_>) -> Result<ModelFile, RecordError> {
             return Err(s.wrong("drag", value, problem));
         }
     }
-    Ok(ModelFile { added_mass, drag, is_by_origin, smooth_m_s })
+    let (heave_drag, roll_drag) = (spatial::heave_drag(s)?, spatial::roll_drag(s)?);
+    Ok(ModelFile { added_mass, distribution, torque, smooth_m_s, is_3d, heave_drag, roll_drag })
 }
 
 fn module(source: Source<'_>, s: &Section<'_>, is_3d: bool) -> Result<(ModuleFile, usize), RecordError> {
@@ -442,11 +435,12 @@ fn module(source: Source<'_>, s: &Section<'_>, is_3d: bool) -> Result<(ModuleFil
         name: s.text("name")?.unwrap_or("module").to_owned(),
         link,
         mass_kg,
-        inertia_kg_m2: inertia_kg_m2[2],
-        ahead_m: centre_of_mass_m[0],
+        inertia_kg_m2,
+        centre_of_mass_m,
+        centre_of_buoyancy_m,
         volume_m3,
         neutral_within: s.half_digit("mass") + s.half_digit("volume"),
-        spatial: SpatialModule { centre_of_mass_m, centre_of_buoyancy_m, inertia_kg_m2, added },
+        added,
     };
     Ok((module, count(s, "count", MOST_MODULES)?.unwrap_or(1)))
 }
@@ -497,10 +491,13 @@ torque = "3 N m"
         let AddedFile::Declared(added) = robot.added_mass else { panic!("{:?}", robot.added_mass) };
         assert_eq!([0, 1, 2, 5].map(|k| added[k][k]), [0.0, 1.653, 0.0, 4.463e-3]);
         assert_eq!(robot.drag.select.as_deref(), Some("tank/f2"));
-        assert_eq!(robot.modules[9].ahead_m, 0.005);
+        assert_eq!(robot.modules[9].centre_of_mass_m[0], 0.005);
         let (l, b) = (0.09_f64, 0.0394_f64);
-        assert!((robot.modules[0].inertia_kg_m2 - 1.343 * (l * l / 3.0 + b * b / 4.0)).abs() < 1e-15);
-        assert_eq!((robot.joint.limit_rad, robot.joint.rate_rad_s), (Some(std::f64::consts::FRAC_PI_2), None));
+        assert!((robot.modules[0].inertia_kg_m2[2] - 1.343 * (l * l / 3.0 + b * b / 4.0)).abs() < 1e-15);
+        assert_eq!(
+            (robot.joint.limits.angle_rad, robot.joint.limits.rate_rad_s),
+            (Some(std::f64::consts::FRAC_PI_2), None)
+        );
     }
 
     #[test]
@@ -510,7 +507,7 @@ torque = "3 N m"
         let robot = read(&ROBOT.replace("torque = \"3 N m\"", &format!("{servo}\n{start}"))).unwrap();
         let drives = robot.joint.servo.unwrap();
         assert_eq!((drives.stiffness_n_m, drives.damping_n_m_s), (40.0, 1.0));
-        assert_eq!(drives.friction, FrictionFile { viscous_n_m_s: 0.05, dry_n_m: 0.0 });
+        assert_eq!((drives.viscous_n_m_s, drives.dry_n_m), (0.05, 0.0));
         assert_eq!((robot.joint.efficiency, robot.joint.regeneration), (Some(0.6), 0.2));
         let start = robot.start.unwrap();
         assert_eq!((start.place_m, start.motion), ([1.0, -2.0], [1.0, 0.0, 0.0]));

@@ -109,7 +109,7 @@ const MOMENTS: usize = 100;
 /// results in the place of what is read, records without a covariance where draws are asked for.
 pub fn swim(job: &Job, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Outcome, VerbError> {
     let file = read_robot(&job.robot)?;
-    if file.spatial.is_3d {
+    if file.model.is_3d {
         if job.draws.is_some() || job.is_sensitive {
             planar(&job.robot)?;
         }
@@ -125,7 +125,7 @@ pub fn swim(job: &Job, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Outcome, 
 /// The robot file of a swimmer in a plane.
 fn planar(path: &Path) -> Result<RobotFile, VerbError> {
     let file = read_robot(path)?;
-    if file.spatial.is_3d {
+    if file.model.is_3d {
         let problem = "is of three dimensions, and this is of the plane: write space = \"planar\" in [model]";
         return Err(VerbError::input(path, problem));
     }

@@ -69,7 +69,7 @@ proptest! {
         match parse_robot(Path::new("robot.toml"), &text) {
             Ok(robot) => {
                 prop_assert!((2..=1_000).contains(&robot.modules.len()));
-                prop_assert!(robot.modules.iter().all(|m| m.mass_kg > 0.0 && m.inertia_kg_m2 > 0.0 && m.ahead_m.is_finite()));
+                prop_assert!(robot.modules.iter().all(|m| m.mass_kg > 0.0 && m.inertia_kg_m2[2] > 0.0 && m.centre_of_mass_m[0].is_finite()));
                 prop_assert_eq!(robot.joints.len(), robot.modules.len() - 1);
             }
             Err(error) => prop_assert!(error.to_string().starts_with("robot.toml"), "{}", error),

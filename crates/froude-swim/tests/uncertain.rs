@@ -11,6 +11,7 @@ use froude_swim::gait::{Envelope, Gait};
 use froude_swim::joints::Drives;
 use froude_swim::robot::Robot;
 use froude_swim::robot_file::{AddedFile, RobotFile, read_robot};
+use froude_swim::shares::Distribution;
 
 fn example() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/mamba-swim/robot.toml")
@@ -57,7 +58,7 @@ fn elasticities_of_all_that_has_a_mass_add_up() {
         let mut file = file.clone();
         for module in &mut file.modules {
             module.mass_kg *= s;
-            module.inertia_kg_m2 *= s;
+            module.inertia_kg_m2[2] *= s;
         }
         if let AddedFile::Declared(matrix) = &mut file.added_mass {
             matrix.iter_mut().flatten().for_each(|a| *a *= s);
@@ -159,13 +160,13 @@ fn draws_that_water_would_drive_are_brought_to_the_nearest_body() {
 /// What is known to a millionth is drawn to a millionth, also by a law that shared out by origin gives single modules power, and the whole none.
 #[test]
 fn draws_shrink_onto_the_estimate_however_the_law_is_shared_out() {
-    for is_by_origin in [false, true] {
+    for distribution in [Distribution::Uniform, Distribution::ByOrigin] {
         let folder = tempfile::tempdir().unwrap();
         let mut file = read_robot(&example()).unwrap();
         file.drag.select = Some("circulation_tank_restricted/f4".to_owned());
-        file.model.is_by_origin = is_by_origin;
+        file.model.distribution = distribution;
         let blueprint = Blueprint::of(&covariance_of(file, folder.path(), &|_| 1e-6)).unwrap();
-        assert_eq!(blueprint.driven_by_water(&blueprint.estimated()).is_some(), is_by_origin);
+        assert_eq!(blueprint.driven_by_water(&blueprint.estimated()).is_some(), distribution == Distribution::ByOrigin);
         let draws = blueprint.draws(50, 1).unwrap();
         for drawn in &draws.values {
             for (x, c) in drawn.iter().zip(blueprint.values()) {

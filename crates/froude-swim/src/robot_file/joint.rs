@@ -1,47 +1,27 @@
 //! `[joint]`: what the joints of a robot allow, and what drives them.
 
 use froude_records::RecordError;
-use froude_records::section::{Section, found};
+use froude_records::section::Section;
 use froude_records::units::Dimension;
 
+use super::spatial::not_negative;
+use crate::drive::Following;
+use crate::joints::Limits;
+
 /// N m s: a moment over an angular speed.
-const DAMPING: Dimension = Dimension::new(2, 1, -1);
+pub(super) const DAMPING: Dimension = Dimension::new(2, 1, -1);
 
 /// Limits where they are declared, and drives.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct JointFile {
-    /// Largest angle to either side, rad.
-    pub limit_rad: Option<f64>,
-    /// Largest rate, rad/s.
-    pub rate_rad_s: Option<f64>,
-    /// Largest torque, N m.
-    pub torque_n_m: Option<f64>,
-    /// How a joint follows its gait; `None`: exactly.
-    pub servo: Option<ServoFile>,
+    /// What it allows.
+    pub limits: Limits,
+    /// How it follows its gait, but for its limits; `None`: exactly.
+    pub servo: Option<Following>,
     /// From the battery to the joint.
     pub efficiency: Option<f64>,
     /// The part of what braking gives that goes back to the battery.
     pub regeneration: f64,
-}
-
-/// A servo.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ServoFile {
-    /// k_p, N m.
-    pub stiffness_n_m: f64,
-    /// k_d, N m s.
-    pub damping_n_m_s: f64,
-    /// What resists it.
-    pub friction: FrictionFile,
-}
-
-/// Friction of a joint.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct FrictionFile {
-    /// N m s.
-    pub viscous_n_m_s: f64,
-    /// N m.
-    pub dry_n_m: f64,
 }
 
 /// Keys that all joints may have together, …
@@ -63,17 +43,20 @@ pub(super) fn joint(
     if let (Some(value), Some(0.0)) = (s.get("efficiency"), efficiency) {
         return Err(s.wrong("efficiency", value, "is 0; an efficiency is above zero and at most 1"));
     }
+    let limits = Limits {
+        angle_rad: s.positive("limit", Dimension::ANGLE)?,
+        rate_rad_s: s.positive("rate", Dimension::ANGULAR_SPEED)?,
+        torque_n_m: s.positive("torque", Dimension::MOMENT)?,
+    };
     Ok(JointFile {
-        limit_rad: s.positive("limit", Dimension::ANGLE)?.or(all.limit_rad),
-        rate_rad_s: s.positive("rate", Dimension::ANGULAR_SPEED)?.or(all.rate_rad_s),
-        torque_n_m: s.positive("torque", Dimension::MOMENT)?.or(all.torque_n_m),
+        limits: limits.or(all.limits),
         servo: servo(s)?.or(all.servo),
         efficiency: efficiency.or(all.efficiency),
         regeneration: part(s, "regeneration")?.unwrap_or(all.regeneration),
     })
 }
 
-fn servo(s: &Section<'_>) -> Result<Option<ServoFile>, RecordError> {
+fn servo(s: &Section<'_>) -> Result<Option<Following>, RecordError> {
     let (stiffness, damping) = (s.positive("kp", Dimension::MOMENT)?, s.positive("kd", DAMPING)?);
     let (stiffness_n_m, damping_n_m_s) = match (stiffness, damping, s.get("friction")) {
         (Some(stiffness), Some(damping), _) => (stiffness, damping),
@@ -85,25 +68,13 @@ fn servo(s: &Section<'_>) -> Result<Option<ServoFile>, RecordError> {
             return Err(s.wrong("friction", value, problem));
         }
     };
-    let friction = match s.section("friction")? {
-        None => FrictionFile::default(),
-        Some(friction) => {
-            friction.only(&["viscous", "coulomb"])?;
-            let viscous_n_m_s = not_negative(&friction, "viscous", DAMPING)?;
-            FrictionFile { viscous_n_m_s, dry_n_m: not_negative(&friction, "coulomb", Dimension::MOMENT)? }
-        }
-    };
-    Ok(Some(ServoFile { stiffness_n_m, damping_n_m_s, friction }))
-}
-
-fn not_negative(s: &Section<'_>, key: &'static str, dimension: Dimension) -> Result<f64, RecordError> {
-    let number = s.quantity(key, dimension)?.unwrap_or(0.0);
-    match s.get(key) {
-        Some(value) if number < 0.0 => {
-            Err(s.wrong(key, value, format!("is {}; friction is zero or more", found(value))))
-        }
-        _ => Ok(number),
+    let mut servo = Following { stiffness_n_m, damping_n_m_s, ..Following::default() };
+    if let Some(friction) = s.section("friction")? {
+        friction.only(&["viscous", "coulomb"])?;
+        servo.viscous_n_m_s = not_negative(&friction, "viscous", DAMPING, "friction")?.unwrap_or(0.0);
+        servo.dry_n_m = not_negative(&friction, "coulomb", Dimension::MOMENT, "friction")?.unwrap_or(0.0);
     }
+    Ok(Some(servo))
 }
 
 /// From 0 to 1.

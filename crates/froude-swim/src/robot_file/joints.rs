@@ -20,22 +20,13 @@ use froude_records::section::{Section, found};
 use froude_records::section_values::one_of;
 
 use super::joint::{JointFile, joint};
-
-/// What a joint turns about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum JointAxis {
-    /// z of the module: to port and starboard.
-    #[default]
-    Yaw,
-    /// y: up and down.
-    Pitch,
-}
+use crate::spatial::vector::Axis;
 
 /// What says which joints a table is of.
 const WHICH: [&str; 3] = ["between", "index", "axis"];
 
 /// What all joints have, each of them, and what each turns about.
-pub(super) type Joints = (JointFile, Vec<JointFile>, Vec<JointAxis>);
+pub(super) type Joints = (JointFile, Vec<JointFile>, Vec<Axis>);
 
 pub(super) fn joints(root: &Section<'_>, modules: &[&str], is_3d: bool) -> Result<Joints, RecordError> {
     let count = modules.len() - 1;
@@ -51,7 +42,7 @@ pub(super) fn joints(root: &Section<'_>, modules: &[&str], is_3d: bool) -> Resul
     }
     let (all, axis) = match of_all.first() {
         Some(s) => (joint(s, &WHICH, None)?, axis_of(s, is_3d)?.unwrap_or_default()),
-        None => (JointFile::default(), JointAxis::Yaw),
+        None => (JointFile::default(), Axis::Yaw),
     };
     let (mut each, mut axes) = (vec![all; count], vec![axis; count]);
     let mut told: Vec<Option<usize>> = vec![None; count];
@@ -81,10 +72,10 @@ pub(super) fn joints(root: &Section<'_>, modules: &[&str], is_3d: bool) -> Resul
     Ok((all, each, axes))
 }
 
-fn axis_of(s: &Section<'_>, is_3d: bool) -> Result<Option<JointAxis>, RecordError> {
-    let axis = one_of(s, "axis", &["yaw", "pitch"], &[JointAxis::Yaw, JointAxis::Pitch])?;
+fn axis_of(s: &Section<'_>, is_3d: bool) -> Result<Option<Axis>, RecordError> {
+    let axis = one_of(s, "axis", &["yaw", "pitch"], &[Axis::Yaw, Axis::Pitch])?;
     match (axis, s.get("axis")) {
-        (Some(JointAxis::Pitch), Some(value)) if !is_3d => {
+        (Some(Axis::Pitch), Some(value)) if !is_3d => {
             let problem = "is \"pitch\", and joints of a plane yaw: write space = \"3d\" in [model], or axis = \"yaw\"";
             Err(s.wrong("axis", value, problem))
         }

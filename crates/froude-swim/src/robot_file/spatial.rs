@@ -18,11 +18,11 @@
 
 use froude_records::RecordError;
 use froude_records::section::{Section, Source, found};
-use froude_records::section_values::one_of;
 use froude_records::units::Dimension;
 use toml::Spanned;
 use toml::de::DeValue;
 
+use super::joint::DAMPING;
 use super::{FromRecord, from_record};
 
 /// kg m².
@@ -61,33 +61,8 @@ pub enum AddedFile {
     Declared([[f64; 6]; 6]),
 }
 
-/// What a module has beside what the plane needs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpatialModule {
-    /// Ahead, to starboard and down from its centre, m.
-    pub centre_of_mass_m: [f64; 3],
-    /// The same.
-    pub centre_of_buoyancy_m: [f64; 3],
-    /// Of roll, pitch and yaw about its centre of mass, kg m².
-    pub inertia_kg_m2: [f64; 3],
-    /// Its own added mass.
-    pub added: Option<AddedFile>,
-}
-
-/// How the whole robot is modelled in three dimensions.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct SpatialModel {
-    /// `space = "3d"`.
-    pub is_3d: bool,
-    /// Drag up and down over that across; `None`: by the area seen from above.
-    pub heave_drag: Option<f64>,
-    /// Against roll, of a module: of p, N m s, and of p|p|, N m s².
-    pub roll_drag: [f64; 2],
-}
-
-/// Keys of `[model]`.
-pub(super) fn model(s: &Section<'_>) -> Result<SpatialModel, RecordError> {
-    let is_3d = one_of(s, "space", &["planar", "3d"], &[false, true])?.unwrap_or(false);
+/// Drag up and down over that across.
+pub(super) fn heave_drag(s: &Section<'_>) -> Result<Option<f64>, RecordError> {
     let heave_drag = s.number("heave_drag")?;
     if let (Some(value), Some(ratio)) = (s.get("heave_drag"), heave_drag)
         && !(ratio >= 0.0 && ratio.is_finite())
@@ -96,18 +71,18 @@ pub(super) fn model(s: &Section<'_>) -> Result<SpatialModel, RecordError> {
             format!("is {}; expected a number of zero or more, drag up and down over that across", found(value));
         return Err(s.wrong("heave_drag", value, problem));
     }
-    let roll_drag = match s.section("roll_drag")? {
-        None => [0.0; 2],
-        Some(roll) => {
-            roll.only(&["linear", "quadratic"])?;
-            let linear = not_negative(&roll, "linear", Dimension::new(2, 1, -1), "drag")?;
-            [linear.unwrap_or(0.0), not_negative(&roll, "quadratic", INERTIA, "drag")?.unwrap_or(0.0)]
-        }
-    };
-    Ok(SpatialModel { is_3d, heave_drag, roll_drag })
+    Ok(heave_drag)
 }
 
-fn not_negative(
+/// Drag of a module about its own axis, linear and quadratic.
+pub(super) fn roll_drag(s: &Section<'_>) -> Result<[f64; 2], RecordError> {
+    let Some(roll) = s.section("roll_drag")? else { return Ok([0.0; 2]) };
+    roll.only(&["linear", "quadratic"])?;
+    let linear = not_negative(&roll, "linear", DAMPING, "drag")?;
+    Ok([linear.unwrap_or(0.0), not_negative(&roll, "quadratic", INERTIA, "drag")?.unwrap_or(0.0)])
+}
+
+pub(super) fn not_negative(
     s: &Section<'_>,
     key: &'static str,
     dimension: Dimension,

@@ -38,8 +38,8 @@ use froude_records::{Place, RecordError};
 use indexmap::IndexMap;
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::spatial::SpatialModule;
-use super::{JointFile, MOST_MODULES, ModuleFile};
+use super::{MOST_MODULES, ModuleFile};
+use crate::joints::Limits;
 
 /// Most nodes of a document.
 const MOST_NODES: u32 = 200_000;
@@ -66,7 +66,7 @@ pub struct UrdfLink {
     /// Where its next joint lies along x, m; `None` of the tail.
     pub next_m: Option<f64>,
     /// The joint to its next; that of the tail says nothing.
-    pub joint: JointFile,
+    pub limits: Limits,
     /// The name of that joint, where its axis points down.
     pub turns_down: Option<String>,
 }
@@ -267,13 +267,13 @@ impl Body<'_, '_> {
             );
             return Err(file.wrong(first.node, "inertial", problem));
         }
-        let (next_m, joint, turns_down) = match &self.joint {
+        let (next_m, limits, turns_down) = match &self.joint {
             Some(joint) => {
                 let (next_m, limits, is_down) = file.joint(joint)?;
                 let name = joint.node.attribute("name").unwrap_or("not named");
                 (Some(next_m), limits, is_down.then(|| name.to_owned()))
             }
-            None => (None, JointFile::default(), None),
+            None => (None, Limits::default(), None),
         };
         let masses = rigid.iter().map(|r| r.mass_kg);
         Ok(UrdfLink {
@@ -283,7 +283,7 @@ impl Body<'_, '_> {
             inertia_kg_m2,
             centre_of_mass_m,
             next_m,
-            joint,
+            limits,
             turns_down,
         })
     }
@@ -450,17 +450,13 @@ fn module(s: &Section<'_>, link: &UrdfLink, is_head: bool) -> Result<ModuleFile,
             half_length_m,
         },
         mass_kg: link.mass_kg,
-        inertia_kg_m2: link.inertia_kg_m2[2],
-        ahead_m,
+        inertia_kg_m2: link.inertia_kg_m2,
+        // URDF: y to port, z up.
+        centre_of_mass_m: [ahead_m, -y, -z],
+        centre_of_buoyancy_m: [0.0; 3],
         volume_m3: s.positive("volume", Dimension::VOLUME)?,
         neutral_within: s.half_digit("volume"),
-        spatial: SpatialModule {
-            // y to port and z up there, to starboard and down here.
-            centre_of_mass_m: [ahead_m, -y, -z],
-            centre_of_buoyancy_m: [0.0; 3],
-            inertia_kg_m2: link.inertia_kg_m2,
-            added: None,
-        },
+        added: None,
     })
 }
 
@@ -525,7 +521,7 @@ impl File<'_, '_> {
     fn joint(
         &self,
         JointPlace { node: joint, frame, .. }: &JointPlace<'_, '_>,
-    ) -> Result<(f64, JointFile, bool), RecordError> {
+    ) -> Result<(f64, Limits, bool), RecordError> {
         let joint = *joint;
         let kind = self.text(joint, "type")?;
         if !frame.is_aligned(&Frame::default()) {
@@ -564,10 +560,10 @@ impl File<'_, '_> {
                     "is revolute and has no <limit>; without one it is continuous".to_owned(),
                 ))
             } else {
-                Ok((x, JointFile::default(), is_down))
+                Ok((x, Limits::default(), is_down))
             };
         };
-        let mut found = JointFile::default();
+        let mut found = Limits::default();
         if kind == "revolute" {
             let [lower, upper] = [self.number(limit, "lower")?, self.number(limit, "upper")?];
             if upper <= 0.0 || (upper + lower).abs() > TURNED * upper {
@@ -576,7 +572,7 @@ impl File<'_, '_> {
                 );
                 return Err(self.wrong(limit, "limit", problem));
             }
-            found.limit_rad = Some(upper.min(-lower));
+            found.angle_rad = Some(upper.min(-lower));
         }
         for (name, place) in [("velocity", &mut found.rate_rad_s), ("effort", &mut found.torque_n_m)] {
             if limit.has_attribute(name) {

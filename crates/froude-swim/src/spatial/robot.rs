@@ -9,10 +9,10 @@ use froude_hydro::similarity::GRAVITY_M_S2;
 
 use super::chain::{Chain, Link};
 use super::drag::LinkDrag;
-use super::vector::{Axis, Inertia};
+use super::vector::Inertia;
 use crate::added::added_masses;
 use crate::robot::{Robot, RobotError};
-use crate::robot_file::{JointAxis, ModuleFile, RobotFile};
+use crate::robot_file::{ModuleFile, RobotFile};
 
 /// A body whose mass is written in one or two digits is neutral within this part of it at most.
 const NEUTRAL: f64 = 0.005;
@@ -52,7 +52,7 @@ impl SpatialRobot {
         }
         let (added, _) = added_masses(file)?;
         let heave = |module: &ModuleFile| {
-            file.spatial.heave_drag.unwrap_or(module.link.minor_semi_axis_m / module.link.major_semi_axis_m)
+            file.model.heave_drag.unwrap_or(module.link.minor_semi_axis_m / module.link.major_semi_axis_m)
         };
         let displaced = displaced_kg(&file.modules, file.density_kg_m3);
         let links: Vec<Link> = file
@@ -61,42 +61,37 @@ impl SpatialRobot {
             .zip(&plane.chain.links)
             .zip(added.iter().zip(&displaced))
             .map(|((module, flat), (added, displaced_kg))| {
-                let own = &module.spatial;
-                let [roll, pitch, yaw] = own.inertia_kg_m2;
+                let [roll, pitch, yaw] = module.inertia_kg_m2;
                 let tensor = [[roll, 0.0, 0.0], [0.0, pitch, 0.0], [0.0, 0.0, yaw]];
                 Link {
                     half_length_m: flat.half_length_m,
-                    rigid: Inertia::rigid(module.mass_kg, tensor, own.centre_of_mass_m),
+                    rigid: Inertia::rigid(module.mass_kg, tensor, module.centre_of_mass_m),
                     added: Inertia::of_added_mass(&added.matrix),
                     drag: LinkDrag {
                         along: flat.drag.along,
                         sideways: flat.drag.across,
                         upright: flat.drag.across.map(|c| heave(module) * c),
                         cross: flat.drag.cross,
-                        roll: file.spatial.roll_drag,
+                        roll: file.model.roll_drag,
                     },
                     weight_n: module.mass_kg * GRAVITY_M_S2,
-                    centre_of_mass_m: own.centre_of_mass_m,
+                    centre_of_mass_m: module.centre_of_mass_m,
                     buoyancy_n: displaced_kg * GRAVITY_M_S2,
-                    centre_of_buoyancy_m: own.centre_of_buoyancy_m,
+                    centre_of_buoyancy_m: module.centre_of_buoyancy_m,
                 }
             })
             .collect();
-        let axis = |axis: &JointAxis| match axis {
-            JointAxis::Yaw => Axis::Yaw,
-            JointAxis::Pitch => Axis::Pitch,
-        };
         let [trim_m, righting_m] = apart(&links);
         let heavy_kg = plane.mass_kg - displaced.iter().sum::<f64>();
         // The sum of so many masses is rounded.
         let heavy_kg = if heavy_kg.abs() > SUMMED * plane.mass_kg { heavy_kg } else { 0.0 };
         Ok(Self {
-            chain: Chain { links, joints: file.axes.iter().map(axis).collect() },
+            chain: Chain { links, joints: file.axes.clone() },
             plane,
             righting_m,
             trim_m,
             heavy_kg,
-            heave_by_area: file.spatial.heave_drag.is_none().then(|| file.modules.iter().map(heave).collect()),
+            heave_by_area: file.model.heave_drag.is_none().then(|| file.modules.iter().map(heave).collect()),
         })
     }
 }

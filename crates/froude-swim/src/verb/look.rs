@@ -118,7 +118,7 @@ impl Look {
             let l = module.link.half_length_m;
             place -= l;
             let (m, v) = (module.mass_kg, module.volume_m3?);
-            let ([gx, _, gz], [bx, _, bz]) = (module.spatial.centre_of_mass_m, module.spatial.centre_of_buoyancy_m);
+            let ([gx, _, gz], [bx, _, bz]) = (module.centre_of_mass_m, module.centre_of_buoyancy_m);
             mass = [mass[0] + m, mass[1] + m * (place + gx), mass[2] + m * gz];
             volume = [volume[0] + v, volume[1] + v * (place + bx), volume[2] + v * bz];
             place -= l;
@@ -161,7 +161,7 @@ impl Look {
     /// A row per kind of module: its body, and the water that it takes along.
     fn bodies(&self) -> ResultTable {
         let t = TableBuilder::new("kinds", "bodies and the water that they take along", &self.kinds);
-        let below = |m: &ModuleFile| m.spatial.centre_of_mass_m[2] - m.spatial.centre_of_buoyancy_m[2];
+        let below = |m: &ModuleFile| m.centre_of_mass_m[2] - m.centre_of_buoyancy_m[2];
         t.build(vec![
             t.text("", "module", Kind::numbers),
             t.count("first", "", |k| k.first),
@@ -169,11 +169,11 @@ impl Look {
             t.text("name", "name", |k| k.file.name.clone()),
             t.number("mass_kg", "mass [kg]", |k| k.file.mass_kg),
             t.number("volume_m3", "volume [l]", |k| k.file.volume_m3),
-            t.number("inertia_kg_m2", "inertia [kg m²]", |k| k.file.inertia_kg_m2),
-            t.number("mass_ahead_m", "mass ahead [mm]", |k| k.file.ahead_m).places(1),
+            t.number("inertia_kg_m2", "inertia [kg m²]", |k| k.file.inertia_kg_m2[2]),
+            t.number("mass_ahead_m", "mass ahead [mm]", |k| k.file.centre_of_mass_m[0]).places(1),
             t.number("mass_below_buoyancy_m", "mass below buoyancy [mm]", |k| below(&k.file)).places(1),
-            t.numbers("center_of_mass_m", "", |k| k.file.spatial.centre_of_mass_m.to_vec()),
-            t.numbers("center_of_buoyancy_m", "", |k| k.file.spatial.centre_of_buoyancy_m.to_vec()),
+            t.numbers("center_of_mass_m", "", |k| k.file.centre_of_mass_m.to_vec()),
+            t.numbers("center_of_buoyancy_m", "", |k| k.file.centre_of_buoyancy_m.to_vec()),
             t.number("added_mass/surge_kg", "added surge [kg]", |k| k.link.added.x),
             t.number("added_mass/sway_kg", "sway [kg]", |k| k.link.added.y),
             t.number("added_mass/yaw_kg_m2", "yaw [kg m²]", |k| k.link.added.turn),
@@ -201,7 +201,7 @@ impl Look {
 
     fn sentences(&self) -> Vec<String> {
         let mut out = self.file.remarks.clone();
-        if let (true, Some(trim)) = (self.file.spatial.is_3d, self.trim())
+        if let (true, Some(trim)) = (self.file.model.is_3d, self.trim())
             && trim.below_m <= RIGHTS_ITSELF_M
         {
             out.push(format!(
@@ -248,7 +248,7 @@ impl Look {
                 }
             };
             like("a mass", m.mass_kg, water * cylinder, "kg", &mut out);
-            like("an inertia", m.inertia_kg_m2, m.mass_kg * (l * l / 3.0 + b * b / 4.0), "kg m²", &mut out);
+            like("an inertia", m.inertia_kg_m2[2], m.mass_kg * (l * l / 3.0 + b * b / 4.0), "kg m²", &mut out);
             let strips = kind.strips_kg(water);
             like("an added mass in sway", kind.link.added.y, strips, "kg", &mut out);
             like("an added inertia in yaw", kind.link.added.turn, strips * l * l / 3.0, "kg m²", &mut out);

@@ -21,7 +21,7 @@ impl Reads {
             all.push(("robot", sidecar_of_urdf(robot)));
         }
         all.push(("drag", file.drag.path.clone()));
-        let own = file.modules.iter().filter_map(|module| module.spatial.added.as_ref());
+        let own = file.modules.iter().filter_map(|module| module.added.as_ref());
         for from in own.chain([&file.added_mass]) {
             if let AddedFile::Record(from) = from {
                 all.push(("added mass", from.path.clone()));
