@@ -28,6 +28,7 @@
 //! | [`swim`]          | what a gait comes to                                                 |
 //! | [`sweep`]         | many gaits, a row of numbers each                                    |
 //! | [`spatial`]       | the same in three dimensions, with weight and buoyancy               |
+//! | [`means`]           | speed, powers and needs of a motion over a time                      |
 //! | [`trajectory`]      | the way of a swimmer, moment by moment                               |
 //! | [`track`]           | what a recording of joint angles comes to                            |
 //! | [`verb`]          | `froude swim` and `froude robot inspect`                              |
@@ -54,6 +55,7 @@ pub mod gait_file;
 pub mod head;
 pub mod joints;
 mod losses;
+pub mod means;
 pub mod motor_file;
 pub mod moving;
 pub mod path;

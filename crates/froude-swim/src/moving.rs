@@ -5,6 +5,7 @@
 use crate::drive::Servo;
 use crate::driven::{Driven, Energy};
 use crate::gait::Shape;
+use crate::means::Means;
 use crate::path::{State, Swimmer};
 use crate::planar::Motion;
 
@@ -50,6 +51,15 @@ pub struct Passage {
     pub way_m: [f64; 2],
     /// Kinetic energy at the end less that at the beginning, J.
     pub gained_j: f64,
+}
+
+impl Passage {
+    /// Its means over its time, s, where its integrals began at zero.
+    pub(crate) fn means(&self, time_s: f64, turn: f64) -> Means {
+        let end = &self.end;
+        let energies_j = [end.work_j, end.positive_j, end.absolute_j, end.loss_j, self.friction_j];
+        Means::of(time_s, self.way_m, turn, energies_j)
+    }
 }
 
 /// Goes so many steps from time zero.

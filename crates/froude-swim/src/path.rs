@@ -54,16 +54,11 @@ impl State {
     /// self + h rate.
     #[must_use]
     pub fn moved(&self, h: f64, rate: &Self) -> Self {
-        let add = |a: f64, b: f64| a + h * b;
-        Self {
-            place_m: [0, 1].map(|k| add(self.place_m[k], rate.place_m[k])),
-            heading: add(self.heading, rate.heading),
-            head: [0, 1, 2].map(|k| add(self.head[k], rate.head[k])),
-            work_j: add(self.work_j, rate.work_j),
-            positive_j: add(self.positive_j, rate.positive_j),
-            absolute_j: add(self.absolute_j, rate.absolute_j),
-            loss_j: add(self.loss_j, rate.loss_j),
+        let (mut n, rate) = (self.numbers(), rate.numbers());
+        for (n, rate) in n.iter_mut().zip(rate) {
+            *n += h * rate;
         }
+        Self::of(&n)
     }
 }
 

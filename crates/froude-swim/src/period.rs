@@ -12,6 +12,7 @@ use faer::prelude::*;
 
 use crate::chain::Chain;
 use crate::head::{COARSE, HeadMap, SIDE_BY_SIDE};
+use crate::means::Means;
 use crate::moving::{Exact, Instant, Passage, go};
 use crate::path::{State, Swimmer};
 use crate::planar::Motion;
@@ -33,22 +34,10 @@ pub(crate) const STEP: f64 = 1e-5;
 pub struct Periodic {
     /// The motion of the head that repeats.
     pub head: Motion,
-    /// Speed through the water, m/s.
-    pub speed_m_s: f64,
+    /// Its means.
+    pub means: Means,
     /// Way of the centre of mass in a period, m, in axes in which the head begins along x.
     pub way_m: [f64; 2],
-    /// Turn in a period, rad.
-    pub turn: f64,
-    /// Mean of Σ τφ̇, W.
-    pub net_w: f64,
-    /// Mean of Σ max(τφ̇, 0), W.
-    pub positive_w: f64,
-    /// Mean of Σ |τφ̇|, W.
-    pub absolute_w: f64,
-    /// Mean of what drag takes, W.
-    pub loss_w: f64,
-    /// Mean of what friction of the joints takes, W.
-    pub friction_w: f64,
     /// φ, rad, and φ̇, rad/s, of each joint at the beginning of a period, where servos drive them.
     pub joints: Vec<[f64; 2]>,
     /// Sizes of the Floquet multipliers, the three largest.
@@ -62,19 +51,11 @@ pub struct Periodic {
 impl Periodic {
     /// Of the motion that was found, from a period of it.
     pub(crate) fn of(period_s: f64, head: Motion, joints: Vec<[f64; 2]>, passage: &Passage, map: &Repeats) -> Self {
-        let [x, y] = passage.way_m;
-        let end = &passage.end;
         Self {
             head,
             joints,
+            means: passage.means(period_s, passage.end.heading),
             way_m: passage.way_m,
-            speed_m_s: x.hypot(y) / period_s,
-            turn: end.heading,
-            net_w: end.work_j / period_s,
-            positive_w: end.positive_j / period_s,
-            absolute_w: end.absolute_j / period_s,
-            loss_w: end.loss_j / period_s,
-            friction_w: passage.friction_j / period_s,
             multipliers: map.multipliers(),
             residual: map.residual,
             periods: map.periods + 1,

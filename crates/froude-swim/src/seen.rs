@@ -5,9 +5,11 @@
 use crate::gait::{Course, Shape};
 use crate::joints::Drives;
 use crate::losses::{Loss, Losses};
+use crate::means::{Effort, Means};
 use crate::moving::Instant;
 use crate::planar::dot;
 use crate::robot::Robot;
+use crate::stability::Stiffness;
 
 /// A torque within this part of what a motor gives is at its limit.
 const AT_LIMIT: f64 = 1e-9;
@@ -102,17 +104,18 @@ impl<'a> Seen<'a> {
         }
     }
 
-    pub(crate) fn needs(&self) -> Needs {
-        let all = (self.moments * self.robot.chain.joints()) as f64;
-        Needs { at_limit: self.needs.at_limit / all.max(1.0), ..self.needs }
-    }
-
-    pub(crate) fn losses(&self) -> &Losses {
-        &self.losses
-    }
-
-    /// Share of the loss outside of the fitted speeds, and outside of the fitted angles; `None` where the record does not say them.
-    pub(crate) fn extrapolated(&self) -> [Option<f64>; 2] {
-        self.losses.extrapolated(self.robot.speed_m_s, self.robot.angle_rad)
+    /// What was needed, in so many steps.
+    pub(crate) fn effort(&self, means: &Means, steps: usize, stiffness: Option<Stiffness>, least_w: f64) -> Effort {
+        let (losses, all) = (&self.losses, (self.moments * self.robot.chain.joints()) as f64);
+        Effort {
+            electric_w: self.drives.motor.electric_w(means.positive_w, means.absolute_w - means.positive_w),
+            needs: Needs { at_limit: self.needs.at_limit / all.max(1.0), ..self.needs },
+            steps,
+            stiffness,
+            extrapolated: losses.extrapolated(self.robot.speed_m_s, self.robot.angle_rad),
+            along: losses.along(),
+            median_angle_rad: losses.median_angle_rad(),
+            gain_w: self.robot.gain(losses.fastest_m_s(), least_w),
+        }
     }
 }

@@ -188,9 +188,9 @@ impl Row {
         let asked = [gait.amplitude, gait.frequency, gait.phase, gait.turn, draw as f64];
         let mut numbers = [f64::NAN; COLUMNS.len()];
         numbers[..asked.len()].copy_from_slice(&asked);
-        let status = found
-            .as_ref()
-            .map_or_else(Status::from, |swim| if swim.needs.is_beyond { Status::Drives } else { Status::Periodic });
+        let status = found.as_ref().map_or_else(Status::from, |swim| {
+            if swim.effort.needs.is_beyond { Status::Drives } else { Status::Periodic }
+        });
         if let Ok(swim) = &found {
             numbers[asked.len()..].copy_from_slice(&answer(swim, gait));
         }
@@ -205,23 +205,24 @@ impl Row {
 }
 
 fn answer(swim: &Swim, gait: &Gait) -> [f64; COLUMNS.len() - 5] {
-    let p = &swim.periodic;
-    let unstable = swim.unstable.as_ref().map_or([f64::NAN; 3], |u| [u.speed_m_s, u.net_w, u.multipliers[0]]);
-    let [by_speed, by_angle] = swim.extrapolated.map(|share| share.unwrap_or(f64::NAN));
+    let (p, m) = (&swim.periodic, &swim.periodic.means);
+    let unstable =
+        swim.unstable.as_ref().map_or([f64::NAN; 3], |u| [u.means.speed_m_s, u.means.net_w, u.multipliers[0]]);
+    let [by_speed, by_angle] = swim.effort.extrapolated.map(|share| share.unwrap_or(f64::NAN));
     [
-        p.speed_m_s,
-        p.turn / gait.period_s(),
-        p.net_w,
-        p.positive_w,
-        p.absolute_w,
-        p.loss_w,
-        p.friction_w,
-        swim.electric_w.unwrap_or(f64::NAN),
-        swim.cost_j_m,
-        swim.cost_positive_j_m,
+        m.speed_m_s,
+        m.turn / gait.period_s(),
+        m.net_w,
+        m.positive_w,
+        m.absolute_w,
+        m.loss_w,
+        m.friction_w,
+        swim.effort.electric_w.unwrap_or(f64::NAN),
+        m.cost_j_m(),
+        m.cost_positive_j_m(),
         swim.cost,
-        swim.needs.torque_n_m,
-        swim.needs.rate_rad_s,
+        swim.effort.needs.torque_n_m,
+        swim.effort.needs.rate_rad_s,
         p.residual,
         p.periods as f64,
         p.multipliers[0],

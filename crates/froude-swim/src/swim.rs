@@ -19,10 +19,11 @@ use froude_hydro::similarity::GRAVITY_M_S2;
 use crate::gait::{Course, Gait};
 use crate::head::COARSE;
 use crate::joints::Drives;
+use crate::means::Effort;
 use crate::path::{State, Swimmer};
 use crate::period::Periodic;
 use crate::robot::Robot;
-use crate::seen::{Needs, Seen};
+use crate::seen::Seen;
 use crate::shares::gains;
 use crate::stability::{REAL_LIMIT, Stiffness, stiffness};
 
@@ -41,7 +42,7 @@ const FOUND: f64 = 1e-3;
 /// A gait that moves a swimmer by less than this part of its length in a period does not swim.
 pub(crate) const STILL: f64 = 1e-9;
 /// A gain of less than this part of the net power is none.
-const NO_GAIN: f64 = 1e-3;
+pub(crate) const NO_GAIN: f64 = 1e-3;
 
 /// Why a gait has no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -137,33 +138,15 @@ pub enum SwimError {
 
 /// What a gait comes to.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Swim {
+pub struct Swim<P = Periodic> {
     /// The motion that repeats; of a gait whose motion is unstable, the one that it settles into, where there is one. All figures are of this motion.
-    pub periodic: Periodic,
+    pub periodic: P,
     /// The unstable motion that `periodic` takes the place of.
-    pub unstable: Option<Box<Periodic>>,
-    /// Net power over speed, J/m.
-    pub cost_j_m: f64,
-    /// Positive power over speed, J/m.
-    pub cost_positive_j_m: f64,
+    pub unstable: Option<Box<P>>,
     /// Net power over m g U.
     pub cost: f64,
-    /// What motors take from the battery, W; `None` where their efficiency is not stated.
-    pub electric_w: Option<f64>,
-    /// What the joints need.
-    pub needs: Needs,
-    /// Steps of the period.
-    pub steps: usize,
-    /// What servos ask of a step; `None` where the joints follow exactly.
-    pub stiffness: Option<Stiffness>,
-    /// Share of the loss outside of the fitted speeds, and outside of the fitted angles; `None` where the record does not say them.
-    pub extrapolated: [Option<f64>; 2],
-    /// Share of the loss by the forces along the links.
-    pub along: f64,
-    /// Half of the loss is at smaller angles to the flow, rad.
-    pub median_angle_rad: f64,
-    /// Largest power that a module gains from still water at the speeds reached, W, with its number from the head; less than a thousandth of the net power is none.
-    pub gain_w: Option<(usize, f64)>,
+    /// What it needs and loses.
+    pub effort: Effort,
 }
 
 impl Robot {
@@ -179,6 +162,7 @@ impl Robot {
             return Err(SwimError::Inertia);
         }
         let (steps, stiffness) = self.steps(gait, drives, step_s)?;
+        let driven = || Driven::new(&self.chain, Servo::new(gait, &drives.following, &drives.motor));
         let mut seen = Seen::new(self, drives, gait);
         let mut see = |now: &crate::moving::Instant<'_>| seen.see(now);
         let found = if drives.following.is_empty() {
@@ -186,8 +170,7 @@ impl Robot {
         } else {
             // Where joints follow exactly is where the search begins.
             let head = swimmer.periodic(STEPS).map_or([0.0; 3], |exact| exact.head);
-            let servo = Servo::new(gait, &drives.following, &drives.motor);
-            Driven::new(&self.chain, servo).periodic_seen(head, steps, &mut see)
+            driven().periodic_seen(head, steps, &mut see)
         };
         let mut periodic = found.ok_or(SwimError::NotPeriodic)?;
         let mut unstable = None;
@@ -197,35 +180,26 @@ impl Robot {
             let settled = if drives.following.is_empty() {
                 swimmer.settled_seen(&periodic, steps, &mut see)
             } else {
-                let servo = Servo::new(gait, &drives.following, &drives.motor);
-                Driven::new(&self.chain, servo).settled_seen(&periodic, steps, &mut see)
+                driven().settled_seen(&periodic, steps, &mut see)
             };
             if let Some(settled) = settled {
                 unstable = Some(Box::new(std::mem::replace(&mut periodic, settled)));
                 seen = again;
             }
         }
+        let means = periodic.means;
         let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
-        if periodic.speed_m_s * gait.period_s() < STILL * length {
-            return Err(SwimError::Still { speed_m_s: periodic.speed_m_s });
+        if means.speed_m_s * gait.period_s() < STILL * length {
+            return Err(SwimError::Still { speed_m_s: means.speed_m_s });
         }
         // What is no number is not balanced either.
-        let is_balanced = ((periodic.loss_w + periodic.friction_w) / periodic.net_w - 1.0).abs() <= BALANCED;
+        let is_balanced = ((means.loss_w + means.friction_w) / means.net_w - 1.0).abs() <= BALANCED;
         if !is_balanced {
             return Err(SwimError::NotPeriodic);
         }
         Ok(Swim {
-            cost_j_m: periodic.net_w / periodic.speed_m_s,
-            cost_positive_j_m: periodic.positive_w / periodic.speed_m_s,
-            cost: periodic.net_w / (self.mass_kg * GRAVITY_M_S2 * periodic.speed_m_s),
-            electric_w: drives.motor.electric_w(periodic.positive_w, periodic.absolute_w - periodic.positive_w),
-            needs: seen.needs(),
-            steps,
-            stiffness,
-            extrapolated: seen.extrapolated(),
-            along: seen.losses().along(),
-            median_angle_rad: seen.losses().median_angle_rad(),
-            gain_w: self.gain(seen.losses().fastest_m_s(), NO_GAIN * periodic.net_w),
+            cost: means.net_w / (self.mass_kg * GRAVITY_M_S2 * means.speed_m_s),
+            effort: seen.effort(&means, steps, stiffness, NO_GAIN * means.net_w),
             periodic,
             unstable,
         })
@@ -293,7 +267,7 @@ impl Robot {
         let free = Drives { motor: drives.motor.clone(), ..Drives::free(self.chain.joints()) };
         let gives = |frequency: f64| {
             let gait = Gait { frequency, ..gait.clone() };
-            self.swim(&gait, &free, None).is_ok_and(|swim| swim.needs.share <= 1.0)
+            self.swim(&gait, &free, None).is_ok_and(|swim| swim.effort.needs.share <= 1.0)
         };
         let (mut low, mut high) = (gait.frequency, gait.frequency);
         let mut tries = 0..MOST_DOUBLINGS;

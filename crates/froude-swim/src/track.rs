@@ -7,11 +7,11 @@
 use crate::course::Recorded;
 use crate::gait::Course;
 use crate::joints::Drives;
+use crate::means::{Effort, Means};
 use crate::moving::go;
 use crate::robot::Robot;
-use crate::seen::{Needs, Seen};
-use crate::stability::Stiffness;
-use crate::swim::{STEPS, SwimError, within};
+use crate::seen::Seen;
+use crate::swim::{NO_GAIN, STEPS, SwimError, within};
 use crate::trajectory::{Begin, under_way};
 
 /// Means over a recording.
@@ -19,38 +19,12 @@ use crate::trajectory::{Begin, under_way};
 pub struct Tracked {
     /// How long it is, s.
     pub length_s: f64,
-    /// Speed of the centre of mass through the water, m/s.
-    pub speed_m_s: f64,
-    /// By how much the head has turned, rad.
-    pub turn: f64,
-    /// Mean of Σ τφ̇, W.
-    pub net_w: f64,
-    /// Mean of Σ max(τφ̇, 0), W.
-    pub positive_w: f64,
-    /// Mean of Σ |τφ̇|, W.
-    pub absolute_w: f64,
-    /// Mean of what drag takes, W.
-    pub loss_w: f64,
-    /// Mean of what friction of the joints takes, W.
-    pub friction_w: f64,
-    /// What motors take from the battery, W; `None` where their efficiency is not stated.
-    pub electric_w: Option<f64>,
+    /// Its means.
+    pub means: Means,
     /// Kinetic energy at the end less that at the beginning, J.
     pub gained_j: f64,
-    /// What the joints need.
-    pub needs: Needs,
-    /// Steps of the time.
-    pub steps: usize,
-    /// What servos ask of a step.
-    pub stiffness: Option<Stiffness>,
-    /// As [`crate::swim::Swim`].
-    pub extrapolated: [Option<f64>; 2],
-    /// Share of the loss by the forces along the links.
-    pub along: f64,
-    /// Half of the loss is at smaller angles to the flow, rad.
-    pub median_angle_rad: f64,
-    /// As [`crate::swim::Swim`], of the mean net power.
-    pub gain_w: Option<(usize, f64)>,
+    /// What it needs and loses.
+    pub effort: Effort,
 }
 
 /// Steps between two rows of a recording, at least: a cubic between them is well followed by one.
@@ -79,30 +53,11 @@ impl Robot {
         let mut moving = under_way(self, track, drives, [0.0; 2], begin, &[]);
         let passage =
             go(moving.as_mut(), length_s / steps as f64, steps, &mut |now| seen.see(now)).ok_or(SwimError::Inertia)?;
-        let (end, [x, y]) = (&passage.end, passage.way_m);
-        let net_w = end.work_j / length_s;
-        if !net_w.is_finite() {
+        let means = passage.means(length_s, passage.end.heading - begin.heading);
+        if !means.net_w.is_finite() {
             return Err(SwimError::Diverged { step_s: length_s / steps as f64 });
         }
-        let (positive_w, absolute_w) = (end.positive_j / length_s, end.absolute_j / length_s);
-        Ok(Tracked {
-            length_s,
-            speed_m_s: x.hypot(y) / length_s,
-            turn: end.heading - begin.heading,
-            net_w,
-            positive_w,
-            absolute_w,
-            loss_w: end.loss_j / length_s,
-            friction_w: passage.friction_j / length_s,
-            electric_w: drives.motor.electric_w(positive_w, absolute_w - positive_w),
-            gained_j: passage.gained_j,
-            needs: seen.needs(),
-            steps,
-            stiffness,
-            extrapolated: seen.extrapolated(),
-            along: seen.losses().along(),
-            median_angle_rad: seen.losses().median_angle_rad(),
-            gain_w: self.gain(seen.losses().fastest_m_s(), 1e-3 * net_w.abs()),
-        })
+        let effort = seen.effort(&means, steps, stiffness, NO_GAIN * means.net_w.abs());
+        Ok(Tracked { length_s, means, gained_j: passage.gained_j, effort })
     }
 }

@@ -6,7 +6,7 @@ use crate::drive::Servo;
 use crate::driven::Driven;
 use crate::gait::{Course, Shape};
 use crate::joints::Drives;
-use crate::moving::{Exact, Instant, Moving, Servoed};
+use crate::moving::{Exact, Moving, Servoed};
 use crate::path::{State, Swimmer};
 use crate::period::Periodic;
 use crate::planar::Motion;
@@ -126,13 +126,19 @@ impl Robot {
         let mut out = Vec::new();
         for i in 0..=cut.moments {
             let time_s = i as f64 * cut.apart_s;
-            let seen = seen(&moving.first(time_s).ok_or(SwimError::Inertia)?);
+            let now = moving.first(time_s).ok_or(SwimError::Inertia)?;
+            let (shape, torque_n_m) = (now.shape.clone(), now.torque_n_m.to_vec());
+            let (power_w, motions) = (now.power_w, now.motions.to_vec());
             out.push(Moment {
+                time_s,
                 state: moving.state(),
                 friction_j: moving.friction_j(),
                 centre_m: moving.centre_m(),
+                shape,
+                torque_n_m,
+                power_w,
                 energy_j: moving.energy_j(),
-                ..seen
+                motions,
             });
             for k in 0..cut.steps {
                 let time_s = (i * cut.steps + k) as f64 * h;
@@ -141,19 +147,5 @@ impl Robot {
             }
         }
         Ok(out)
-    }
-}
-
-fn seen(now: &Instant<'_>) -> Moment {
-    Moment {
-        time_s: now.time_s,
-        state: State::default(),
-        friction_j: 0.0,
-        centre_m: [0.0; 2],
-        shape: now.shape.clone(),
-        torque_n_m: now.torque_n_m.to_vec(),
-        power_w: now.power_w,
-        energy_j: 0.0,
-        motions: now.motions.to_vec(),
     }
 }

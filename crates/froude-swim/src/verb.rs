@@ -21,7 +21,7 @@ mod water;
 use std::path::{Path, PathBuf};
 
 use froude_records::RecordError;
-use froude_records::block::Block;
+use froude_records::block::{Block, Section};
 use froude_records::outcome::{Content, Head, Outcome, OutputFile};
 use froude_records::table::Table;
 
@@ -31,6 +31,8 @@ use crate::joints::Drives;
 use crate::robot::RobotError;
 use crate::robot_file::{RobotFile, read_robot};
 use crate::swim::SwimError;
+use crate::trajectory::Cut;
+use answer::Figures;
 pub use look::look;
 pub use moves::{Moves, Typed};
 pub use optimise::optimise;
@@ -119,7 +121,7 @@ pub fn swim(job: &Job, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Outcome, 
         let problem = "is of the plane, and the pitch options are of joints that pitch: write space = \"3d\" in [model], or leave them out";
         return Err(VerbError::input(&job.robot, problem));
     }
-    plane::swim(file, job, tell)
+    plane::swim(&file, job, tell)
 }
 
 /// The robot file of a swimmer in a plane.
@@ -151,27 +153,48 @@ impl Job {
         Ok(reads)
     }
 
-    /// The answer, with its files where a folder is named.
-    fn outcome(&self, title: &str, subtitle: String, blocks: Vec<Block>, files: Written) -> Outcome {
+    /// Where a trajectory of the periods that are asked for is cut, of a gait that takes so many steps a period.
+    fn cut(&self, period_s: f64, steps: usize) -> Cut {
+        Cut {
+            moments: self.periods.saturating_mul(MOMENTS),
+            apart_s: period_s / MOMENTS as f64,
+            steps: steps.div_ceil(MOMENTS),
+        }
+    }
+
+    /// The answer, with its files where a folder is named: warnings, figures, sentences, and what pages show beside them.
+    fn outcome(
+        &self,
+        f: &Figures<'_>,
+        [warnings, sentences]: [Vec<String>; 2],
+        drawn: Vec<Block>,
+        details: Vec<(&str, Vec<Block>)>,
+        (trajectory, animation): (Option<Table>, Option<String>),
+    ) -> Outcome {
+        let mut blocks = vec![Block::text("remarks", warnings)];
+        blocks.extend(f.blocks());
+        blocks.push(Block::text("remarks", sentences));
+        blocks.extend(drawn);
+        blocks.extend(
+            details.into_iter().map(|(title, part)| Section { is_detail: true, ..Section::new(title, part) }.into()),
+        );
         let mut out = Outcome { blocks, ..Outcome::default() };
-        if let (Some(folder), Some((trajectory, animation))) = (&self.out, files) {
+        if let (Some(folder), Some(trajectory)) = (&self.out, trajectory) {
             let head = Head {
                 sort: "Swimming robot".to_owned(),
-                title: title.to_owned(),
-                subtitle,
+                title: f.name.to_owned(),
+                subtitle: f.subtitle(),
                 summary: "The answer".to_owned(),
                 date: self.date.clone(),
             };
-            let file = |key, name, content| OutputFile { key, path: folder.join(name), content };
-            out.files.push(file("report", "report.html", Content::Page(head)));
-            out.files
-                .extend(animation.map(|page| file("animation", "animation.html", Content::Bytes(page.into_bytes()))));
-            out.files.push(file("trajectory", "trajectory.parquet", Content::Table(trajectory)));
-            out.files.push(file("record", "result.json", Content::Result));
+            let mut file = |key, name, content| out.files.push(OutputFile { key, path: folder.join(name), content });
+            file("report", "report.html", Content::Page(head));
+            if let Some(page) = animation {
+                file("animation", "animation.html", Content::Bytes(page.into_bytes()));
+            }
+            file("trajectory", "trajectory.parquet", Content::Table(trajectory));
+            file("record", "result.json", Content::Result);
         }
         out
     }
 }
-
-/// Trajectory and animation.
-type Written = Option<(Table, Option<String>)>;

@@ -70,9 +70,9 @@ fn a_period_of_servos_with_friction_closes_its_energy() {
         (servo.viscous_n_m_s, servo.dry_n_m) = (0.05, 0.02);
     }
     let found = repeats(&chain, &gait, &following, &Motor::default());
-    assert!(found.friction_w > 0.1 * found.net_w, "{found:?}");
+    assert!(found.means.friction_w > 0.1 * found.means.net_w, "{found:?}");
     // Dry friction turns about within some steps.
-    assert!(((found.loss_w + found.friction_w) / found.net_w - 1.0).abs() < 1e-5, "{found:?}");
+    assert!(((found.means.loss_w + found.means.friction_w) / found.means.net_w - 1.0).abs() < 1e-5, "{found:?}");
     assert!(found.residual < 1e-6 && found.multipliers[0] < 1.0, "{found:?}");
 }
 
@@ -83,7 +83,7 @@ fn ever_stiffer_servos_come_to_the_exact_gait() {
     let exact = Swimmer::new(&chain, &gait).periodic(400).unwrap();
     let away = |stiffness: f64| {
         let found = repeats(&chain, &gait, &servos(stiffness), &Motor::default());
-        [found.speed_m_s / exact.speed_m_s - 1.0, found.net_w / exact.net_w - 1.0]
+        [found.means.speed_m_s / exact.means.speed_m_s - 1.0, found.means.net_w / exact.means.net_w - 1.0]
     };
     let (soft, stiff) = (away(200.0), away(400.0));
     for k in 0..2 {
@@ -110,7 +110,12 @@ fn a_weak_motor_slows_the_swimmer() {
         })
         .unwrap();
     assert!(beyond < 1e-12, "{beyond}");
-    assert!(weak.speed_m_s < 0.95 * strong.speed_m_s, "{} {}", weak.speed_m_s, strong.speed_m_s);
+    assert!(
+        weak.means.speed_m_s < 0.95 * strong.means.speed_m_s,
+        "{} {}",
+        weak.means.speed_m_s,
+        strong.means.speed_m_s
+    );
 }
 
 /// A recording of five periods of a gait, followed from the motion that repeats, has its means: the spline of 100 rows a period is off by 3e-7 of an angle.
@@ -131,8 +136,8 @@ fn a_recording_of_a_gait_has_its_speed_and_power() {
     let passage = go(&mut moving, track.period_s() / 2000.0, 2000, &mut |_| ()).unwrap();
     let speed = passage.way_m[0].hypot(passage.way_m[1]) / track.period_s();
     // The gait turns by nothing in a period, and so the five ways add up. Ends of the spline: second derivatives off by some per cent in the first rows.
-    assert!((speed / found.speed_m_s - 1.0).abs() < 1e-3, "{speed} {}", found.speed_m_s);
-    assert!((passage.end.loss_j / track.period_s() / found.loss_w - 1.0).abs() < 1e-3, "{passage:?} {found:?}");
+    assert!((speed / found.means.speed_m_s - 1.0).abs() < 1e-3, "{speed} {}", found.means.speed_m_s);
+    assert!((passage.end.loss_j / track.period_s() / found.means.loss_w - 1.0).abs() < 1e-3, "{passage:?} {found:?}");
     let residual = passage.end.work_j - passage.end.loss_j - passage.gained_j;
     assert!(residual.abs() < 1e-6 * passage.end.work_j, "{residual}");
 }

@@ -94,12 +94,12 @@ fn twelve_gaits_have_the_speed_and_power_of_an_independent_program() {
     for (name, set, envelope, [speed, net, positive, cost]) in rows {
         let (chain, gait) = (chain(set, false), gait(envelope));
         let found = Swimmer::new(&chain, &gait).periodic(200).unwrap();
-        near(found.speed_m_s, speed, 1e-4, name);
-        near(found.net_w, net, 1e-4, name);
-        near(found.positive_w, positive, 1e-3, name);
-        near(found.net_w / found.speed_m_s, cost, 1e-3, name);
+        near(found.means.speed_m_s, speed, 1e-4, name);
+        near(found.means.net_w, net, 1e-4, name);
+        near(found.means.positive_w, positive, 1e-3, name);
+        near(found.means.net_w / found.means.speed_m_s, cost, 1e-3, name);
         // A motion that repeats stores nothing: what the joints put in is what drag takes.
-        assert!((found.loss_w / found.net_w - 1.0).abs() < 1e-6, "{name}: {found:?}");
+        assert!((found.means.loss_w / found.means.net_w - 1.0).abs() < 1e-6, "{name}: {found:?}");
     }
 }
 
@@ -114,7 +114,7 @@ fn strips_have_the_figures_of_an_independent_program() {
     for (set, printed, digits) in rows {
         let (chain, gait) = (chain(set, true), gait(Envelope::Lateral));
         let found = Swimmer::new(&chain, &gait).periodic(200).unwrap();
-        let all = [found.speed_m_s, found.net_w, found.net_w / found.speed_m_s];
+        let all = [found.means.speed_m_s, found.means.net_w, found.means.net_w / found.means.speed_m_s];
         for k in 0..3 {
             near(all[k], printed[k], digits[k], "strip");
         }
@@ -154,7 +154,7 @@ fn f4_in_uniform_shares_has_the_figures_of_an_independent_program() {
     for (set, torque, printed) in rows {
         let (chain, gait) = (h8lt(set, torque), gait(Envelope::Lateral));
         let found = Swimmer::new(&chain, &gait).periodic(400).unwrap();
-        let all = [found.speed_m_s, found.net_w, found.net_w / found.speed_m_s];
+        let all = [found.means.speed_m_s, found.means.net_w, found.means.net_w / found.means.speed_m_s];
         // Where the program prints J/m and W only, the speed is their quotient.
         let digits = [if torque == Torque::Friction { 1e-3 } else { 1e-4 }, 1e-4, 1e-3];
         for k in 0..3 {
@@ -194,7 +194,7 @@ fn the_tank_s_laws_by_strips_have_the_cost_of_an_independent_program() {
     for (chain, cost) in chains.iter().zip([2.062, 1.178, 0.478]) {
         let gait = gait(Envelope::Lateral);
         let found = Swimmer::new(chain, &gait).periodic(400).unwrap();
-        near(found.net_w / found.speed_m_s, cost, 1e-3, "strip");
+        near(found.means.net_w / found.means.speed_m_s, cost, 1e-3, "strip");
     }
 }
 
@@ -207,6 +207,16 @@ fn a_square_law_scales_with_the_frequency() {
     let fast = Gait { frequency: 2.0 * slow.frequency, ..slow.clone() };
     let (slow, fast) =
         (Swimmer::new(&chain, &slow).periodic(200).unwrap(), Swimmer::new(&chain, &fast).periodic(200).unwrap());
-    assert!((fast.speed_m_s / slow.speed_m_s / 2.0 - 1.0).abs() < 1e-10, "{} {}", fast.speed_m_s, slow.speed_m_s);
-    assert!((fast.net_w / slow.net_w / 8.0 - 1.0).abs() < 1e-10, "{} {}", fast.net_w, slow.net_w);
+    assert!(
+        (fast.means.speed_m_s / slow.means.speed_m_s / 2.0 - 1.0).abs() < 1e-10,
+        "{} {}",
+        fast.means.speed_m_s,
+        slow.means.speed_m_s
+    );
+    assert!(
+        (fast.means.net_w / slow.means.net_w / 8.0 - 1.0).abs() < 1e-10,
+        "{} {}",
+        fast.means.net_w,
+        slow.means.net_w
+    );
 }

@@ -68,9 +68,9 @@ fn in_the_plane_the_motion_that_repeats_is_that_of_the_plane() {
     let expected = PlanarSwimmer::new(&plane, &gait).periodic(200).unwrap();
     let chain = Chain { links: vec![link(0.0, 0.0); 10], joints: vec![Axis::Yaw; 9] };
     let found = Swimmer::new(&chain, &gait).periodic(200).unwrap();
-    assert!((found.speed_m_s / expected.speed_m_s - 1.0).abs() < 1e-7, "{found:?} {expected:?}");
-    assert!((found.net_w / expected.net_w - 1.0).abs() < 1e-7, "{found:?} {expected:?}");
-    assert!((found.turn - expected.turn).abs() < 1e-7);
+    assert!((found.means.speed_m_s / expected.means.speed_m_s - 1.0).abs() < 1e-7, "{found:?} {expected:?}");
+    assert!((found.means.net_w / expected.means.net_w - 1.0).abs() < 1e-7, "{found:?} {expected:?}");
+    assert!((found.means.turn - expected.means.turn).abs() < 1e-7);
     assert!(found.roll[1] - found.roll[0] < 1e-12 && found.way_m[2].abs() < 1e-12, "{found:?}");
     assert_eq!(found.multipliers.iter().filter(|m| (*m - 1.0).abs() < 1e-6).count(), 2, "{:?}", found.multipliers);
 }
@@ -98,7 +98,7 @@ fn steps_alone_come_to_the_motion_that_repeats() {
     let (a, b) = (angles(state.attitude), angles(found.start.attitude));
     assert!((a[0] - b[0]).abs() < 10.0 * left && (a[1] - b[1]).abs() < 10.0 * left, "{a:?} {b:?}");
     // A motion that repeats stores nothing but height.
-    assert!(((found.loss_w + found.lifting_w) / found.net_w - 1.0).abs() < 1e-6, "{found:?}");
+    assert!(((found.means.loss_w + found.lifting_w) / found.means.net_w - 1.0).abs() < 1e-6, "{found:?}");
 }
 
 /// One per cent too heavy: it sinks at a speed that repeats, and what that gives, drag takes.
@@ -112,5 +112,5 @@ fn a_heavy_swimmer_sinks_at_a_speed_that_repeats() {
     assert!(found.way_m[2] > 0.01, "{found:?}");
     let sinks = 0.01 * 6.0 * MASS_KG * GRAVITY_M_S2 * found.way_m[2] / gait.frequency.recip() / std::f64::consts::TAU;
     assert!((found.lifting_w / -sinks - 1.0).abs() < 1e-6, "{found:?}");
-    assert!(((found.loss_w + found.lifting_w) / found.net_w - 1.0).abs() < 1e-6, "{found:?}");
+    assert!(((found.means.loss_w + found.lifting_w) / found.means.net_w - 1.0).abs() < 1e-6, "{found:?}");
 }

@@ -20,7 +20,7 @@ fn example() -> PathBuf {
 fn answer(robot: &Robot) -> Option<[f64; 2]> {
     let gait = Gait::wave(30_f64.to_radians(), 80_f64.to_radians(), 40_f64.to_radians(), Envelope::Lateral);
     let swim = robot.swim(&gait, &Drives::free(robot.chain.joints()), None).ok()?;
-    Some([swim.periodic.speed_m_s, swim.cost_j_m])
+    Some([swim.periodic.means.speed_m_s, swim.periodic.means.cost_j_m()])
 }
 
 /// The example with a covariance of f2: each coefficient's standard uncertainty is this part of it, the first two correlated by 0.5.

@@ -161,10 +161,4 @@ impl<'a> Swimmer<'a> {
     pub fn centre_m(&self, state: &State) -> [f64; 3] {
         self.chain.centre_m(state.pose(), &self.shape.angle)
     }
-
-    /// The largest torque of the last evaluation, N m.
-    #[must_use]
-    pub fn largest_torque_n_m(&self) -> f64 {
-        self.work.answer.iter().fold(0.0, |m, t| m.max(t.abs()))
-    }
 }

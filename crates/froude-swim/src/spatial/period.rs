@@ -11,6 +11,7 @@ use faer::Mat;
 
 use super::attitude::{angles, of_angles};
 use super::path::{State, Swimmer};
+use crate::means::Means;
 use crate::settled::settled;
 
 /// Numbers of the map.
@@ -39,28 +40,16 @@ const SINGULAR: f64 = 1e-7;
 pub struct Periodic {
     /// The state at the beginning of a period that repeats, at the origin with no heading.
     pub start: State,
-    /// Speed of the centre of mass through the water from the beginning of a period to its end, level, m/s.
-    pub speed_m_s: f64,
-    /// Its way in a period, m, in level axes in which the head begins along x; z is how much it sinks.
+    /// Its means.
+    pub means: Means,
+    /// Way of the centre of mass in a period, m, in level axes in which the head begins along x; z is how much it sinks.
     pub way_m: [f64; 3],
-    /// Turn of the heading in a period, rad.
-    pub turn: f64,
     /// Least and largest roll of the head, rad; of a head that is turned over they lie about ±π.
     pub roll: [f64; 2],
     /// Least and largest pitch of the head, rad.
     pub pitch: [f64; 2],
-    /// Mean of Σ τφ̇, W.
-    pub net_w: f64,
-    /// Mean of Σ max(τφ̇, 0), W.
-    pub positive_w: f64,
-    /// Mean of Σ |τφ̇|, W.
-    pub absolute_w: f64,
-    /// Mean of what drag takes, W.
-    pub loss_w: f64,
     /// Mean of what weight and buoyancy take by the change of depth, W.
     pub lifting_w: f64,
-    /// Largest torque, N m.
-    pub torque_n_m: f64,
     /// Sizes of the Floquet multipliers, the largest first.
     pub multipliers: [f64; NUMBERS],
     /// By how much the motion does not repeat, relative.
@@ -175,7 +164,7 @@ impl Swimmer<'_> {
         let mut here = start;
         self.rates(0.0, &here)?;
         let (from, [_, high]) = (self.centre_m(&here), self.energy_j(&here));
-        let (mut torque_n_m, mut turn, mut heading) = (0.0_f64, 0.0, 0.0);
+        let (mut turn, mut heading) = (0.0, 0.0);
         let (mut roll, mut pitch) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
         let [mut rolled, ..] = angles(here.attitude);
         for i in 0..steps {
@@ -184,7 +173,6 @@ impl Swimmer<'_> {
             roll = [roll[0].min(rolled), roll[1].max(rolled)];
             pitch = [pitch[0].min(y), pitch[1].max(y)];
             here = self.step(i as f64 * h, h, &here)?;
-            torque_n_m = torque_n_m.max(self.largest_torque_n_m());
             let [_, _, now] = angles(here.attitude);
             let step: f64 = now - heading;
             turn += step.sin().atan2(step.cos());
@@ -203,17 +191,16 @@ impl Swimmer<'_> {
         multipliers.sort_by(|a, b| b.total_cmp(a));
         Some(Periodic {
             start,
-            speed_m_s: way_m[0].hypot(way_m[1]) / period,
+            means: Means::of(
+                period,
+                [way_m[0], way_m[1]],
+                turn,
+                [here.work_j, here.positive_j, here.absolute_j, here.loss_j, 0.0],
+            ),
             way_m,
-            turn,
             roll,
             pitch,
-            net_w: here.work_j / period,
-            positive_w: here.positive_j / period,
-            absolute_w: here.absolute_j / period,
-            loss_w: here.loss_j / period,
             lifting_w: (low - high) / period,
-            torque_n_m,
             multipliers,
             residual: found.residual,
         })

@@ -12,36 +12,10 @@ use super::vector::dot;
 use crate::gait::{Course, Shape};
 use crate::joints::Drives;
 use crate::losses::{Loss, Losses};
+use crate::means::Effort;
 use crate::seen::Needs;
-use crate::swim::{BALANCED, STILL, SwimError, within};
+use crate::swim::{BALANCED, STILL, Swim, SwimError, within};
 use crate::trajectory::{Cut, MOST_NUMBERS};
-
-/// What a gait comes to.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpatialSwim {
-    /// The motion that repeats.
-    pub periodic: Periodic,
-    /// The unstable motion that `periodic` takes the place of, as in [`crate::swim::Swim::unstable`].
-    pub unstable: Option<Box<Periodic>>,
-    /// Net power over speed, J/m.
-    pub cost_j_m: f64,
-    /// Positive power over speed, J/m.
-    pub cost_positive_j_m: f64,
-    /// Net power over m g U.
-    pub cost: f64,
-    /// What motors take from the battery, W; `None` where their efficiency is not stated.
-    pub electric_w: Option<f64>,
-    /// What the joints need.
-    pub needs: Needs,
-    /// Steps of the period.
-    pub steps: usize,
-    /// Share of the loss outside of the fitted speeds, and outside of the fitted angles; `None` where the record does not say them.
-    pub extrapolated: [Option<f64>; 2],
-    /// Share of the loss by the forces along the links.
-    pub along: f64,
-    /// Half of the loss is at smaller angles to the flow, rad.
-    pub median_angle_rad: f64,
-}
 
 /// A moment of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +44,7 @@ impl SpatialRobot {
     /// # Errors
     ///
     /// [`SwimError`]: joints beyond their limits, no motion that repeats, an inertia that is not positive, a step that is not stable.
-    pub fn swim(&self, gait: &dyn Course, drives: &Drives, step_s: Option<f64>) -> Result<SpatialSwim, SwimError> {
+    pub fn swim(&self, gait: &dyn Course, drives: &Drives, step_s: Option<f64>) -> Result<Swim<Periodic>, SwimError> {
         within(gait, drives)?;
         let mut swimmer = Swimmer::new(&self.chain, gait);
         if swimmer.rates(0.0, &State::default()).is_none() {
@@ -87,28 +61,31 @@ impl SpatialRobot {
         {
             unstable = Some(Box::new(std::mem::replace(&mut periodic, settled)));
         }
+        let means = periodic.means;
         let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
-        if periodic.speed_m_s * gait.period_s() < STILL * length {
-            return Err(SwimError::Still { speed_m_s: periodic.speed_m_s });
+        if means.speed_m_s * gait.period_s() < STILL * length {
+            return Err(SwimError::Still { speed_m_s: means.speed_m_s });
         }
-        let given = periodic.loss_w + periodic.lifting_w;
+        let given = means.loss_w + periodic.lifting_w;
         // What is no number is not balanced either.
-        let is_balanced = (given - periodic.net_w).abs() <= BALANCED * periodic.net_w.abs().max(periodic.loss_w);
+        let is_balanced = (given - means.net_w).abs() <= BALANCED * means.net_w.abs().max(means.loss_w);
         if !is_balanced {
             return Err(restless());
         }
         let (losses, needs) = self.seen(&mut swimmer, &periodic, steps, drives).ok_or(SwimError::Inertia)?;
         let weight_n: f64 = self.chain.links.iter().map(|link| link.weight_n).sum();
-        Ok(SpatialSwim {
-            cost_j_m: periodic.net_w / periodic.speed_m_s,
-            cost_positive_j_m: periodic.positive_w / periodic.speed_m_s,
-            cost: periodic.net_w / (weight_n * periodic.speed_m_s),
-            electric_w: drives.motor.electric_w(periodic.positive_w, periodic.absolute_w - periodic.positive_w),
-            needs,
-            steps,
-            extrapolated: losses.extrapolated(self.plane.speed_m_s, self.plane.angle_rad),
-            along: losses.along(),
-            median_angle_rad: losses.median_angle_rad(),
+        Ok(Swim {
+            cost: means.net_w / (weight_n * means.speed_m_s),
+            effort: Effort {
+                electric_w: drives.motor.electric_w(means.positive_w, means.absolute_w - means.positive_w),
+                needs,
+                steps,
+                stiffness: None,
+                extrapolated: losses.extrapolated(self.plane.speed_m_s, self.plane.angle_rad),
+                along: losses.along(),
+                median_angle_rad: losses.median_angle_rad(),
+                gain_w: None,
+            },
             periodic,
             unstable,
         })

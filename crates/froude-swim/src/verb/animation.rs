@@ -7,8 +7,9 @@
 use froude_records::text::visible;
 use serde::Serialize;
 
-use super::plane::Swum;
 use super::water;
+use crate::robot::Robot;
+use crate::robot_file::RobotFile;
 use crate::trajectory::Moment;
 
 const PAGE: &str = include_str!("animation.html");
@@ -42,8 +43,8 @@ struct Data {
 }
 
 /// The animation as one self-contained HTML file.
-pub(super) fn html(swum: &Swum, moments: &[Moment], current_m_s: [f64; 2]) -> String {
-    let chain = &swum.robot.chain;
+pub(super) fn html(file: &RobotFile, robot: &Robot, moments: &[Moment]) -> String {
+    let chain = &robot.chain;
     let n = chain.links.len();
     let shown = &moments[..moments.len().min(MOST_NUMBERS / (5 * n + 4))];
     let length_m: f64 = chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
@@ -54,10 +55,10 @@ pub(super) fn html(swum: &Swum, moments: &[Moment], current_m_s: [f64; 2]) -> St
     let (power_unit_w, power) = counted(shown.iter().map(|m| m.power_w[0]));
     let data = Data {
         half_length_m: chain.links.iter().map(|link| link.half_length_m).collect(),
-        half_width_m: swum.sections.iter().map(|section| section[1]).collect(),
+        half_width_m: file.modules.iter().map(|m| m.link.minor_semi_axis_m).collect(),
         apart_s: shown.get(1).map_or(0.0, |m| m.time_s - shown[0].time_s),
         cut: moments.len() - shown.len(),
-        current_m_s,
+        current_m_s: file.current_m_s,
         length_unit_m: length_m / FINE,
         force_unit_n,
         speed_unit_m_s,
@@ -72,7 +73,7 @@ pub(super) fn html(swum: &Swum, moments: &[Moment], current_m_s: [f64; 2]) -> St
     // Numbers alone: they are always written.
     let data = serde_json::to_string(&data).unwrap_or_default();
     let (head, rest) = PAGE.split_once("{{DATA}}").unwrap_or((PAGE, ""));
-    let name = escaped(&visible(&swum.name));
+    let name = escaped(&visible(&file.name));
     [head.replace("{{NAME}}", &name), data, rest.replace("{{NAME}}", &name)].concat()
 }
 

@@ -25,30 +25,32 @@ pub(super) fn panel(y_label: &str, series: Vec<Series>) -> ChartPanel {
     ChartPanel { y_label: y_label.to_owned(), series, ..ChartPanel::default() }
 }
 
+pub(super) fn chart(name: &str, title: &str, caption: &str, x_label: &str, panels: Vec<ChartPanel>) -> Block {
+    let [name, title, caption, x_label] = [name, title, caption, x_label].map(str::to_owned);
+    Block::Chart(Chart { name, title, caption, x_label, panels, ..Chart::default() })
+}
+
 pub(super) fn path(moments: &[Moment]) -> Block {
     let centre = line("centre of mass", &column(moments, |m| m.centre_m[0]), column(moments, |m| m.centre_m[1]));
     let head = line("head", &column(moments, |m| m.state.place_m[0]), column(moments, |m| m.state.place_m[1]));
-    Block::Chart(Chart {
-        name: "path".to_owned(),
-        title: "Path in the tank".to_owned(),
-        caption:
-            "Path of the head's centre and of the centre of mass over the ground; x and y have scales of their own."
-                .to_owned(),
-        x_label: "x [m]".to_owned(),
-        panels: vec![panel("y [m]", vec![head, centre])],
-        ..Chart::default()
-    })
+    chart(
+        "path",
+        "Path in the tank",
+        "Path of the head's centre and of the centre of mass over the ground; x and y have scales of their own.",
+        "x [m]",
+        vec![panel("y [m]", vec![head, centre])],
+    )
 }
 
 pub(super) fn motion(moments: &[Moment]) -> Block {
     let time = column(moments, |m| m.time_s);
     let turning = column(moments, |m| m.state.head[0].to_degrees());
-    Block::Chart(Chart {
-        name: "motion".to_owned(),
-        title: "Motion of the head".to_owned(),
-        caption: "Speed of the head through the water along and across its own axis, and its turn rate.".to_owned(),
-        x_label: "time [s]".to_owned(),
-        panels: vec![
+    chart(
+        "motion",
+        "Motion of the head",
+        "Speed of the head through the water along and across its own axis, and its turn rate.",
+        "time [s]",
+        vec![
             panel(
                 "speed [m/s]",
                 vec![
@@ -58,8 +60,7 @@ pub(super) fn motion(moments: &[Moment]) -> Block {
             ),
             panel("turn rate [deg/s]", vec![line("turn rate", &time, turning)]),
         ],
-        ..Chart::default()
-    })
+    )
 }
 
 pub(super) fn joints(moments: &[Moment]) -> Block {
@@ -85,14 +86,13 @@ pub(super) fn joint_chart(
     let lines = |of: &dyn Fn(usize) -> Vec<f64>| -> Vec<Series> {
         shown.iter().map(|i| line(&format!("joint {}", i + 1), time_s, of(*i))).collect()
     };
-    Block::Chart(Chart {
-        name: "joints".to_owned(),
-        title: "Joints".to_owned(),
-        caption: format!("Angles of {} joints of {n} from the head, and the torques of their motors.", shown.len()),
-        x_label: "time [s]".to_owned(),
-        panels: vec![panel("angle [deg]", lines(angle_deg)), panel("torque [N m]", lines(torque_n_m))],
-        ..Chart::default()
-    })
+    chart(
+        "joints",
+        "Joints",
+        &format!("Angles of {} joints of {n} from the head, and the torques of their motors.", shown.len()),
+        "time [s]",
+        vec![panel("angle [deg]", lines(angle_deg)), panel("torque [N m]", lines(torque_n_m))],
+    )
 }
 
 pub(super) fn powers(moments: &[Moment]) -> Block {
@@ -105,14 +105,13 @@ pub(super) fn powers(moments: &[Moment]) -> Block {
     if moments.iter().any(|m| m.power_w[3] > 0.0) {
         series.push(line("friction of the joints", &time, column(moments, |m| m.power_w[3])));
     }
-    Block::Chart(Chart {
-        name: "powers".to_owned(),
-        title: "Powers".to_owned(),
-        caption: "What the motors give, its positive part, and what drag takes; between net power and drag lies kinetic energy of body and water.".to_owned(),
-        x_label: "time [s]".to_owned(),
-        panels: vec![panel("power [W]", series)],
-        ..Chart::default()
-    })
+    chart(
+        "powers",
+        "Powers",
+        "What the motors give, its positive part, and what drag takes; between net power and drag lies kinetic energy of body and water.",
+        "time [s]",
+        vec![panel("power [W]", series)],
+    )
 }
 
 /// Shares of the loss by angle to the flow and by speed, with what the drag was fitted at.
@@ -173,14 +172,13 @@ pub(super) fn losses(robot: &Robot, moments: &[Moment]) -> Vec<Block> {
             };
             paragraphs.push(format!("The drag was fitted at {article} {name} of {} to {}.", unit[0], unit[1]));
         }
-        charts.push(Block::Chart(Chart {
-            name: format!("loss-by-{name}"),
-            title: format!("Loss by {name}"),
-            caption: format!("Share of the loss that is of links whose {name} is below the abscissa."),
-            x_label: label.to_owned(),
-            panels: vec![panel("share of the loss [%]", series)],
-            ..Chart::default()
-        }));
+        charts.push(chart(
+            &format!("loss-by-{name}"),
+            &format!("Loss by {name}"),
+            &format!("Share of the loss that is of links whose {name} is below the abscissa."),
+            label,
+            vec![panel("share of the loss [%]", series)],
+        ));
     }
     [vec![Block::text("", paragraphs)], charts].concat()
 }

@@ -2,6 +2,8 @@
 
 use froude_records::number::significant;
 
+use crate::means::Means;
+use crate::swim::Swim;
 use crate::{period, spatial};
 
 /// A motion that turns by more in a period, rad, is a circle.
@@ -10,26 +12,22 @@ const CIRCLES: f64 = 1e-6;
 /// A motion that repeats.
 #[derive(Debug, Clone)]
 pub(super) struct Repeating {
-    pub speed_m_s: f64,
-    pub net_w: f64,
-    pub positive_w: f64,
-    /// In a period, rad.
-    pub turn: f64,
+    /// Of a period.
+    pub means: Means,
     /// Sizes of the Floquet multipliers, the largest first.
     pub multipliers: Vec<f64>,
+    pub residual: f64,
 }
 
 impl From<&period::Periodic> for Repeating {
     fn from(p: &period::Periodic) -> Self {
-        let (speed_m_s, net_w, positive_w, turn) = (p.speed_m_s, p.net_w, p.positive_w, p.turn);
-        Self { speed_m_s, net_w, positive_w, turn, multipliers: p.multipliers.to_vec() }
+        Self { means: p.means, multipliers: p.multipliers.to_vec(), residual: p.residual }
     }
 }
 
 impl From<&spatial::period::Periodic> for Repeating {
     fn from(p: &spatial::period::Periodic) -> Self {
-        let (speed_m_s, net_w, positive_w, turn) = (p.speed_m_s, p.net_w, p.positive_w, p.turn);
-        Self { speed_m_s, net_w, positive_w, turn, multipliers: p.multipliers.to_vec() }
+        Self { means: p.means, multipliers: p.multipliers.to_vec(), residual: p.residual }
     }
 }
 
@@ -40,7 +38,7 @@ impl Repeating {
     }
 
     /// Of an unstable motion that the figures are of; `was_followed` says whether another was looked for.
-    pub(super) fn stays(&self, was_followed: bool) -> String {
+    fn stays(&self, was_followed: bool) -> String {
         let other = if was_followed {
             "no other that repeats each period was reached"
         } else {
@@ -53,11 +51,12 @@ impl Repeating {
     }
 
     /// Of an unstable motion, and the settled one that the figures are of.
-    pub(super) fn leaves(&self, settled: &Self, period_s: f64) -> String {
+    fn leaves(&self, settled: &Self, period_s: f64) -> String {
+        let (left, settled) = (&self.means, &settled.means);
         let into = if settled.turn.abs() > CIRCLES {
             let radius_m = settled.speed_m_s * period_s / (2.0 * (0.5 * settled.turn).sin().abs());
             // Only a motion without a turn of its own may leave to either side.
-            let either = if self.turn.abs() <= CIRCLES { " or its mirror image" } else { "" };
+            let either = if left.turn.abs() <= CIRCLES { " or its mirror image" } else { "" };
             format!("a circle of {} m radius{either}", significant(radius_m, 3))
         } else {
             "another motion".to_owned()
@@ -66,9 +65,38 @@ impl Repeating {
             "unstable: the swimmer settles into {into}, at {} m/s and {} W, and all figures are those of this motion; it leaves the motion at {} m/s and {} W, in which {}",
             significant(settled.speed_m_s, 4),
             significant(settled.net_w, 4),
-            significant(self.speed_m_s, 4),
-            significant(self.net_w, 4),
+            significant(left.speed_m_s, 4),
+            significant(left.net_w, 4),
             self.grows()
         )
+    }
+}
+
+/// How a gait's motion repeats.
+#[derive(Debug)]
+pub(super) struct Repeats {
+    /// Net power over m g U.
+    pub cost: f64,
+    /// The motion that the figures are of.
+    pub own: Repeating,
+    /// The motion that the swimmer leaves.
+    pub unstable: Option<Repeating>,
+}
+
+impl Repeats {
+    pub(super) fn of<P>(swim: &Swim<P>) -> Self
+    where
+        Repeating: for<'p> From<&'p P>,
+    {
+        let (own, unstable) = (Repeating::from(&swim.periodic), swim.unstable.as_deref().map(Repeating::from));
+        Self { cost: swim.cost, own, unstable }
+    }
+
+    /// Of a motion that is left, or whose largest multiplier lies above `most`.
+    pub(super) fn warning(&self, most: f64, was_followed: bool, period_s: f64) -> Option<String> {
+        match &self.unstable {
+            Some(left) => Some(left.leaves(&self.own, period_s)),
+            None => (self.own.multipliers[0] > most).then(|| self.own.stays(was_followed)),
+        }
     }
 }

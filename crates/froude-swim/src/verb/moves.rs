@@ -8,9 +8,9 @@ use froude_records::table::{Table, read_table};
 use froude_records::units::Dimension;
 
 use super::VerbError;
-use crate::course::{Ramped, Recorded};
+use crate::course::Recorded;
 use crate::drive::Motor;
-use crate::gait::{Course, Envelope, Gait, Shape};
+use crate::gait::{Course, Envelope, Gait};
 use crate::gait_file::{GaitForm, PitchFile, read_gait};
 use crate::joints::Drives;
 use crate::motor_file::read_motor;
@@ -69,26 +69,19 @@ impl Periodically {
     }
 }
 
-/// The same from straight joints, where there is a ramp.
-#[derive(Debug)]
-pub(super) struct FromRest<'a>(pub(super) &'a Periodically);
-
-impl Course for FromRest<'_> {
-    fn at(&self, time_s: f64, shape: &mut Shape) {
-        match self.0.ramp_s {
-            Some(ramp_s) => Ramped { course: self.0.course(), ramp_s }.at(time_s, shape),
-            None => self.0.course().at(time_s, shape),
-        }
-    }
-
-    fn period_s(&self) -> f64 {
-        self.0.course().period_s()
-    }
-
-    fn extremes(&self, joint: usize, joints: usize) -> [f64; 2] {
-        match self.0.ramp_s {
-            Some(ramp_s) => Ramped { course: self.0.course(), ramp_s }.extremes(joint, joints),
-            None => self.0.course().extremes(joint, joints),
+impl Moves {
+    /// The wave or the period of a gait; `no_recording` says why a recording will not do.
+    pub(super) fn periodically(
+        &self,
+        joints: usize,
+        is_3d: bool,
+        no_recording: &str,
+    ) -> Result<Periodically, VerbError> {
+        match self {
+            Self::Wave(gait) => Ok(Periodically { wave: Wave::Gait(gait.clone()), ramp_s: None, pitch: None }),
+            Self::File { path, typed } if is_3d => gait_of(path, typed, joints),
+            Self::File { path, typed } => flat_gait_of(path, typed, joints),
+            Self::Track(path) => Err(VerbError::input(path, no_recording)),
         }
     }
 }
@@ -104,7 +97,7 @@ pub(super) fn flat_gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<
 }
 
 /// The gait of a file for so many joints.
-pub(super) fn gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, VerbError> {
+fn gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, VerbError> {
     let file = read_gait(path)?;
     let wrong = |problem: String| VerbError::input(path, problem);
     let envelope = match file.form {

@@ -1,9 +1,8 @@
 //! The way of a swimmer in three dimensions, in figures.
 
 use froude_records::block::Block;
-use froude_records::page::Chart;
 
-use super::figures::{joint_chart, line, panel};
+use super::figures::{chart, joint_chart, line, panel};
 use crate::spatial::swim::SpatialMoment;
 
 fn column(moments: &[SpatialMoment], of: impl Fn(&SpatialMoment) -> f64) -> Vec<f64> {
@@ -16,35 +15,31 @@ fn time(moments: &[SpatialMoment]) -> Vec<f64> {
 
 pub(super) fn path(moments: &[SpatialMoment]) -> Block {
     let x = column(moments, |m| m.centre_m[0]);
-    Block::Chart(Chart {
-        name: "path".to_owned(),
-        title: "Path in the tank".to_owned(),
-        caption:
-            "Path of the centre of mass over the ground, from above and as depth (z is down); each axis has its scale."
-                .to_owned(),
-        x_label: "x [m]".to_owned(),
-        panels: vec![
+    chart(
+        "path",
+        "Path in the tank",
+        "Path of the centre of mass over the ground, from above and as depth (z is down); each axis has its scale.",
+        "x [m]",
+        vec![
             panel("y [m]", vec![line("centre of mass", &x, column(moments, |m| m.centre_m[1]))]),
             panel("z [m]", vec![line("centre of mass", &x, column(moments, |m| m.centre_m[2]))]),
         ],
-        ..Chart::default()
-    })
+    )
 }
 
 pub(super) fn attitude(moments: &[SpatialMoment]) -> Block {
     let time = time(moments);
     let angle = |k: usize| column(moments, |m| m.angles[k].to_degrees());
-    Block::Chart(Chart {
-        name: "attitude".to_owned(),
-        title: "How the head lies".to_owned(),
-        caption: "Roll (starboard down), pitch (bow up) and heading of the head.".to_owned(),
-        x_label: "time [s]".to_owned(),
-        panels: vec![
+    chart(
+        "attitude",
+        "How the head lies",
+        "Roll (starboard down), pitch (bow up) and heading of the head.",
+        "time [s]",
+        vec![
             panel("angle [deg]", vec![line("roll", &time, angle(0)), line("pitch", &time, angle(1))]),
             panel("heading [deg]", vec![line("heading", &time, angle(2))]),
         ],
-        ..Chart::default()
-    })
+    )
 }
 
 pub(super) fn motion(moments: &[SpatialMoment]) -> Block {
@@ -53,17 +48,16 @@ pub(super) fn motion(moments: &[SpatialMoment]) -> Block {
         let one = |k: usize| line(names[k], &time, column(moments, |m| scale * m.state.head[from + k]));
         vec![one(0), one(1), one(2)]
     };
-    Block::Chart(Chart {
-        name: "motion".to_owned(),
-        title: "Motion of the head".to_owned(),
-        caption: "Motion of the head through the water in its own axes: forward, to starboard, down.".to_owned(),
-        x_label: "time [s]".to_owned(),
-        panels: vec![
+    chart(
+        "motion",
+        "Motion of the head",
+        "Motion of the head through the water in its own axes: forward, to starboard, down.",
+        "time [s]",
+        vec![
             panel("speed [m/s]", lines(3, ["surge", "sway", "heave"], 1.0)),
             panel("turn rate [deg/s]", lines(0, ["roll", "pitch", "yaw"], 1_f64.to_degrees())),
         ],
-        ..Chart::default()
-    })
+    )
 }
 
 pub(super) fn joints(moments: &[SpatialMoment]) -> Block {
@@ -76,15 +70,14 @@ pub(super) fn joints(moments: &[SpatialMoment]) -> Block {
 pub(super) fn powers(moments: &[SpatialMoment]) -> Block {
     let time = time(moments);
     let series = ["net, of the motors", "positive", "drag"].iter().enumerate();
-    Block::Chart(Chart {
-        name: "powers".to_owned(),
-        title: "Powers".to_owned(),
-        caption: "What the motors give, its positive part, and what drag takes; between net power and drag lie the kinetic energy of body and water and what weight and buoyancy do.".to_owned(),
-        x_label: "time [s]".to_owned(),
-        panels: vec![panel(
+    chart(
+        "powers",
+        "Powers",
+        "What the motors give, its positive part, and what drag takes; between net power and drag lie the kinetic energy of body and water and what weight and buoyancy do.",
+        "time [s]",
+        vec![panel(
             "power [W]",
             series.map(|(k, name)| line(name, &time, column(moments, |m| m.power_w[k]))).collect(),
         )],
-        ..Chart::default()
-    })
+    )
 }

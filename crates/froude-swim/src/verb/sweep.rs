@@ -18,11 +18,11 @@ use froude_records::block::Block;
 use froude_records::manifest::may_replace;
 use froude_records::outcome::{Content, Head, Outcome, OutputFile};
 use froude_records::table::{Column, ColumnData, Table};
-use froude_records::units::{Dimension, Unit, parse_unit};
 use rayon::prelude::*;
 
 use super::VerbError;
 use super::answer::files_read;
+use super::columns::column;
 use super::moves::{Moves, Wave, flat_gait_of};
 use super::reads::Reads;
 use super::uncertain::Drawing;
@@ -253,11 +253,7 @@ fn base(moves: &Moves, joints: usize) -> Result<Gait, VerbError> {
 pub(super) fn table(rows: &[Row], path: &Path) -> Table {
     let of = |(j, (name, unit)): (usize, &(&str, &str))| {
         let si: Vec<f64> = rows.iter().map(|row| row.numbers[j]).collect();
-        // Every unit of the list is one.
-        let unit = parse_unit(unit).unwrap_or_else(|_| Unit::si(Dimension::ONE));
-        let dimension = unit.dimension;
-        let column = Column { name: (*name).to_owned(), data: ColumnData::Number { unit, dimension, si } };
-        rows.iter().any(|row| row.numbers[j].is_finite()).then_some(column)
+        si.iter().any(|x| x.is_finite()).then(|| column(name, unit, si))
     };
     let mut columns: Vec<Column> = COLUMNS.iter().enumerate().filter_map(of).collect();
     let status: Vec<String> = rows.iter().map(|row| row.status.name().to_owned()).collect();

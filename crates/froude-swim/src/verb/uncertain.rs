@@ -7,7 +7,6 @@ use froude_records::number::{percent, significant};
 use froude_records::text::counted;
 use rayon::prelude::*;
 
-use super::moves::{Moves, Periodically, Wave, flat_gait_of};
 use super::{Job, VerbError};
 use crate::blueprint::Blueprint;
 use crate::draws::{Beyond, envelope_95};
@@ -54,13 +53,8 @@ pub(super) fn uncertain(
     }
     let drives = super::drives(file, job.motor.as_deref())?;
     let blueprint = Blueprint::of(file)?;
-    let of = match &job.moves {
-        Moves::Wave(gait) => Periodically { wave: Wave::Gait(gait.clone()), pitch: None, ramp_s: None },
-        Moves::File { path, typed } => flat_gait_of(path, typed, file.modules.len() - 1)?,
-        Moves::Track(path) => {
-            return Err(VerbError::input(path, "is a recording; draws and sensitivities are of a gait"));
-        }
-    };
+    let no_recording = "is a recording; draws and sensitivities are of a gait";
+    let of = job.moves.periodically(file.modules.len() - 1, false, no_recording)?;
     let swim = |robot: &Robot| robot.swim(of.course(), &drives, job.step_s);
     // A gait without an answer says why before anything is drawn.
     swim(&blueprint.estimated())?;
@@ -77,9 +71,9 @@ pub(super) fn uncertain(
                 let one = |values: &Vec<f64>| {
                     let found = swim(&law.robot(values)).ok()?;
                     tell(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-                    let p = &found.periodic;
+                    let (p, m) = (&found.periodic, &found.periodic.means);
                     let is = [found.unstable.is_some(), p.multipliers[0] > 1.0];
-                    Some(([p.speed_m_s, p.net_w, p.positive_w, found.cost_j_m], is))
+                    Some(([m.speed_m_s, m.net_w, m.positive_w, m.cost_j_m()], is))
                 };
                 by_law.push(draws.values.par_iter().filter_map(one).collect());
             }
@@ -95,7 +89,8 @@ pub(super) fn uncertain(
         }
     };
     let sensitivities = if job.is_sensitive {
-        let answer = |robot: &Robot| swim(robot).ok().map(|s| [s.periodic.speed_m_s, s.cost_j_m]);
+        let answer =
+            |robot: &Robot| swim(robot).ok().map(|s| [s.periodic.means.speed_m_s, s.periodic.means.cost_j_m()]);
         blueprint.sensitivities(answer)
     } else {
         None

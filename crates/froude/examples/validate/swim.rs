@@ -153,7 +153,13 @@ fn centres(claims: &mut Claims, root: &Path, mamba: &Mamba) -> Result<(), Box<dy
             let p = &found.periodic;
             let printed: Vec<(f64, i32)> = printed.into_iter().zip([4, 4, 3, 3]).collect();
             let what = format!("{name}, {words}: speed m/s, net and positive power W, cost J/m");
-            row(claims, CENTRES, &what, &[p.speed_m_s, p.net_w, p.positive_w, found.cost_j_m], &printed);
+            row(
+                claims,
+                CENTRES,
+                &what,
+                &[p.means.speed_m_s, p.means.net_w, p.means.positive_w, found.periodic.means.cost_j_m()],
+                &printed,
+            );
         }
     }
     Ok(())
@@ -169,7 +175,7 @@ fn strips(claims: &mut Claims, root: &Path, mamba: &Mamba) -> Result<(), Box<dyn
         let robot = mamba.with(DragModel::F2, &published(root, source, DragModel::F2)?, Torque::Strip);
         let found = swim(&robot, &gait(Envelope::Lateral))?;
         let what = format!("{name}, f2, lateral: speed m/s, net power W, cost J/m");
-        let all = [found.periodic.speed_m_s, found.periodic.net_w, found.cost_j_m];
+        let all = [found.periodic.means.speed_m_s, found.periodic.means.net_w, found.periodic.means.cost_j_m()];
         row(claims, STRIPS, &what, &all, &printed);
     }
     let (tank, _) = SOURCES[2];
@@ -182,7 +188,7 @@ fn strips(claims: &mut Claims, root: &Path, mamba: &Mamba) -> Result<(), Box<dyn
             claims,
             STRIPS,
             &format!("circulation tank, {words}, lateral: cost J/m"),
-            &[found.cost_j_m],
+            &[found.periodic.means.cost_j_m()],
             &[(printed, 3)],
         );
     }
@@ -201,13 +207,13 @@ fn shared(claims: &mut Claims, root: &Path, mamba: &Mamba) -> Result<(), Box<dyn
         let (source, name) = SOURCES[source];
         let robot = mamba.with(DragModel::F4, &published(root, source, DragModel::F4)?, torque);
         let found = swim(&robot, &lateral)?;
-        let all = [found.periodic.net_w, found.cost_j_m, found.periodic.speed_m_s];
+        let all = [found.periodic.means.net_w, found.periodic.means.cost_j_m(), found.periodic.means.speed_m_s];
         let what = format!("{name}, f4, {words}: net power W, cost J/m, speed m/s");
         row(claims, SHARED, &what, &all[..printed.len()], printed);
     }
     let robot = mamba.with(DragModel::F4, &published(root, "cfd", DragModel::F4)?, Torque::CrossFlow);
     let found = swim(&robot, &lateral)?;
-    let (multiplier, turn) = (found.periodic.multipliers[0], found.periodic.turn.to_degrees());
+    let (multiplier, turn) = (found.periodic.multipliers[0], found.periodic.means.turn.to_degrees());
     claims.add(
         SHARED,
         "CFD, f4: straight swimming",
@@ -240,16 +246,20 @@ fn remark(claims: &mut Claims, root: &Path, mamba: &Mamba) -> Result<(), Box<dyn
         claims,
         REMARK,
         "C_f 0.3, C_D 1.75, C_A 1.5: speed m/s, net power W, cost J/m",
-        &[p.speed_m_s, p.net_w, first.cost_j_m],
+        &[p.means.speed_m_s, p.means.net_w, first.periodic.means.cost_j_m()],
         &printed,
     );
     let tank = mamba.with(DragModel::F2, &published(root, SOURCES[2].0, DragModel::F2)?, Torque::Friction);
-    let ratio = first.cost_j_m / swim(&tank, &gait(Envelope::Lateral))?.cost_j_m;
+    let ratio = first.periodic.means.cost_j_m() / swim(&tank, &gait(Envelope::Lateral))?.periodic.means.cost_j_m();
     row(claims, REMARK, "its cost over that of the tank's f2", &[ratio], &[(30.0, 0)]);
     for c_f in [0.01, 0.03] {
         let theory = of_remark(mamba, c_f, 1.0, 1.0)?;
-        let found =
-            format!("{:.4} m/s, {:.3} W, {:.2} J/m", theory.periodic.speed_m_s, theory.periodic.net_w, theory.cost_j_m);
+        let found = format!(
+            "{:.4} m/s, {:.3} W, {:.2} J/m",
+            theory.periodic.means.speed_m_s,
+            theory.periodic.means.net_w,
+            theory.periodic.means.cost_j_m()
+        );
         claims.add(REMARK, &format!("theory, C_f {c_f}, C_D 1, C_A 1"), "no figure", found, Verdict::Measured);
     }
     Ok(())
@@ -261,9 +271,9 @@ fn scales(claims: &mut Claims, root: &Path, mamba: &Mamba) -> Result<(), Box<dyn
         let fast = Gait { frequency: 2.0 * slow.frequency, ..slow.clone() };
         let (slow, fast) = (swim(robot, &slow)?, swim(robot, &fast)?);
         let [u, p, cost] = [
-            fast.periodic.speed_m_s / slow.periodic.speed_m_s / 2.0,
-            fast.periodic.net_w / slow.periodic.net_w / 8.0,
-            fast.cost_j_m / slow.cost_j_m / 4.0,
+            fast.periodic.means.speed_m_s / slow.periodic.means.speed_m_s / 2.0,
+            fast.periodic.means.net_w / slow.periodic.means.net_w / 8.0,
+            fast.periodic.means.cost_j_m() / slow.periodic.means.cost_j_m() / 4.0,
         ];
         Ok([u, p, cost].map(|x| (x - 1.0).abs()).into_iter().fold(0.0, f64::max))
     };
@@ -301,7 +311,7 @@ fn stretched(claims: &mut Claims, root: &Path, mamba: &Mamba) -> Result<(), Box<
                 STRETCH,
                 &format!("{name}, f2, {words}: median angle of the loss, share of it along the links"),
                 "about 11 deg and 64 %, which are CFD's at the links' centres",
-                format!("{:.1} deg, {:.0} %", found.median_angle_rad.to_degrees(), 100.0 * found.along),
+                format!("{:.1} deg, {:.0} %", found.effort.median_angle_rad.to_degrees(), 100.0 * found.effort.along),
                 Verdict::Measured,
             );
         }

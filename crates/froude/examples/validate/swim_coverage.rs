@@ -123,7 +123,7 @@ impl Kind {
 
 fn answer(robot: &Robot) -> Option<[f64; 2]> {
     let found = swim(robot, &gait(Envelope::Lateral)).ok()?;
-    Some([found.periodic.speed_m_s, found.cost_j_m])
+    Some([found.periodic.means.speed_m_s, found.periodic.means.cost_j_m()])
 }
 
 /// Scales the forces and the speeds of a table.

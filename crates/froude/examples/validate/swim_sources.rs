@@ -108,7 +108,9 @@ pub fn all(claims: &mut Claims, root: &Path, pages: Option<&Path>) -> Result<(),
         writeln!(
             sets,
             "| C_f {c_f}, C_D {c_d}, C_A {c_a} | {:.4} | {:.4} | {:.3} |",
-            p.speed_m_s, p.net_w, found.cost_j_m
+            p.means.speed_m_s,
+            p.means.net_w,
+            found.periodic.means.cost_j_m()
         )?;
     }
     let figures = [costs_figure(&cells, &drawn), scan_figure("amplitude", &scans[0]), scan_figure("phase", &scans[1])];
@@ -127,14 +129,14 @@ fn cell(robot: &Robot) -> Option<Cell> {
     let speed = |&(amplitude, phase): &(f64, f64)| Some([amplitude, phase, speed_at(robot, amplitude, phase)?.0]);
     let fastest = grid.par_iter().filter_map(speed).max_by(|a, b| a[2].total_cmp(&b[2]));
     Some(Cell {
-        speed_m_s: p.speed_m_s,
-        net_w: p.net_w,
-        cost_j_m: found.cost_j_m,
+        speed_m_s: p.means.speed_m_s,
+        net_w: p.means.net_w,
+        cost_j_m: found.periodic.means.cost_j_m(),
         multiplier: p.multipliers[0],
-        turn_rad: p.turn,
-        median_angle_rad: found.median_angle_rad,
-        along: found.along,
-        extrapolated: found.extrapolated,
+        turn_rad: p.means.turn,
+        median_angle_rad: found.effort.median_angle_rad,
+        along: found.effort.along,
+        extrapolated: found.effort.extrapolated,
         fastest,
     })
 }
@@ -143,7 +145,7 @@ fn cell(robot: &Robot) -> Option<Cell> {
 fn speed_at(robot: &Robot, amplitude: f64, phase: f64) -> Option<(f64, f64)> {
     let wave = Gait { amplitude: amplitude.to_radians(), phase: phase.to_radians(), ..gait(Envelope::Lateral) };
     let found = swim(robot, &wave).ok().filter(|found| found.periodic.multipliers[0] <= 1.0)?;
-    Some((found.periodic.speed_m_s, found.cost_j_m))
+    Some((found.periodic.means.speed_m_s, found.periodic.means.cost_j_m()))
 }
 
 fn spread(numbers: &[f64]) -> f64 {
@@ -223,7 +225,7 @@ fn draws(file: &RobotFile, law: &str) -> Result<Drawn, Box<dyn Error>> {
     let draws = blueprint.draws(DRAWS, 1)?;
     let of = |robot: &Robot| {
         let found = swim(robot, &gait(Envelope::Lateral)).ok()?;
-        Some([found.periodic.speed_m_s, found.cost_j_m])
+        Some([found.periodic.means.speed_m_s, found.periodic.means.cost_j_m()])
     };
     let best = of(&blueprint.estimated()).ok_or_else(|| format!("{law} does not swim"))?;
     let all: Vec<[f64; 2]> = draws.values.par_iter().filter_map(|values| of(&blueprint.robot(values))).collect();
