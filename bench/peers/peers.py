@@ -1,4 +1,4 @@
-"""The other side: what a careful user of numpy, scipy, polars or pandas would write.
+"""The other side: what a careful user of numpy and scipy would write.
 
     peers.py CASE DIR       one line of JSON; threads by OMP_NUM_THREADS and the like
 
@@ -35,27 +35,6 @@ def gelsy(X, y):
     return sl.lstsq(X, y, lapack_driver="gelsy", check_finite=False)[0]
 
 
-def force_regressors(vx, vy, theta, omega):
-    c, s = np.cos(theta), np.sin(theta)
-    u, v = c * vx + s * vy, c * vy - s * vx
-    return np.stack([u, u * np.abs(u), v, v * np.abs(v), omega, omega * np.abs(omega), v * np.abs(u), u * np.abs(v)], 1)
-
-
-def csv(path, reader):
-    columns = ["t", "fx", "fy", "vx", "vy", "theta", "omega"]
-    if reader == "polars":
-        import polars as pl
-        frame = pl.read_csv(path)
-    elif reader == "pyarrow":
-        import pyarrow.csv as pc
-        frame = pc.read_csv(path, read_options=pc.ReadOptions(use_threads=os.environ["OMP_NUM_THREADS"] != "1"))
-    else:
-        import pandas as pd
-        frame = pd.read_csv(path)
-    t, fx, fy, vx, vy, theta, omega = (frame[c].to_numpy() for c in columns)
-    X = force_regressors(vx, vy, theta, omega)
-    b = np.linalg.solve(X.T @ X, X.T @ np.stack([fx, fy], 1))
-    return np.concatenate([b[:, 0], b[:, 1]])
 
 
 def shown(y):
@@ -123,11 +102,7 @@ def hour(path, rate_hz=10_000.0, factor=10, trim_s=0.2, lag_s=1.0):
 
 def main(case, folder):
     runs = 5
-    if case.startswith("csv-"):
-        reader = case.removeprefix("csv-")
-        __import__({"polars": "polars", "pyarrow": "pyarrow.csv", "pandas": "pandas"}[reader])
-        call, runs = (lambda: csv(os.path.join(folder, "record.csv"), reader)), 3
-    elif case in ("gaussian", "savitzky-golay", "forward-backward"):
+    if case in ("gaussian", "savitzky-golay", "forward-backward"):
         call = filtered(case, np.fromfile(os.path.join(folder, "u.f64")))
     elif case in ("harmonics", "resample"):
         t, x = shorter(np.fromfile(os.path.join(folder, "u.f64"), count=1_000_000))

@@ -36,7 +36,7 @@ enum Task {
         #[arg(long, default_value_t = 1_000_000)]
         runs: u64,
     },
-    /// Benches against numpy, pandas, scipy, Capytaine and HAMS in the same run (installs them below bench/peers).
+    /// Benches against numpy, scipy, polars, Capytaine and HAMS in the same run (installs them below bench/peers).
     Bench,
     /// Licences and advisories of the dependencies (needs cargo-deny; installs it).
     Deny,

@@ -12,7 +12,7 @@ use std::path::Path;
 use crate::assemble::Want;
 use crate::csv_table::{Head, Records};
 use crate::error::{Place, RecordError, utf8};
-use crate::fast_csv::{FastCsvError, Layout, Lines, Memory, Reader};
+use crate::fast_csv::{Layout, Lines, Memory, Reader};
 use crate::parquet_table;
 use crate::raw_column::Raw;
 use crate::read;
@@ -22,6 +22,7 @@ use crate::table_file::{Format, sidecar_of};
 
 /// Bytes of CSV read at a time: some 10,000 rows, whose columns stay in the caches.
 const CHUNK_BYTES: usize = 1 << 20;
+
 /// Reads a table, `.csv` or `.parquet`, a chunk of rows at a time, through `sidecar` or the `.toml` of the same name beside it.
 ///
 /// # Errors
@@ -42,27 +43,21 @@ pub fn for_each_chunk<E: From<RecordError>>(
 /// Rows of a table; lines of a CSV count as rows, one more or less. `None` where it cannot be read, or but once: reading it says why.
 #[must_use]
 pub fn count_rows(path: &Path) -> Option<usize> {
-    if !path.is_file() {
-        return None;
-    }
-    match Format::of(path) {
-        Ok(Format::Csv) => n_lines(path, usize::MAX).ok(),
-        Ok(Format::Parquet) => parquet_table::n_rows(path).ok(),
-        Err(_) => None,
-    }
+    rows(path, usize::MAX)
 }
 
 /// Whether a table has more rows than `limit`; lines of a CSV count as rows. False where it cannot be read: reading it says why.
 #[must_use]
 pub fn has_more_rows(path: &Path, limit: usize) -> bool {
+    rows(path, limit).is_some_and(|rows| rows > limit)
+}
+
+/// Rows of a table, counted until there are more than `most`.
+fn rows(path: &Path, most: usize) -> Option<usize> {
     // What is no file can be read but once.
-    if !path.is_file() {
-        return false;
-    }
-    match Format::of(path) {
-        Ok(Format::Csv) => n_lines(path, limit).is_ok_and(|lines| lines > limit),
-        Ok(Format::Parquet) => parquet_table::n_rows(path).is_ok_and(|rows| rows > limit),
-        Err(_) => false,
+    match Format::of(path).ok().filter(|_| path.is_file())? {
+        Format::Csv => n_lines(path, most).ok(),
+        Format::Parquet => parquet_table::n_rows(path).ok(),
     }
 }
 
@@ -87,9 +82,8 @@ fn csv<E: From<RecordError>>(
     sidecar: Option<&Sidecar>,
     each: &mut dyn FnMut(Table) -> Result<(), E>,
 ) -> Result<(), E> {
-    let failed = |error| E::from(reported(path, error));
-    let mut reader = Reader::open(path, CHUNK_BYTES).map_err(failed)?;
-    let mut start = reader.beginning().map_err(failed)?;
+    let mut reader = Reader::open(path, CHUNK_BYTES)?;
+    let mut start = reader.beginning()?;
     if start.starts_with(b"\xef\xbb\xbf") {
         start.drain(..3);
     }
@@ -98,40 +92,36 @@ fn csv<E: From<RecordError>>(
     let mut records = Records::new(path, utf8(path, &start[..end])?, 1);
     let head = Head::read(&mut records, sidecar)?;
     let (at, line) = (records.at, records.line);
-    reader.go_on(start.split_off(at), line as u64);
+    reader.go_on(start.split_off(at), line);
     let is_read: Vec<bool> = head.wants.iter().map(|want| !matches!(want, Want::LeftOut)).collect();
     let is_plain = head.wants.iter().zip(&is_read).all(|(want, is_read)| want.is_number() || !is_read);
-    let layout = is_plain.then(|| Layout::of(&head.header, &is_read));
+    let layout = is_plain.then(|| Layout::of(&is_read));
     let mut memory = Memory::default();
     let mut has_rows = false;
-    while let Some(lines) = reader.next(&mut memory.text).map_err(failed)? {
+    while let Some(lines) = reader.next(&mut memory.text)? {
         has_rows = true;
-        each(chunk(path, &head, layout.as_ref(), &is_read, &mut memory, &lines)?)?;
+        each(chunk(path, &head, layout.as_ref(), &mut memory, &lines)?)?;
     }
     if has_rows { Ok(()) } else { Err(RecordError::NoRows { path: path.to_owned() }.into()) }
 }
 
 /// A chunk of lines as a table.
-pub(crate) fn chunk(
+fn chunk(
     path: &Path,
     head: &Head<'_, '_>,
     layout: Option<&Layout>,
-    is_read: &[bool],
     memory: &mut Memory,
     lines: &Lines,
 ) -> Result<Table, RecordError> {
-    let first = usize::try_from(lines.first).unwrap_or(usize::MAX);
+    let first = lines.first;
     // A line that begins with `#` is refused, also where its first cell is not read.
     let is_free = memchr::memchr(b'#', &memory.text[..lines.bytes]).is_none();
     if let Some(layout) = layout.filter(|_| is_free)
-        && let Ok(columns) = layout.parse(path, memory, lines)
+        && let Some(columns) = layout.parse(memory, lines)
     {
-        let mut columns = columns.into_iter();
-        let raw = |is_read: &bool| {
-            let column = if *is_read { columns.next() } else { None };
-            column.map_or_else(|| Raw::Texts(Vec::new()), |column| Raw::Numbers(column.to_vec()))
-        };
-        return head.table(is_read.iter().map(raw).collect(), (first..first + lines.count).collect());
+        let raw =
+            |column: Option<&[f64]>| column.map_or(Raw::Texts(Vec::new()), |column| Raw::Numbers(column.to_vec()));
+        return head.table(columns.into_iter().map(raw).collect(), (first..first + lines.count).collect());
     }
     let text = std::str::from_utf8(&memory.text[..lines.bytes]).map_err(|error| {
         let before = memchr::memchr_iter(b'\n', &memory.text[..error.valid_up_to()]).count();
@@ -140,22 +130,6 @@ pub(crate) fn chunk(
     })?;
     let (raws, lines) = head.rows(&mut Records::new(path, text, first), None)?;
     head.table(raws, lines)
-}
-
-/// What keeps the lines from being read, in the words of tables.
-fn reported(path: &Path, error: FastCsvError) -> RecordError {
-    let syntax = |line: u64, problem: String| RecordError::Syntax {
-        place: Place::line(path, usize::try_from(line).unwrap_or(usize::MAX)),
-        problem,
-    };
-    match error {
-        FastCsvError::Blank { line, .. } => syntax(line, "the line is blank; delete it".to_owned()),
-        FastCsvError::LineTooLong { line, limit, .. } => {
-            syntax(line, format!("the line is longer than {limit} bytes; is this a CSV file?"))
-        }
-        FastCsvError::Read { path, reason } => RecordError::Read { path, reason },
-        other => RecordError::Read { path: path.to_owned(), reason: other.to_string() },
-    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 //! | file            | module                                     |
 //! |-----------------|--------------------------------------------|
 //! | campaign (TOML) | [`campaign`]; its options of added mass [`added_mass_options`]; sections of methods and of the carriage are read by the crates that use them |
-//! | table (CSV)     | [`csv_table`], in memory; [`fast_csv`], streamed |
+//! | table (CSV)     | [`csv_table`], in memory; [`chunks`], some rows at a time |
 //! | table (Parquet) | [`parquet_table`]                          |
 //! | body (TOML)     | [`body`]                                   |
 //! | sidecar (TOML)  | [`sidecar`]                                |
@@ -30,7 +30,7 @@ pub mod csv_table;
 pub mod document;
 mod error;
 pub mod estimate;
-pub mod fast_csv;
+mod fast_csv;
 pub mod finding;
 pub mod folder;
 pub mod folder_lock;

@@ -72,10 +72,8 @@ impl Format {
 ///
 /// Another ending, a number that is not finite, or a file that cannot be written.
 pub fn prepare_table(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
-    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    match ending.as_deref() {
-        Some("csv") => csv_table::prepare_csv(table, path),
-        Some("parquet") => parquet_table::prepare_parquet(table, path),
-        _ => Err(RecordError::Extension { path: path.to_owned() }),
+    match Format::of(path)? {
+        Format::Csv => csv_table::prepare_csv(table, path),
+        Format::Parquet => parquet_table::prepare_parquet(table, path),
     }
 }

@@ -6,7 +6,7 @@
 //! peer-bench CASE DIR THREADS   solve it, print one line of JSON
 //! ```
 //!
-//! Cases: `columns`, `csv`, `gaussian`, `savitzky-golay`, `forward-backward`, `harmonics`, `resample`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
+//! Cases: `columns`, `gaussian`, `savitzky-golay`, `forward-backward`, `harmonics`, `resample`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
 
 mod hour;
 mod make;
@@ -17,8 +17,7 @@ use std::error::Error;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use froude_fit::stream::{Accumulator, Factor, Shape, StreamError, reduce_columns};
-use froude_records::fast_csv::{Chunk, FastCsv, FastCsvError};
+use froude_fit::stream::reduce_columns;
 use meter::{Row, measure};
 
 type Outcome<T> = Result<T, Box<dyn Error + Send + Sync>>;
@@ -39,7 +38,6 @@ fn main() -> Outcome<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build()?;
     let row = pool.install(|| match case.as_str() {
         "columns" => columns(dir),
-        "csv" => csv(dir, threads),
         "gaussian" | "savitzky-golay" | "forward-backward" => signals::filter(dir, case),
         "harmonics" => signals::harmonics(dir),
         "resample" => signals::resample(dir),
@@ -85,80 +83,11 @@ fn columns(dir: &Path) -> Outcome<Row> {
     })
 }
 
-/// The eight regressors of the force record, and both forces.
+/// The eight regressors of the force record that `verb.py` reads, and both forces.
 #[inline]
 fn force_row([fx, fy, vx, vy, theta, omega]: [f64; 6]) -> [f64; 10] {
     let (s, c) = theta.sin_cos();
     let (u, v) = (c * vx + s * vy, c * vy - s * vx);
     let (uu, vv, ww) = (u * u.abs(), v * v.abs(), omega * omega.abs());
     [u, uu, v, vv, omega, ww, v * u.abs(), u * v.abs(), fx, fy]
-}
-
-const FORCES: Shape = Shape { regressors: 8, responses: 2 };
-
-/// Regressors and responses of a chunk.
-fn force_rows(chunk: &Chunk<'_>) -> Vec<Vec<f64>> {
-    let [_, fx, fy, vx, vy, theta, omega] = chunk.columns else {
-        return vec![Vec::new(); FORCES.width()];
-    };
-    let mut columns = vec![vec![0.0; fx.len()]; FORCES.width()];
-    for i in 0..fx.len() {
-        let row = force_row([fx[i], fy[i], vx[i], vy[i], theta[i], omega[i]]);
-        for (column, value) in columns.iter_mut().zip(row) {
-            column[i] = value;
-        }
-    }
-    columns
-}
-
-/// What stops the work on a chunk.
-#[derive(Debug)]
-enum Stop {
-    Csv(FastCsvError),
-    Fit(StreamError),
-}
-
-impl From<FastCsvError> for Stop {
-    fn from(error: FastCsvError) -> Self {
-        Self::Csv(error)
-    }
-}
-
-impl From<StreamError> for Stop {
-    fn from(error: StreamError) -> Self {
-        Self::Fit(error)
-    }
-}
-
-impl From<Stop> for Box<dyn Error + Send + Sync> {
-    fn from(stop: Stop) -> Self {
-        match stop {
-            Stop::Csv(error) => error.into(),
-            Stop::Fit(error) => error.into(),
-        }
-    }
-}
-
-/// Both components from the file in one pass: coefficients and classical covariance.
-fn csv(dir: &Path, threads: NonZeroUsize) -> Outcome<Row> {
-    let path = dir.join("record.csv");
-    measure(5, || {
-        let file = FastCsv::open(&path)?;
-        let file = file.select(&["t", "fx", "fy", "vx", "vy", "theta", "omega"])?;
-        let mut total = Factor::empty(FORCES);
-        file.fold_chunks(
-            threads,
-            |chunk| {
-                let columns = force_rows(&chunk);
-                let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-                let mut rows = Accumulator::new(FORCES);
-                rows.push(&all[..8], &all[8..])?;
-                Ok::<_, Stop>(rows.finish())
-            },
-            |part| Ok(total.merge(&part)?),
-        )?;
-        let mut out = total.solve(0)?.coefficients;
-        out.extend(total.solve(1)?.coefficients);
-        Ok(out)
-    })
 }

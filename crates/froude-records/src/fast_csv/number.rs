@@ -147,7 +147,7 @@ pub(super) fn slow_number(cell: &[u8]) -> Option<f64> {
 }
 
 /// A cell without the blanks around it.
-pub(super) fn without_blanks(mut cell: &[u8]) -> &[u8] {
+fn without_blanks(mut cell: &[u8]) -> &[u8] {
     while let [b' ' | b'\t', rest @ ..] | [rest @ .., b' ' | b'\t'] = cell {
         cell = rest;
     }

@@ -1,8 +1,6 @@
-//! Numbers against the standard library, files against what was written, errors word
-//! for word.
+//! Numbers against the standard library, files against what was written.
 
 use std::io::Write;
-use std::num::NonZeroUsize;
 
 use proptest::prelude::*;
 
@@ -15,30 +13,25 @@ fn file(text: &[u8]) -> tempfile::NamedTempFile {
     file
 }
 
-/// All columns of a file, and its summary.
-fn read(text: &str, chunk_bytes: usize) -> Result<(Vec<Vec<f64>>, Summary), FastCsvError> {
+/// All columns of a file with a header, some bytes at a time; `None` where one of its lines is not plain numbers.
+fn read(text: &str, is_read: &[bool], chunk_bytes: usize) -> Result<Option<Vec<Vec<f64>>>, RecordError> {
     let file = file(text.as_bytes());
-    let csv = FastCsv::open_with(file.path(), chunk_bytes)?;
-    let mut columns = vec![Vec::new(); csv.headers().len()];
+    let mut reader = Reader::open(file.path(), chunk_bytes)?;
+    let mut start = reader.beginning()?;
+    let end = memchr(b'\n', &start).unwrap() + 1;
+    reader.go_on(start.split_off(end), 2);
+    let (layout, mut memory) = (Layout::of(is_read), Memory::default());
+    let mut columns = vec![Vec::new(); layout.selected];
     let mut line = 2;
-    let summary = csv.for_each_chunk(|chunk, first_line| {
-        assert_eq!(first_line, line);
-        line += chunk[0].len() as u64;
-        for (column, part) in columns.iter_mut().zip(chunk) {
+    while let Some(lines) = reader.next(&mut memory.text)? {
+        assert_eq!(lines.first, line);
+        line += lines.count;
+        let Some(parts) = layout.parse(&mut memory, &lines) else { return Ok(None) };
+        for (column, part) in columns.iter_mut().zip(parts.into_iter().flatten()) {
             column.extend_from_slice(part);
         }
-        Ok::<(), FastCsvError>(())
-    })?;
-    Ok((columns, summary))
-}
-
-/// The error for a file, with its path cut off.
-fn error(text: &str) -> String {
-    let file = file(text.as_bytes());
-    let found =
-        FastCsv::open_with(file.path(), 64).and_then(|csv| csv.for_each_chunk(|_, _| Ok::<(), FastCsvError>(())));
-    let path = file.path().display().to_string();
-    found.unwrap_err().to_string().replace(&path, "log.csv")
+    }
+    Ok(Some(columns))
 }
 
 /// Parses one cell by whichever path takes it; the flag says whether it was the quick one.
@@ -54,7 +47,7 @@ fn parse(cell: &str) -> Option<(f64, bool)> {
 
 /// Parses a cell as a row of a file of its own.
 fn parse_alone(cell: &str) -> Option<f64> {
-    read(&format!("a,b\n{cell},0\n"), 64).ok().map(|(columns, _)| columns[0][0])
+    read(&format!("a,b\n{cell},0\n"), &[true; 2], 64).unwrap().map(|columns| columns[0][0])
 }
 
 fn assert_same_as_std(cell: &str) {
@@ -188,155 +181,35 @@ fn log(n: usize) -> (String, Vec<Vec<f64>>) {
 #[test]
 fn a_log_is_read_as_it_was_written_whatever_the_chunks() {
     let (text, expected) = log(2000);
+    let is_same = |text: &str, chunk_bytes| read(text, &[true; 3], chunk_bytes).unwrap().as_ref() == Some(&expected);
     for chunk_bytes in [64, 100, 1000, 4097, text.len() - 1, text.len(), 1 << 20] {
-        let (columns, summary) = read(&text, chunk_bytes).unwrap();
-        assert!(columns == expected, "{chunk_bytes}");
-        assert_eq!((summary.rows, summary.bytes), (2000, text.len() as u64));
+        assert!(is_same(&text, chunk_bytes), "{chunk_bytes}");
     }
-    let without_end = text.trim_end();
-    assert!(read(without_end, 100).unwrap().0 == expected);
-    let with_returns = text.replace('\n', "\r\n");
-    assert!(read(&with_returns, 100).unwrap().0 == expected);
-    let with_mark = format!("\u{feff}{text}\n\n\r\n\n");
+    assert!(is_same(text.trim_end(), 100));
+    assert!(is_same(&text.replace('\n', "\r\n"), 100));
     for chunk_bytes in (64..200).chain([1 << 20]) {
-        assert!(read(&with_mark, chunk_bytes).unwrap().0 == expected);
+        assert!(is_same(&format!("{text}\n\n\r\n\n"), chunk_bytes));
     }
-    let with_blanks = text.replacen("0.000,", " 0.000 ,", 1);
-    assert!(read(&with_blanks, 100).unwrap().0 == expected);
+    assert!(is_same(&text.replacen("0.000,", " 0.000 ,", 1), 100));
 }
 
 #[test]
-fn threads_fold_in_the_files_order() {
-    let (text, expected) = log(5000);
-    let file = file(text.as_bytes());
-    for threads in 1..6 {
-        let csv = FastCsv::open_with(file.path(), 700).unwrap();
-        let mut column = Vec::new();
-        let mut chunks = 0;
-        let summary = csv.fold_chunks(
-            NonZeroUsize::new(threads).unwrap(),
-            |chunk| {
-                assert_eq!((chunk.columns[0][0] * 1e3).round(), chunk.first_line as f64 - 2.0);
-                Ok::<_, FastCsvError>((chunk.index, chunk.columns[1].to_vec()))
-            },
-            |(index, part)| {
-                assert_eq!(index, chunks);
-                chunks += 1;
-                column.extend(part);
-                Ok(())
-            },
-        );
-        assert_eq!(summary.unwrap().chunks, chunks);
-        assert!(column == expected[1]);
-    }
-}
-
-#[test]
-fn the_first_error_of_the_file_wins_on_any_number_of_threads() {
-    let (text, _) = log(5000);
-    let lines: Vec<&str> = text.lines().collect();
-    let mut broken: Vec<String> = lines.iter().map(ToString::to_string).collect();
-    for line in [3100, 3105, 4000, 4990] {
-        broken[line - 1] = format!("oh,{line},no");
-    }
-    let file = file(broken.join("\n").as_bytes());
-    for threads in 1..5 {
-        let csv = FastCsv::open_with(file.path(), 500).unwrap();
-        let mut rows = 0;
-        let found = csv.fold_chunks(
-            NonZeroUsize::new(threads).unwrap(),
-            |chunk| Ok::<_, FastCsvError>(chunk.columns[0].len()),
-            |n| {
-                rows += n;
-                Ok(())
-            },
-        );
-        let message = found.unwrap_err().to_string();
-        assert!(message.ends_with(":3100: column `t`: `oh` is not a number"), "{message}");
-        assert!(rows < 3099);
-    }
-    // What `fold` refuses ends the work as well.
-    let csv = FastCsv::open_with(file.path(), 500).unwrap();
-    let stop = FastCsvError::NoRows { path: "stop".into() };
-    let found = csv.fold_chunks(NonZeroUsize::new(3).unwrap(), |_| Ok::<_, FastCsvError>(()), |()| Err(stop.clone()));
-    assert_eq!(found, Err(stop.clone()));
-}
-
-#[test]
-fn a_panic_in_a_map_does_not_hang_the_other_threads() {
-    let (text, _) = log(5000);
-    let file = file(text.as_bytes());
-    let csv = FastCsv::open_with(file.path(), 500).unwrap();
-    let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        csv.fold_chunks(
-            NonZeroUsize::new(3).unwrap(),
-            |chunk| {
-                assert!(chunk.index != 20, "on purpose");
-                Ok::<_, FastCsvError>(())
-            },
-            |()| Ok(()),
-        )
-    }));
-    assert!(outcome.is_err());
-}
-
-#[test]
-fn columns_are_selected_by_name_and_others_passed_over() {
+fn columns_that_are_not_selected_are_passed_over() {
     let text = "name,f_x [N],note,speed [m/s]\r\nrun 1,-1.5,good,0.1\r\nrun 2,-2.5,,0.2\r\n";
-    let file = file(text.as_bytes());
-    let csv = FastCsv::open(file.path()).unwrap();
-    assert_eq!(csv.headers(), ["name", "f_x [N]", "note", "speed [m/s]"]);
-    assert_eq!((csv.unit(1), csv.unit(2)), (Some("N"), None));
-    assert_eq!(csv.column("speed").unwrap(), csv.column("speed [m/s]").unwrap());
-    let mut seen = Vec::new();
-    let csv = csv.select(&["speed", "f_x"]).unwrap();
-    csv.for_each_chunk(|columns, _| {
-        seen.extend(columns.iter().map(|column| column.to_vec()));
-        Ok::<(), FastCsvError>(())
-    })
-    .unwrap();
-    assert_eq!(seen, [[0.1, 0.2], [-1.5, -2.5]]);
+    let is_read = [false, true, false, true];
+    assert_eq!(read(text, &is_read, 1 << 10).unwrap().unwrap(), [[-1.5, -2.5], [0.1, 0.2]]);
+    assert_eq!(read(&text.replace("good", "\"good\""), &is_read, 1 << 10), Ok(None));
 }
 
 #[test]
-fn every_refusal_names_line_and_column() {
-    let header = "t [s],f_x [N]\n";
-    let rows = |rows: &str| error(&format!("{header}0.1,1\n{rows}"));
-    assert_eq!(rows("0.2,abc\n"), "log.csv:3: column `f_x`: `abc` is not a number");
-    assert_eq!(rows("0.2,1.5x\n0.3,1\n"), "log.csv:3: column `f_x`: `1.5x` is not a number");
-    assert_eq!(rows("0.2,\n"), "log.csv:3: column `f_x`: the cell is empty; fill it in or delete the row");
-    assert_eq!(rows(",2"), "log.csv:3: column `t`: the cell is empty; fill it in or delete the row");
-    assert_eq!(rows("nan,2"), "log.csv:3: column `t`: `nan` is not a finite number; delete the row");
-    assert_eq!(rows("0.2,-1e999\n"), "log.csv:3: column `f_x`: `-1e999` is not a finite number; delete the row");
-    assert_eq!(rows("0.2\r,1\n"), "log.csv:3: column `t`: `0.2\r` is not a number");
-    assert_eq!(rows("0.2\n"), "log.csv:3: the row has 1 cell, the header has 2");
-    assert_eq!(rows("0.2,1,2\n"), "log.csv:3: the row has 3 cells, the header has 2");
-    assert_eq!(rows("0.2,1,\n"), "log.csv:3: the row has 3 cells, the header has 2");
-    assert_eq!(rows("\n0.2,1\n"), "log.csv:3: the line is blank; delete it");
-    assert_eq!(rows("0.2,1\n\n\n0.3,4\n"), "log.csv:4: the line is blank; delete it");
-    assert_eq!(
-        rows("0.2,\"1\"\n"),
-        "log.csv:3: column `f_x` is quoted; long tables are read without quotes: write plain \
-         numbers, or read the file as a small table"
-    );
-    assert_eq!(rows(&"9".repeat(100)), "log.csv:3: the line is longer than 64 bytes; is this a CSV file?");
-    let no_rows = "log.csv: the table has no rows; at least one observation is needed";
-    assert_eq!(error(header), no_rows);
-    assert_eq!(error(&format!("{header}\n\n")), no_rows);
-    assert_eq!(error("a,b,a [m]\n1,2,3\n"), "log.csv:1: column `a` appears twice; rename or delete one");
-    assert_eq!(error(""), "log.csv:1: there is no line end; the first line must name the columns");
-    assert_eq!(error("a,,b\n1,2,3\n"), "log.csv:1: a column has no name; the first line must name the columns");
-    assert_eq!(
-        error("\"a,b\",c\n1,2,3\n"),
-        "log.csv:1: a name holds a comma or a quote; the first line must name the columns"
-    );
-    let file = file(b"a,b\n1,2\n");
-    let path = file.path().display().to_string();
-    let csv = FastCsv::open(file.path()).unwrap();
-    assert_eq!(
-        csv.select(&["c"]).unwrap_err().to_string().replace(&path, "log.csv"),
-        "log.csv:1: there is no column `c`; the columns are a, b"
-    );
-    let missing = FastCsv::open("no/such/file.csv").unwrap_err().to_string();
-    assert!(missing.starts_with("cannot read no/such/file.csv: "), "{missing}");
+fn what_is_not_plain_numbers_is_left_and_what_is_no_line_is_refused() {
+    let rows = |rows: &str| read(&format!("t [s],f_x [N]\n0.1,1\n{rows}"), &[true; 2], 64);
+    for bad in ["0.2,abc\n", "0.2,\n", ",2", "nan,2", "0.2,-1e999\n", "0.2\r,1\n", "0.2\n", "0.2,1,2\n", "0.2,1,\n"] {
+        assert_eq!(rows(bad), Ok(None), "{bad}");
+    }
+    for bad in ["\n0.2,1\n", "0.2,1\n\n\n0.3,4\n", "0.2,\"1\"\n"] {
+        assert_eq!(rows(bad), Ok(None), "{bad}");
+    }
+    let long = rows(&"9".repeat(100)).unwrap_err().to_string();
+    assert!(long.ends_with(":3: the line is longer than 64 bytes; is this a CSV file?"), "{long}");
 }
