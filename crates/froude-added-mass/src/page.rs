@@ -45,6 +45,8 @@ pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> ResultTable {
         let [value, u, _] = expanded(&t, MOTIONS[j], "", of);
         columns.extend([value, u, t.text("", MOTIONS[j], cell)]);
     }
+    let units = |i: &usize| (0..6).map(|j| ["kg", "kg m", "kg m²"][*i / 3 + j / 3].to_owned()).collect();
+    columns.push(t.texts("units", "", units));
     t.build(columns)
 }
 

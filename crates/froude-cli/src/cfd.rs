@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use std::thread::available_parallelism;
 
 use froude::cfd::verb::{self, Engine, Job, Running, SlurmOptions};
-use froude::pipeline::default_out;
+use froude::pipeline::{default_out, read_campaign};
 use froude::records::results::can_be_written;
 use froude::report::write::write_folder;
 use froude::swing::swing;
@@ -20,6 +20,10 @@ use crate::print::{self, Form};
 use crate::signals::{self, STOPPED};
 
 pub fn job(job: CfdJob, form: Form) -> Result<(), Failure> {
+    // A mistake that only identify would meet is found before hours are computed.
+    if let CfdJob::Plan { of, .. } | CfdJob::Run { of, .. } | CfdJob::Swing { of, .. } = &job {
+        read_campaign(&of.campaign)?;
+    }
     let found = match job {
         CfdJob::Plan { of, jobs } => {
             let (bar, cancel) = (Spinner::new(), cancel()?);

@@ -12,7 +12,6 @@ use crate::failure::Failure;
 pub enum Kind {
     /// A campaign that drives a rig.
     Drive,
-    /// Any other campaign.
     Campaign,
     Body,
     Robot,
@@ -26,11 +25,9 @@ pub enum Kind {
     Runs,
     /// A folder that a verb wrote its results into.
     Results,
-    /// Any other folder.
     Folder,
 }
 
-/// What a verb takes.
 pub struct Takes {
     verb: &'static str,
     kinds: &'static [Kind],

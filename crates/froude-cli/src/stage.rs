@@ -75,7 +75,6 @@ impl Stage {
     }
 }
 
-/// Something for the terminal.
 enum Word {
     /// A run begins: its number, how many there are, its name.
     Run(usize, usize, String),

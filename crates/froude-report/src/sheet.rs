@@ -35,7 +35,8 @@ pub(crate) fn sheet(title: &str, contents: &Markup, main: &Markup) -> String {
 }
 
 pub(crate) fn table_markup(table: &ResultTable, tables: &mut Tables) -> Markup {
-    let Some(text) = laid_out(table) else { return Markup::default() };
+    // A head without rows would read as if none had been found.
+    let Some(text) = laid_out(table).filter(|text| !text.rows.is_empty()) else { return Markup::default() };
     let caption = tables.caption(&text.caption);
     let is_words =
         |column: usize| text.rows.iter().any(|row| row.get(column).is_some_and(|c| c.chars().count() > WORDS));
@@ -74,9 +75,9 @@ pub(crate) fn table_markup(table: &ResultTable, tables: &mut Tables) -> Markup {
     }
 }
 
-/// Whether a normalised difference is beyond 1, as it is written.
+/// Whether a normalised difference is beyond 1, as it is written; with a power of ten it is.
 fn is_beyond(cell: &str) -> bool {
-    cell.trim_start_matches('−').parse::<f64>().is_ok_and(|e_n| e_n > 1.0)
+    cell.contains('×') || cell.trim_start_matches('−').parse::<f64>().is_ok_and(|e_n| e_n > 1.0)
 }
 
 pub(crate) fn count(n: &mut usize) -> usize {

@@ -16,7 +16,7 @@ use froude_records::run::is_servo_log;
 use froude_rig::carriage::declared;
 
 use crate::Error;
-use crate::pipeline::Purpose;
+use crate::pipeline::job::Purpose;
 use crate::registry::METHODS;
 use froude_cfd::verb::Computed;
 

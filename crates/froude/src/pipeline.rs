@@ -1,6 +1,6 @@
 //! From a campaign, a bare table, runs or records to estimates side by side and a report.
 
-mod job;
+pub(crate) mod job;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -19,7 +19,7 @@ use froude_identify::prediction::{of_rows, same_rows};
 use froude_identify::reduce::reduce;
 use froude_identify::unexplained::unexplained;
 use froude_identify::{IdentifyError, asked, observations, origins};
-use froude_records::block::{Block, Section};
+use froude_records::block::{Block, Section, facts};
 use froude_records::campaign::{self, Campaign, Source};
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
@@ -115,15 +115,15 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Identified, Error>
         let validated = against(&campaign, &sources, &all)?;
         comparison.validation = validated.numbers;
         // It is of no source alone.
-        summaries.extend(validated.first.map(|section| Summary { sources: 0..0, section }));
-        blocks.extend(validated.others);
+        summaries.extend(validated.first.map(|section| Summary { sources: 0..0, section: placed(section, "") }));
+        blocks.extend(validated.others.into_iter().map(|section| placed(section, "")));
         exports.extend(validated.exports);
     }
     findings.extend(comparison.iter().flat_map(|c| c.findings.iter().cloned()));
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let (_, fitted) = all.remove(0);
     let file = EstimateFile { versions: results::versions(), comparison, findings, ..fitted };
-    let mut told = Outcome { blocks: told(&sources, &summaries, &file), ..Outcome::default() };
+    let mut told = Outcome { blocks: told(&sources, &summaries, &blocks, &file), ..Outcome::default() };
     let Some(out) = out.or(beside) else { return Ok(Identified { file, sources, told }) };
     if is_part {
         replaces_no_more(&out, &file, job.out.is_some())?;
@@ -144,8 +144,17 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Identified, Error>
     Ok(Identified { file, sources, told })
 }
 
-/// The coefficients of each source, or what its method states of all its results together; then records side by side.
-fn told(sources: &[Answer], summaries: &[Summary], file: &EstimateFile) -> Vec<Block> {
+/// A section of the report, which programs find in a list by its source and its title.
+fn placed(section: Section, source: &str) -> Section {
+    let f = facts("", "", &section.title);
+    let about =
+        f.build(vec![f.text("source", "", |_| source.to_owned()), f.text("title", "", |title| (*title).clone())]);
+    Section { key: "sections[]".to_owned(), blocks: [vec![about.into()], section.blocks].concat(), ..section }
+}
+
+/// The coefficients of each source, or what its method states of all its results together; then records side by side. The rest of the report is
+/// for its page and for programs.
+fn told(sources: &[Answer], summaries: &[Summary], details: &[Section], file: &EstimateFile) -> Vec<Block> {
     let of_none = summaries.iter().filter(|summary| summary.sources.is_empty());
     let mut out: Vec<Block> = of_none.map(|summary| summary.section.clone().into()).collect();
     for (i, answer) in sources.iter().enumerate() {
@@ -165,6 +174,7 @@ fn told(sources: &[Answer], summaries: &[Summary], file: &EstimateFile) -> Vec<B
             out.extend(side_by_side::blocks(comparison));
         }
     }
+    out.extend(details.iter().map(|section| Section { is_detail: true, ..section.clone() }.into()));
     out
 }
 
@@ -263,7 +273,7 @@ impl Gathered {
         }
         let titled = |section: Section| {
             let title = if is_one { section.title.clone() } else { format!("{}: {}", source.name, section.title) };
-            Section { title, ..section }
+            Section { title, ..placed(section, &source.name) }
         };
         let first = self.sources.len();
         self.sources.append(&mut results);
@@ -309,7 +319,7 @@ impl Gathered {
             let all: Vec<&Estimate> = self.sources.iter().flat_map(Answer::estimates).collect();
             let (findings, section) = held_against(source.input.path(), source.sidecar.as_deref(), &source.name, &all)?;
             self.findings.extend(findings.into_iter().map(|f| f.of_source(&source.name)));
-            self.blocks.push(section);
+            self.blocks.push(placed(section, &source.name));
             return Ok(());
         }
         let observations = reduce(campaign, source)?;
@@ -328,7 +338,8 @@ impl Gathered {
         for predicted in &found.estimates {
             self.findings.push(found.finding(predicted).of_source(&source.name));
             let section = found.section(predicted);
-            self.blocks.push(Section { title: format!("{}: {}", source.name, section.title), ..section });
+            let title = format!("{}: {}", source.name, section.title);
+            self.blocks.push(Section { title, ..placed(section, &source.name) });
         }
         Ok(())
     }

@@ -65,7 +65,7 @@ impl Suggested {
             }
             _ => "put these blocks under those of the source, and run it again; cases that are there are kept",
         };
-        let caption = "settings with the largest error of a cubic through the two neighbours on each side, as part of the largest load of that body";
+        let caption = "settings with the largest error of a cubic through the two neighbours on each side, as part of the largest value of that load on that body";
         let t = TableBuilder::new("misses", caption, &self.misses);
         let mut misses = t.build(vec![
             t.text("configuration", "body", |miss| miss.configuration.clone()),

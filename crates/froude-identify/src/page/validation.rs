@@ -92,12 +92,18 @@ fn load_table(loads: &[&Validation]) -> Option<Block> {
         t.number("error", "E", |v| v.error).significant(3),
         t.number("u_numerical", "u_num", |v| v.u_numerical).significant(2),
         t.number("u_input", "u_input", |v| v.u_input).significant(2),
-        t.number("u_data", "u_D", |v| v.u_data).significant(2),
+        t.number("u_data", "", |v| v.u_data),
+        t.text("", "u_D", |v| data_uncertainty(v)),
         t.number("u_validation", "u_val", |v| v.u_validation).significant(2),
         t.count("beyond", "beyond 2 u_val", |v| v.beyond),
         t.text("unit", "unit", |v| v.unit.clone()),
     ];
     (!loads.is_empty()).then(|| t.build(columns).into())
+}
+
+/// Where it is not stated it is in no u_val either.
+fn data_uncertainty(v: &Validation) -> String {
+    v.u_data.map_or_else(|| "not stated".to_owned(), |u| significant(u, 2))
 }
 
 fn coefficient_table(coefficients: &[&Validation]) -> Option<Block> {
@@ -113,7 +119,8 @@ fn coefficient_table(coefficients: &[&Validation]) -> Option<Block> {
         t.number("u_numerical", "u_num", |v| v.u_numerical).significant(2),
         t.number("u_input", "u_input", |v| v.u_input).significant(2),
         t.number("u_fit", "u_fit", |v| v.u_fit).significant(2),
-        t.number("u_data", "u_D", |v| v.u_data).significant(2),
+        t.number("u_data", "", |v| v.u_data),
+        t.text("", "u_D", |v| data_uncertainty(v)),
         t.number("u_validation", "u_val", |v| v.u_validation).significant(2),
         t.text("verdict", "E is", verdict),
         t.text("unit", "unit", |v| v.unit.clone()),

@@ -3,7 +3,7 @@
 use crate::carriage::plan::PlannedRun;
 use froude_records::run::EventKind;
 
-use crate::campaign::runner::RunnerError;
+use crate::campaign::runner::error::RunnerError;
 use crate::drive::{HostClock, Sample};
 
 /// What the campaign orders.

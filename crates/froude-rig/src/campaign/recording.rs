@@ -10,7 +10,7 @@ use froude_records::run::{
 };
 use indexmap::IndexMap;
 
-use crate::campaign::runner::Setting;
+use crate::campaign::runner::setting::Setting;
 use crate::drive::{HostClock, Rig, Sample};
 
 /// What a rig is, for the record.

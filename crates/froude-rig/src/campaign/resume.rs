@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use froude_records::read::{OWN_BYTES, if_there};
 use froude_records::run::{CampaignMark, Pair, RunStatus, check_pair, read_run_meta};
 
-use super::runner::RunnerError;
+use super::runner::error::RunnerError;
 
 /// What a folder holds of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -11,7 +11,8 @@ use froude_control::request::Request;
 use froude_records::run::EventKind;
 
 use super::hand_over::{Engine, Next, Pace};
-use super::runner::{RunnerError, Session};
+use super::runner::error::RunnerError;
+use super::runner::session::Session;
 use super::stop::{Asked, StopSwitch};
 use crate::campaign::order::{Ended, Entry, Order};
 use crate::campaign::runner::error::PATIENCE_S;

@@ -10,7 +10,7 @@
 //! other (a `Session` each).
 
 pub(crate) mod error;
-mod session;
+pub(crate) mod session;
 pub(crate) mod setting;
 
 use std::path::{Path, PathBuf};
@@ -32,7 +32,6 @@ use crate::drive::{Rig, Sample};
 
 pub use crate::campaign::runner::setting::Setting;
 pub use error::RunnerError;
-pub(super) use session::Session;
 
 /// Who confirms the operator's steps.
 pub trait Operator {

@@ -111,7 +111,7 @@ impl Prepared {
             t.number("coast_m", "coast [m]", |row| row.forecast.coast_m).places(3),
             t.number("margin_m", "margin [m]", |row| row.forecast.margin_m).places(3),
             t.number("drag_n", "drag [N]", |row| row.forecast.drag_n).places(3),
-            t.number("differences_to_see_it", "repeats to see it", pairs).places(0),
+            t.number("differences_to_see_it", "wet − dry to see it", pairs).places(0),
             t.count("alike", "runs", |row| row.alike),
         ]);
         table.shown_rows = Some(first);
@@ -217,7 +217,7 @@ fn few_pairs(prepared: &Prepared, detectable_n: f64) -> Option<String> {
     })
 }
 
-/// Repeats until a drag exceeds what one pair shows.
+/// Wet-minus-dry differences until a drag exceeds what one of them shows.
 fn pairs_to_see(detectable_n: f64, drag_n: f64) -> f64 {
     (detectable_n / drag_n).powi(2).ceil().max(1.0)
 }
