@@ -145,6 +145,30 @@ fn added_mass_of_a_shape_and_of_a_mesh() {
     holds(&identify(&job, &|_| {}).unwrap().outcome());
 }
 
+/// Tables of two sources have the same keys; each stands with its source.
+#[test]
+fn two_sources_of_a_method_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let mut text = "schema = 1\nname = \"two\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n".to_owned();
+    for (name, axis) in [("slender", "60 mm"), ("stout", "90 mm")] {
+        let body = format!(
+            "schema = 1\nname = \"{name}\"\n[body]\nshape = \"ellipsoid\"\nsemi_axes = [\"100 mm\", \"{axis}\", \"{axis}\"]\n"
+        );
+        std::fs::write(path(&format!("{name}.toml")), body).unwrap();
+        text += &format!("[[source]]\nname = \"{name}\"\nkind = \"potential\"\nmesh = \"{name}.toml\"\n");
+    }
+    std::fs::write(path("two.toml"), text).unwrap();
+    let found = identify(&pipeline::Job::new(path("two.toml")), &|_| {}).unwrap().outcome();
+    holds(&found);
+    let result = std::fs::read_to_string(found.path("result").unwrap()).unwrap();
+    let result: serde_json::Value = serde_json::from_str(&result).unwrap();
+    let matrices: Vec<_> = result["sections"].as_array().unwrap().iter().filter(|of| !of["matrix"].is_null()).collect();
+    assert_eq!(matrices.iter().map(|of| &of["source"]).collect::<Vec<_>>(), ["slender", "stout"]);
+    let [slender, stout] = [0, 1].map(|i: usize| matrices[i]["matrix"][1]["sway"].as_f64().unwrap());
+    assert!(stout > 1.5 * slender, "{slender} {stout}");
+}
+
 #[test]
 fn the_demo() {
     let folder = tempfile::tempdir().unwrap();
