@@ -23,7 +23,6 @@
 //! | [`added_mass`]    | what the ramps say                                              | –                         |
 //! | [`online`]        | D_d while the campaign runs, and when to stop                   | Bonferroni                |
 //! | [`report`]        | all of it side by side                                          | –                         |
-//! | [`simulate`]      | the runs that a rig would log, observation by observation       | –                         |
 //!
 //! MCD is "A low cost, sensor-less drag force estimation methodology via measuring of motor currents". It prints no
 //! uncertainty, leaves out the gear's efficiency and does not ask whether the dry carriage rolls under the wet load.
@@ -48,7 +47,6 @@ pub(crate) mod record;
 pub mod report;
 pub mod run;
 pub mod setup;
-pub mod simulate;
 pub mod steady;
 
 pub use crate::drag::setup::DragSetup;

@@ -4,11 +4,21 @@
 //! model, rigid and as two masses with a chain between them. [`tuning`] measures the frequency response of an axis and chooses its gains.
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+// The records that tests identify name this crate as those outside do.
+#[cfg(test)]
+extern crate self as froude_carriage;
+
 pub mod axis;
 pub mod drag;
+#[cfg(test)]
+#[path = "../tests/flexible_axis/mod.rs"]
+mod flexible_axis;
 pub mod live;
 pub mod reduction;
 pub mod runs;
+#[cfg(test)]
+#[path = "../tests/scenario/mod.rs"]
+mod scenario;
 pub mod servo;
 pub mod source;
 pub mod tuning;

@@ -5,7 +5,6 @@
 //!
 //! | model                 | module           | equation                                                             |
 //! |-----------------------|------------------|----------------------------------------------------------------------|
-//! | rigid, as printed     | [`printed`]      | MCD eq. 5: OLS on Gaussian-smoothed records                          |
 //! | rigid, the chain      | [`chain`], [`friction`] | `M q̈ + F_v q̇ + F_c sgn q̇ + offset = g u`, asymmetric, Stribeck, over position, over load |
 //! | rigid, closed loop    | [`instrument`], [`output_error`] | instruments or residuals from the model in the known loop |
 //! | two masses and a chain | [`two_mass`]    | MCD eq. 2a, 2b from motor-side signals                                |
@@ -34,14 +33,12 @@ pub mod log;
 pub mod long;
 pub mod motor;
 pub mod output_error;
-pub mod printed;
 pub mod record;
 mod regression;
 pub mod report;
 pub(crate) mod rows;
 pub mod scale;
 pub mod simulate;
-pub mod synthetic;
 pub mod two_mass;
 
 pub use crate::servo::two_mass::{FlexibleOptions, FlexibleReport, Gear};

@@ -1,14 +1,17 @@
 //! Drag from simulated campaigns: what the report says, and when it refuses.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+mod scenario;
+
 use froude_carriage::drag::calibration::ForcePerVolt;
 use froude_carriage::drag::coefficient::Coefficient;
 use froude_carriage::drag::mbdp::Flexible;
 use froude_carriage::drag::point::Method;
 use froude_carriage::drag::setup::{Ballast, Efficiency};
-use froude_carriage::drag::simulate::{Logged, Scenario};
 use froude_carriage::drag::{BodyState, DragError, DragReport, DragRun, DragSetup, drag_report};
 use froude_fit::budget::Uncertain;
+
+use crate::scenario::{Logged, Scenario};
 
 /// A short campaign: three pairs out and back, 100 samples a second.
 fn scenario() -> Scenario {

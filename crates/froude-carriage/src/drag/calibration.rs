@@ -411,7 +411,7 @@ pub fn jog(position_m: &[f64], command_v: &[f64]) -> Jog {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drag::simulate::{Logged, Scenario};
+    use crate::scenario::{Logged, Scenario};
     use froude_records::estimate::EstimateFile;
 
     fn quiet() -> Scenario {

@@ -165,7 +165,7 @@ pub fn cells(run: &DragRun<'_>, settings: SteadySettings) -> Vec<Cell> {
 mod tests {
     use super::*;
     use crate::drag::run::BodyState;
-    use crate::drag::simulate::{Logged, Scenario};
+    use crate::scenario::{Logged, Scenario};
 
     /// Noise small: what is left is a bump of 0.27 m width seen through cells of 0.1 m, 0.5 N·(0.1/0.27)²/24 = 3 mN, and
     /// the broken line, twice that.

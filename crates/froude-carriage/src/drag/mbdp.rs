@@ -100,26 +100,6 @@ fn of_force(wet: &DragRun<'_>, w: Window, force_n: &[f64]) -> Point {
     }
 }
 
-/// Eq. 9 sample by sample, ramps included: resistance in newtons.
-///
-/// `moving_mass_kg` is what the chain's force accelerates: η J_eff (n/R)², since `force_per_volt_n` has η in it. The span of the derivative smooths the first and last half of itself.
-#[must_use]
-pub fn rigid_force_n(
-    run: &DragRun<'_>,
-    friction: &Friction,
-    force_per_volt_n: f64,
-    moving_mass_kg: f64,
-    span_s: f64,
-) -> Vec<f64> {
-    let motor = Derivatives::of(run.position_m, run.step_s(), span_s);
-    (0..run.position_m.len())
-        .map(|i| {
-            let friction_v = friction.command_v(run.position_m[i], run.reference_speed_m_s[i]);
-            force_per_volt_n * (run.command_v[i] - friction_v) - moving_mass_kg * motor.acceleration[i]
-        })
-        .collect()
-}
-
 /// Eq. 2 solved for the resistance, sample by sample, from motor-side signals alone.
 ///
 /// `efficiency` is what `force_per_volt_n` has of the ideal force per volt: the motor's own inertia stands before the gear, so that
@@ -288,6 +268,25 @@ mod tests {
             }
         }
         (columns, truth)
+    }
+
+    /// Eq. 9 sample by sample, ramps included: resistance in newtons.
+    ///
+    /// `moving_mass_kg` is what the chain's force accelerates: η J_eff (n/R)², since `force_per_volt_n` has η in it. The span of the derivative smooths the first and last half of itself.
+    fn rigid_force_n(
+        run: &DragRun<'_>,
+        friction: &Friction,
+        force_per_volt_n: f64,
+        moving_mass_kg: f64,
+        span_s: f64,
+    ) -> Vec<f64> {
+        let motor = Derivatives::of(run.position_m, run.step_s(), span_s);
+        (0..run.position_m.len())
+            .map(|i| {
+                let friction_v = friction.command_v(run.position_m[i], run.reference_speed_m_s[i]);
+                force_per_volt_n * (run.command_v[i] - friction_v) - moving_mass_kg * motor.acceleration[i]
+            })
+            .collect()
     }
 
     /// Both models know masses and friction; only one knows the chain. Compared from 0.1 s after the start (before, the

@@ -104,7 +104,7 @@ pub fn difference(wet: &DragRun<'_>, in_wet: Window, dry: &DragRun<'_>, in_dry: 
 mod tests {
     use super::*;
     use crate::drag::run::BodyState;
-    use crate::drag::simulate::{Logged, Scenario};
+    use crate::scenario::{Logged, Scenario};
 
     /// A bump of the whole friction, and a dry run that started 0.2 m earlier: paired by time, half the bump would stay.
     ///

@@ -301,7 +301,7 @@ pub(crate) fn negative(coefficients: &[ServoCoefficient]) -> impl Iterator<Item 
 mod tests {
     use super::*;
     use crate::drag::RunKind;
-    use crate::drag::simulate::Scenario;
+    use crate::scenario::Scenario;
     use crate::servo::Friction;
 
     /// Friction 2 % and force per volt 0.5 % from run to run, 0.05 N rms that wanders with 0.3 s within one.

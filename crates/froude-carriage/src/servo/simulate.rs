@@ -6,7 +6,6 @@
 
 use crate::servo::error::ServoError;
 use crate::servo::friction::signum;
-use crate::servo::report::ServoReport;
 
 /// Position beyond which a simulation has run away, m.
 const RUN_AWAY_M: f64 = 1e3;
@@ -27,13 +26,6 @@ pub struct Rigid {
 }
 
 impl Rigid {
-    /// The axis of a report on symmetric or asymmetric friction; `None` for friction over position, load or Stribeck's.
-    #[must_use]
-    pub fn from_report(report: &ServoReport, force_per_volt_n_v: f64) -> Option<Self> {
-        let names: Vec<&str> = report.coefficients.iter().map(|c| c.name.as_str()).collect();
-        Self::from_values(&names, &report.values(), force_per_volt_n_v)
-    }
-
     /// From named values.
     pub(crate) fn from_values(names: &[&str], values: &[f64], force_per_volt_n_v: f64) -> Option<Self> {
         let known = ["M", "F_v", "F_c", "F_v+", "F_v-", "F_c+", "F_c-", "offset"];

@@ -442,8 +442,8 @@ mod tests {
     use froude_fit::budget::Uncertain;
 
     use super::*;
+    use crate::flexible_axis::{Noise, carriage, record};
     use crate::servo::motor::MotorSide;
-    use crate::servo::synthetic::{Noise, carriage, record};
 
     /// Two seeds; the validation has a hundred. Four standard deviations with some ten degrees of freedom: one in 400.
     #[test]

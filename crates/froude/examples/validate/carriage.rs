@@ -11,7 +11,6 @@ use froude::methods::carriage::drag::differences::of_differences;
 use froude::methods::carriage::drag::online::OnLine;
 use froude::methods::carriage::drag::point::Method;
 use froude::methods::carriage::drag::setup::Ballast;
-use froude::methods::carriage::drag::simulate::Scenario;
 use froude::methods::carriage::drag::steady::SteadySettings;
 use froude::methods::carriage::drag::{BodyState, DragReport, DragRun, DragSetup, drag_report, mcd};
 use froude::records::estimate::{DataFile, EstimateFile, keyed};
@@ -20,6 +19,7 @@ use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 use crate::coverage::normal;
+use crate::scenario::Scenario;
 
 const SECTION: &str = "Drag from a towing carriage: simulated campaigns of the pinned scenario";
 const PAPER: &str = "Drag from a towing carriage: what the paper prints (MCD, Table IV)";

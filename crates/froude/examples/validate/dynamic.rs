@@ -13,7 +13,7 @@ use froude::methods::carriage::drag::calibration::ForcePerVolt;
 use froude::methods::carriage::drag::coefficient::Coefficient;
 use froude::methods::carriage::drag::point::Method;
 use froude::methods::carriage::drag::run::RunKind;
-use froude::methods::carriage::drag::simulate::Logged;
+
 use froude::methods::carriage::drag::{BodyState, DragReport, DragRun, DragSetup, drag_report};
 use froude::records::campaign::read_campaign;
 use froude::rig::campaign::setup;
@@ -28,6 +28,7 @@ use rayon::prelude::*;
 use crate::carriage::{CALIBRATED_TO, Errors, mcd_holds};
 use crate::claims::{Claims, Verdict};
 use crate::coverage::normal;
+use crate::scenario::Logged;
 
 const SECTION: &str = "Drag from a towing carriage: the pinned scenario on the dynamic twin";
 

@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 
 use froude::fit::budget::Uncertain;
 use froude::methods::carriage::servo::flexible::TwoMass;
-use froude::methods::carriage::servo::synthetic::{Noise, carriage, record};
 use froude::methods::carriage::servo::{
     FlexibleOptions, FlexibleReport, Gear, MotorSide, ServoError, identify_flexible,
 };
@@ -14,6 +13,7 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
+use crate::flexible_axis::{Noise, carriage, record};
 
 const SECTION: &str = "Flexible axis (two masses and a chain) from command and motor encoder, synthetic";
 

@@ -29,6 +29,8 @@ mod emps;
 mod excited;
 mod family;
 mod flexible;
+#[path = "../../../froude-carriage/tests/flexible_axis/mod.rs"]
+mod flexible_axis;
 #[path = "../../../froude-cfd/examples/known_flows/flows.rs"]
 mod flows;
 mod hour;
@@ -43,6 +45,8 @@ mod power;
 mod predicted;
 mod rm2;
 mod rotation;
+#[path = "../../../froude-carriage/tests/scenario/mod.rs"]
+mod scenario;
 mod snake;
 mod steady;
 mod sweeps;

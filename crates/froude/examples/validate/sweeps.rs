@@ -1,12 +1,12 @@
 //! Friction sweeps of a campaign: what a rigid axis learns from runs that differ from each other.
 
 use froude::fit::coverage::Count;
-use froude::methods::carriage::drag::simulate::Scenario;
 use froude::methods::carriage::servo::report::of_runs;
 use froude::methods::carriage::servo::{Chain, Friction, ServoError, ServoLog, ServoReport};
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
+use crate::scenario::Scenario;
 
 const SECTION: &str = "Friction sweeps: 24 runs of one axis, friction 2 % and force per volt 0.5 % from run to run";
 

@@ -3,16 +3,17 @@
 //! The axis is stepped ten times finer than the fit does, and only what a rig records comes out: the command, and
 //! the motor's position in whole counts of its encoder.
 
+// Each user takes a part of it.
+#![allow(dead_code)]
+
 use std::f64::consts::PI;
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
-use crate::servo::error::ServoError;
-use crate::servo::flexible::{Stepper, TwoMass};
-use crate::servo::log::ServoLog;
-use crate::servo::motor::MotorSide;
+use froude_carriage::servo::flexible::{Stepper, TwoMass};
+use froude_carriage::servo::{MotorSide, ServoError, ServoLog};
 
 /// Step of the simulation, s.
 const STEP_S: f64 = 5e-5;

@@ -7,11 +7,14 @@
 //! **Setting.** Trapezoids of one acceleration, still before and after; pairs of dry and wet runs in turn (dry, wet, wet,
 //! dry). The friction's Coulomb part carries the bump and the run-to-run change unless stated otherwise.
 
+// Each user takes a part of it.
+#![allow(dead_code)]
+
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
-use super::run::{BodyState, DragRun, RunKind};
+use froude_carriage::drag::{BodyState, DragRun, RunKind};
 
 /// The truth about a rig, its noise and its campaign.
 #[derive(Debug, Clone, PartialEq)]
