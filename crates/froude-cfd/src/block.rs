@@ -8,7 +8,7 @@ use crate::poly_mesh::{PatchKind, PolyMesh, Side};
 
 /// What a side of the block is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum End<'a> {
+pub enum End<'a> {
     /// Faces of the patch of this number.
     Patch(usize),
     /// Faces of one patch within these cells along i, and of another outside of them.
@@ -30,7 +30,7 @@ impl End<'_> {
 }
 
 /// A block.
-pub(crate) struct Block<'a> {
+pub struct Block<'a> {
     /// Cells along i, j, k.
     pub cells: [usize; 3],
     /// First and last side along i, j, k.
@@ -41,11 +41,13 @@ pub(crate) struct Block<'a> {
 
 impl Block<'_> {
     /// Number of a cell; i runs slowest.
+    #[must_use]
     pub fn cell(&self, [i, j, k]: [usize; 3]) -> u32 {
         ((i * self.cells[1] + j) * self.cells[2] + k) as u32
     }
 
     /// i, j, k of a cell.
+    #[must_use]
     pub fn place(&self, cell: usize) -> [usize; 3] {
         let [_, nj, nk] = self.cells;
         [cell / (nj * nk), cell / nk % nj, cell % nk]

@@ -6,12 +6,12 @@
 //! | module | content |
 //! | --- | --- |
 //! | [`again`] | settings that are computed again: from the inflow, on other grids, in other domains |
+//! | [`block`] | blocks of cells whose sides may be bent onto each other |
 //! | [`body`] | bodies by their dimensions: shape, lengths, grid |
 //! | [`case`] | all that a case is: its file, and the hash that says which cases are the same |
 //! | [`change`] | a plan over what a campaign's folder holds |
 //! | [`collect`] | the table of results |
 //! | [`cost`] | what cases cost, measured and assumed |
-//! | [`cylinder`] | a circular cylinder in two dimensions, for validation |
 //! | [`dictionary`] | dictionaries of OpenFOAM, written |
 //! | [`engine`] | what works through a campaign |
 //! | [`evidence`] | files that a result stands on, by their checksums |
@@ -36,7 +36,6 @@
 //! | [`oscillation`] | a body that swings, at rest or in a stream: added mass and damping of each period |
 //! | [`outcome`] | what a case came to: its forces, how far they are known, and why it ended |
 //! | [`over_angles`] | a number a load, known at some settings and wanted at all |
-//! | [`plate`] | a flat plate in two dimensions, for validation |
 //! | [`poly_mesh`] | a volume mesh as OpenFOAM has it |
 //! | [`poly_mesh_files`] | a mesh as the files of OpenFOAM, in a folder that its content names |
 //! | [`process`] | processes by more than their number |
@@ -64,13 +63,12 @@
 
 pub mod again;
 mod attempt;
-mod block;
+pub mod block;
 pub mod body;
 pub mod case;
 pub mod change;
 pub mod collect;
 pub mod cost;
-pub mod cylinder;
 pub mod dictionary;
 pub mod engine;
 pub mod evidence;
@@ -100,7 +98,6 @@ pub mod orphans;
 pub mod oscillation;
 pub mod outcome;
 pub mod over_angles;
-pub mod plate;
 pub mod poly_mesh;
 pub mod poly_mesh_files;
 mod poly_mesh_read;

@@ -85,7 +85,11 @@ const MOST_CELLS: usize = 50_000_000;
 const MOST_ONE_WAY: usize = 10_000;
 
 /// Checks how many cells there are each way: what they are called, how many, how many it takes.
-pub(crate) fn check_counts(counts: &[(&'static str, usize, usize)]) -> Result<(), MeshError> {
+///
+/// # Errors
+///
+/// [`MeshError::Number`].
+pub fn check_counts(counts: &[(&'static str, usize, usize)]) -> Result<(), MeshError> {
     for &(quantity, found, least) in counts {
         if !(least..=MOST_ONE_WAY).contains(&found) {
             let expected = format!("from {least} to {MOST_ONE_WAY}");
@@ -101,7 +105,11 @@ pub(crate) fn check_counts(counts: &[(&'static str, usize, usize)]) -> Result<()
 }
 
 /// Checks that a length is above 0 and finite.
-pub(crate) fn check_length(quantity: &'static str, found: f64) -> Result<(), MeshError> {
+///
+/// # Errors
+///
+/// [`MeshError::Number`].
+pub fn check_length(quantity: &'static str, found: f64) -> Result<(), MeshError> {
     if found > 0.0 && found.is_finite() {
         return Ok(());
     }

@@ -80,7 +80,11 @@ impl Quality {
 
 impl Quality {
     /// Refuses what a solver would stumble over, at the place that `place` says of a cell.
-    pub(crate) fn judge(&self, place: impl Fn(usize) -> String) -> Result<(), MeshError> {
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError`] beyond the limits of `checkMesh`.
+    pub fn judge(&self, place: impl Fn(usize) -> String) -> Result<(), MeshError> {
         if self.least_pyramid_m3.value <= 0.0 {
             return Err(MeshError::Crossing { place: place(self.least_pyramid_m3.cell) });
         }

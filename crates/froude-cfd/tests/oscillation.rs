@@ -2,13 +2,17 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "../examples/known_flows/cylinder_mesh.rs"]
+mod cylinder_mesh;
+
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use std::sync::atomic::AtomicBool;
 
 use froude_cfd::case::{Case, Flow, Model, Reference, Stop, Water};
-use froude_cfd::cylinder::Cylinder;
 use froude_cfd::openfoam::OpenFoam;
 use froude_cfd::oscillation::{Swing, swing};
+
+use crate::cylinder_mesh::Cylinder;
 
 /// Wang (1968), On high-frequency oscillatory viscous flows, J. Fluid Mech. 32(1), by inner and outer expansions for small KC and large β: C_a, and b/(ρωπD²/4).
 fn wang(beta: f64) -> [f64; 2] {

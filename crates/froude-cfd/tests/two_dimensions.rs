@@ -3,12 +3,17 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
+#[path = "../examples/known_flows/cylinder_mesh.rs"]
+mod cylinder_mesh;
+#[path = "../examples/known_flows/plate_mesh.rs"]
+mod plate_mesh;
 
 use std::f64::consts::PI;
 
 use common::assert_openfoam_agrees;
-use froude_cfd::cylinder::Cylinder;
-use froude_cfd::plate::Plate;
+
+use crate::cylinder_mesh::Cylinder;
+use crate::plate_mesh::Plate;
 
 const CYLINDER: Cylinder =
     Cylinder { diameter_m: 1.0, span_m: 1.0, around: 64, layers: 40, first_layer_m: 0.02, outer_radius_m: 30.0 };

@@ -6,16 +6,22 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use froude_cfd::case::{Case, Flow, Model, Reference, Stop, Water};
-use froude_cfd::cylinder::Cylinder;
 use froude_cfd::grid_error::OnGrid;
 use froude_cfd::o_grid::OGrid;
 use froude_cfd::openfoam::OpenFoam;
 use froude_cfd::outcome::Outcome;
-use froude_cfd::plate::Plate;
 use froude_cfd::poly_mesh::PolyMesh;
 use froude_cfd::solve::{How, solve};
 use froude_cfd::transient::{Times, solve_in_time};
 use froude_mesh::sections::SectionBody;
+
+#[path = "cylinder_mesh.rs"]
+mod cylinder_mesh;
+#[path = "plate_mesh.rs"]
+mod plate_mesh;
+
+use cylinder_mesh::Cylinder;
+use plate_mesh::Plate;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 

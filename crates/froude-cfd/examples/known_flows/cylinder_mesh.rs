@@ -2,11 +2,11 @@
 
 use core::f64::consts::TAU;
 
-use crate::block::{Block, End};
-use crate::layers::Layers;
-use crate::mesh_error::{MeshError, check_counts, check_length};
-use crate::poly_mesh::{PatchKind, PolyMesh};
-use crate::quality::Quality;
+use froude_cfd::block::{Block, End};
+use froude_cfd::layers::Layers;
+use froude_cfd::mesh_error::{MeshError, check_counts, check_length};
+use froude_cfd::poly_mesh::{PatchKind, PolyMesh};
+use froude_cfd::quality::Quality;
 
 /// A circular cylinder along z, its axis at the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]

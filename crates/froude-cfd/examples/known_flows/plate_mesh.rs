@@ -4,11 +4,11 @@
 
 use core::f64::consts::PI;
 
-use crate::block::{Block, End};
-use crate::layers::Layers;
-use crate::mesh_error::{MeshError, check_counts, check_length};
-use crate::poly_mesh::{PatchKind, PolyMesh};
-use crate::quality::Quality;
+use froude_cfd::block::{Block, End};
+use froude_cfd::layers::Layers;
+use froude_cfd::mesh_error::{MeshError, check_counts, check_length};
+use froude_cfd::poly_mesh::{PatchKind, PolyMesh};
+use froude_cfd::quality::Quality;
 
 /// A plate along x in the plane y = 0, its middle at the origin; the water at y > 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
