@@ -136,6 +136,22 @@ impl<'a> Attempt<'a> {
         Ok(end)
     }
 
+    /// Runs a solver in time to the end, and brings the ranks' fields together: what the solver said.
+    pub fn run_until(&self, time_s: f64) -> Result<SolverLog, SolveError> {
+        let end = self.run([0.0, time_s])?;
+        let log = self.log()?;
+        if end != End::Whole {
+            return Err(self.failed(end, log.fatal.unwrap_or_else(|| "nothing".to_owned())));
+        }
+        self.end()?;
+        Ok(log)
+    }
+
+    /// That the solver did not do what it was to do.
+    pub fn failed(&self, end: End, said: String) -> SolveError {
+        SolveError::Part { program: self.pace.program(), end, log: self.folder.join(SOLVER_LOG), said }
+    }
+
     /// What the solver said so far.
     pub fn log(&self) -> Result<SolverLog, SolveError> {
         let log = self.folder.join(SOLVER_LOG);

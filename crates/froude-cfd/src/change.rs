@@ -5,9 +5,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use froude_records::write::write_atomically;
-
 use crate::case::{CASE_FILE, Case};
+use crate::input;
 use crate::lock::Lock;
 use crate::store::{CAMPAIGN_FILE, CASES, Index, Planned, Store, is_name};
 use crate::store_error::StoreError;
@@ -64,20 +63,17 @@ pub fn plan(root: &Path, cases: &[Case], inputs_sha256: &str) -> Result<(Store, 
             change.back.push(case.id.clone());
         } else {
             std::fs::create_dir(&path).map_err(|e| StoreError::file(&path, e.to_string()))?;
-            write_case(&path, case)?;
+            input::write_json(&path.join(CASE_FILE), case)?;
             change.new.push(case.id.clone());
             continue;
         }
         // Where it starts from is not among its inputs.
         if Case::read(&path).ok().as_ref() != Some(case) {
-            write_case(&path, case)?;
+            input::write_json(&path.join(CASE_FILE), case)?;
         }
     }
     let cases = cases.iter().map(|c| Planned { id: c.id.clone(), hash: c.hash() }).collect();
-    let path = root.join(CAMPAIGN_FILE);
-    let text = serde_json::to_string_pretty(&Index { inputs_sha256: Some(inputs_sha256.to_owned()), cases })
-        .map_err(|e| StoreError::file(&path, e.to_string()))?;
-    write_atomically(&path, (text + "\n").as_bytes())?;
+    input::write_json(&root.join(CAMPAIGN_FILE), &Index { inputs_sha256: Some(inputs_sha256.to_owned()), cases })?;
     Ok((Store::open(root)?, change))
 }
 
@@ -123,12 +119,6 @@ fn check(cases: &[Case]) -> Result<(), StoreError> {
         }
     }
     Ok(())
-}
-
-fn write_case(folder: &Path, case: &Case) -> Result<(), StoreError> {
-    let path = folder.join(CASE_FILE);
-    let text = serde_json::to_string_pretty(case).map_err(|e| StoreError::file(&path, e.to_string()))?;
-    Ok(write_atomically(&path, (text + "\n").as_bytes())?)
 }
 
 /// Whether a folder holds a case with the inputs of this one.

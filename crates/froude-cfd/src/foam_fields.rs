@@ -4,7 +4,8 @@
 
 use crate::case::{Case, Model};
 use crate::dictionary::{Dictionary, vector};
-use crate::foam_mesh::{FoamMesh, FoamPatch};
+use crate::foam_mesh::FoamMesh;
+use crate::poly_mesh::Patch;
 
 /// A field: its name, and the file's content without the header.
 pub struct Field {
@@ -106,13 +107,13 @@ impl Field {
     /// The entry `boundaryField`.
     #[must_use]
     pub fn boundary(&self, mesh: &FoamMesh) -> String {
-        let condition = |patch: &FoamPatch| {
+        let condition = |patch: &Patch| {
             if patch.is_wall() {
                 self.wall.clone()
             } else if patch.is_open() {
                 self.open.clone()
             } else {
-                Dictionary::default().with("type", patch.kind.as_str())
+                Dictionary::default().with("type", patch.kind.word())
             }
         };
         let patches = mesh.patches.iter().fold(Dictionary::default(), |all, p| all.with(&p.name, condition(p)));

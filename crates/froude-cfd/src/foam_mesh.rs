@@ -4,41 +4,15 @@ use std::io::Read as _;
 use std::path::Path;
 
 use crate::input;
+use crate::poly_mesh::{Patch, PatchKind};
 
 /// A mesh's folder as a case sees it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FoamMesh {
-    /// Name, type as OpenFOAM calls it, and what that is.
-    pub patches: Vec<FoamPatch>,
+    /// The boundary.
+    pub patches: Vec<Patch>,
     /// Cells.
     pub cells: usize,
-}
-
-/// A patch of it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FoamPatch {
-    /// Its name.
-    pub name: String,
-    /// `wall`, `patch`, `symmetryPlane`, `symmetry`, `empty`.
-    pub kind: String,
-    /// First of its faces.
-    pub start: usize,
-    /// How many there are.
-    pub count: usize,
-}
-
-impl FoamPatch {
-    /// Whether water flows over it.
-    #[must_use]
-    pub fn is_wall(&self) -> bool {
-        self.kind == "wall"
-    }
-
-    /// Whether water may cross it.
-    #[must_use]
-    pub fn is_open(&self) -> bool {
-        self.kind == "patch"
-    }
 }
 
 /// Why a folder is no mesh that a case can stand in.
@@ -86,7 +60,7 @@ pub(crate) fn refuse(path: &Path, problem: String) -> FoamMeshError {
 }
 
 /// The patches of a `boundary` file: `N ( name { type wall; … } … )`.
-fn patches_of(text: &str) -> Result<Vec<FoamPatch>, String> {
+fn patches_of(text: &str) -> Result<Vec<Patch>, String> {
     let plain = without_comments(text);
     let spaced = plain.replace('{', " { ").replace('}', " } ").replace(';', " ; ");
     let body = spaced.replace('(', " ( ").replace(')', " ) ");
@@ -113,22 +87,18 @@ fn patches_of(text: &str) -> Result<Vec<FoamPatch>, String> {
         let (Some(start), Some(count)) = (start, count) else {
             return Err(format!("the patch {name} does not say its startFace and nFaces"));
         };
-        match kind {
-            Some(kind @ ("wall" | "patch" | "symmetryPlane" | "symmetry" | "empty")) => {
-                patches.push(FoamPatch { name: name.to_owned(), kind: kind.to_owned(), start, count });
-            }
-            found => {
-                return Err(format!(
-                    "the patch {name} is of type {}; cases have conditions for wall, patch, symmetryPlane, symmetry, empty",
-                    found.unwrap_or("none")
-                ));
-            }
-        }
+        let Some(known) = PatchKind::ALL.into_iter().find(|known| kind == Some(known.word())) else {
+            return Err(format!(
+                "the patch {name} is of type {}; cases have conditions for wall, patch, symmetryPlane, symmetry, empty",
+                kind.unwrap_or("none")
+            ));
+        };
+        patches.push(Patch { name: name.to_owned(), kind: known, start, count });
     }
-    if !patches.iter().any(FoamPatch::is_wall) {
+    if !patches.iter().any(Patch::is_wall) {
         return Err("no patch is a wall, and forces need one".to_owned());
     }
-    if !patches.iter().any(FoamPatch::is_open) {
+    if !patches.iter().any(Patch::is_open) {
         return Err("no patch is open, and water must come in".to_owned());
     }
     Ok(patches)
@@ -163,7 +133,7 @@ mod tests {
     #[test]
     fn a_boundary_is_read_with_its_patches_in_order() {
         let patches = patches_of(BOUNDARY).unwrap();
-        let found: Vec<_> = patches.iter().map(|p| (p.name.as_str(), p.kind.as_str(), p.start, p.count)).collect();
+        let found: Vec<_> = patches.iter().map(|p| (p.name.as_str(), p.kind.word(), p.start, p.count)).collect();
         assert_eq!(found, [("body", "wall", 3, 9), ("far", "patch", 12, 2), ("mid", "symmetryPlane", 14, 1)]);
     }
 

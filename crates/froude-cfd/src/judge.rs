@@ -52,12 +52,8 @@ pub struct Judgement {
     pub reason: String,
     /// Whether more iterations would not change it.
     pub is_final: bool,
-    /// Mean loads over the window.
-    pub loads: Option<Loads>,
-    /// The part of them by pressure.
-    pub pressure: Option<Loads>,
-    /// Standard deviation of the iterative error.
-    pub std_iterative: Option<Loads>,
+    /// The window that its loads are the means of.
+    pub window: Option<Window>,
 }
 
 /// Judges a case.
@@ -65,14 +61,7 @@ pub struct Judgement {
 pub fn judge(case: &Case, evidence: Evidence) -> Judgement {
     let samples = evidence.samples;
     let iterations = samples.len();
-    let without_loads = |status, is_final, reason| Judgement {
-        status,
-        reason,
-        is_final,
-        loads: None,
-        pressure: None,
-        std_iterative: None,
-    };
+    let without_loads = |status, is_final, reason| Judgement { status, reason, is_final, window: None };
     match (evidence.end, &evidence.log.fatal) {
         (End::Code(_), Some(fatal)) => {
             let advice = if fatal.contains("error in IOstream") { "; is the disk full?" } else { "" };
@@ -89,18 +78,11 @@ pub fn judge(case: &Case, evidence: Evidence) -> Judgement {
         (End::Whole | End::FloatingPoint, _) => {}
     }
     let window = case.stop.window.max(4);
-    let with_loads = |status, is_final, reason, window: &Window| Judgement {
-        status,
-        reason,
-        is_final,
-        loads: Some(window.mean),
-        pressure: Some(window.pressure),
-        std_iterative: Some(window.std_of_mean),
-    };
+    let with_loads = |status, is_final, reason, window| Judgement { status, reason, is_final, window: Some(window) };
     if let Some((reason, is_final)) = growth(case, &evidence) {
         let found = Window::of(samples, window);
         return if found.mean.iter().all(|load| load.is_finite()) {
-            with_loads(Status::Diverged, is_final, reason, &found)
+            with_loads(Status::Diverged, is_final, reason, found)
         } else {
             without_loads(Status::Diverged, is_final, reason)
         };
@@ -124,21 +106,21 @@ pub fn judge(case: &Case, evidence: Evidence) -> Judgement {
         found.length
     );
     match standing {
-        Standing::Still => with_loads(Status::Converged, true, words, &found),
-        Standing::Swings => with_loads(Status::Oscillating, iterations >= PATIENCE * found.length, words, &found),
+        Standing::Still => with_loads(Status::Converged, true, words, found),
+        Standing::Swings => with_loads(Status::Oscillating, iterations >= PATIENCE * found.length, words, found),
         Standing::Drifts if drift <= SLOW && iterations >= case.stop.iterations => {
             let reason = format!(
                 "after {iterations} iterations, which is all, the mean force still changes by {drift:.1e} of ½ρU²A from one half of {} iterations to the other; what it still has to go is counted as its error",
                 found.length
             );
-            with_loads(Status::Oscillating, true, reason, &found)
+            with_loads(Status::Oscillating, true, reason, found)
         }
         Standing::Drifts => {
             let reason = format!(
                 "after {iterations} iterations the mean force still changes by {drift:.1e} of ½ρU²A from one half of {} iterations to the other; {:.1e} is allowed",
                 found.length, case.stop.drift
             );
-            with_loads(Status::Diverged, false, reason, &found)
+            with_loads(Status::Diverged, false, reason, found)
         }
     }
 }
@@ -273,8 +255,8 @@ mod tests {
     fn forces_that_stand_still_are_converged_with_their_mean_and_its_part_by_pressure() {
         let found = of(&samples(100, |i| -20.0 - 3.0 * (-i / 8.0).exp()));
         assert_eq!((found.status, found.is_final), (Status::Converged, true), "{}", found.reason);
-        assert!((found.loads.unwrap()[0] + 20.0).abs() < 1e-2);
-        assert!((found.pressure.unwrap()[0] + 5.0).abs() < 1e-2);
+        assert!((found.window.unwrap().mean[0] + 20.0).abs() < 1e-2);
+        assert!((found.window.unwrap().pressure[0] + 5.0).abs() < 1e-2);
     }
 
     #[test]
@@ -296,7 +278,7 @@ mod tests {
         let ramp = |drift: f64, count| of(&samples(count, |i| drift * 50.0 / 20.0 * i));
         let slow = ramp(0.0099, 400);
         assert_eq!((slow.status, slow.is_final), (Status::Oscillating, true), "{}", slow.reason);
-        assert!(slow.std_iterative.unwrap()[0] > 0.0099 * 50.0, "{slow:?}");
+        assert!(slow.window.unwrap().std_of_mean[0] > 0.0099 * 50.0, "{slow:?}");
         assert!(slow.reason.contains("after 400 iterations, which is all") && slow.reason.contains("9.9e-3"));
         // Before the last it goes on, and a faster one is none.
         assert_eq!(ramp(0.0099, 399).status, Status::Diverged);
@@ -320,7 +302,7 @@ mod tests {
         assert_eq!(judged_window(&case(), &series).map(|w| w.length), Some(160));
         assert_eq!(judged_window(&case(), &series[..39]), None);
         assert_eq!(found.status, Status::Oscillating, "{}", found.reason);
-        assert!((found.loads.unwrap()[0] + 20.0).abs() < 3.0 * found.std_iterative.unwrap()[0]);
+        assert!((found.window.unwrap().mean[0] + 20.0).abs() < 3.0 * found.window.unwrap().std_of_mean[0]);
     }
 
     #[test]
@@ -363,7 +345,7 @@ mod tests {
         let log = SolverLog { fatal: Some("cannot find file \"p\"".to_owned()), ..SolverLog::default() };
         let evidence = Evidence { samples: &[], log: &log, fastest: &[], end: End::Code(1), until: 40 };
         let found = judge(&case(), evidence);
-        assert_eq!((found.status, found.loads), (Status::Failed, None));
+        assert_eq!((found.status, found.window), (Status::Failed, None));
         assert_eq!(found.reason, "the solver ended with the error: cannot find file \"p\"");
         let log = SolverLog { fatal: Some("error in IOstream \"60/phi\"".to_owned()), ..SolverLog::default() };
         let unwritten = judge(&case(), Evidence { log: &log, ..evidence });

@@ -168,15 +168,7 @@ fn file(folder: &Path, number: u64) -> PathBuf {
 }
 
 fn numbers(folder: &Path) -> Result<Vec<u64>, StoreError> {
-    let failed = |e: std::io::Error| StoreError::file(folder, e.to_string());
-    let mut numbers = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let name = entry.map_err(failed)?.file_name();
-        let number: Option<u64> =
-            name.to_str().and_then(|n| n.strip_prefix("lock-")?.strip_suffix(".json")?.parse().ok());
-        numbers.extend(number.filter(|n| *n < u64::MAX));
-    }
-    Ok(numbers)
+    input::numbers(folder, ["lock-", ".json"], u64::MAX)
 }
 
 fn highest(folder: &Path) -> Result<Option<u64>, StoreError> {

@@ -8,7 +8,6 @@ use froude_mesh::vector::norm;
 
 use crate::case::Case;
 use crate::flow_field::FlowField;
-use crate::poly_mesh::PatchKind;
 
 /// Heights of so many lengths of the body are none: points of a plane are on it but for rounding.
 const FLAT: f64 = 1e-9;
@@ -61,7 +60,7 @@ impl Midplane {
                 cells.entry(*cell).or_default().extend(&crossings);
             }
             let mut patches = mesh.patches.iter();
-            let is_wall = patches.any(|p| p.kind == PatchKind::Wall && (p.start..p.start + p.count).contains(&index));
+            let is_wall = patches.any(|p| p.is_wall() && (p.start..p.start + p.count).contains(&index));
             if let ([from, to], true) = (&crossings[..], is_wall) {
                 let piece = [place_m(*from), place_m(*to)];
                 body_m.extend(Some(piece).filter(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1]) > flat_m));

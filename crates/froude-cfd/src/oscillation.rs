@@ -4,12 +4,12 @@
 //! **Forces.** The pressure is that of an axes system at rest, so that the loads are those of the water on the body, and nothing is to be added. In axes that move with the body, with the inflow −v(t) and no force on the water but its pressure p̃, one would have p̃ = p + ρ a·x, and on the closed surface F = F̃ + ρ V a with the body's acceleration a: the added mass would come out too large by the displaced mass.
 //! **Fit.** Over each period F = −μ a − b v by its first harmonics: μ = (2/nAω²) Σ F sin ωt, b = −(2/nAω) Σ F cos ωt. A drag d v|v| is in b as 8/(3π) d Aω.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use froude_mesh::vector::{Vec3, dot, norm, scale};
 
-use crate::attempt::{Attempt, How, SOLVER_LOG, SolveError};
+use crate::attempt::{Attempt, How, SolveError};
 use crate::case::Case;
 use crate::dictionary::{Dictionary, vector};
 use crate::foam_case::{self, write_dictionary};
@@ -77,14 +77,6 @@ pub struct Period {
     pub damping_n_s_m: f64,
 }
 
-impl Period {
-    /// d of a drag d v|v| that takes the same work, N s²/m².
-    #[must_use]
-    pub fn quadratic_n_s2_m2(&self, swing: &Swing) -> f64 {
-        self.damping_n_s_m * 3.0 * PI / (8.0 * swing.speed_m_s())
-    }
-}
-
 /// What a swing came to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swung {
@@ -111,18 +103,12 @@ pub fn swing(case: &Case, swing: &Swing, mesh: &Path, folder: &Path, how: &How) 
     let attempt = Attempt::begin(case, mesh, None, folder, &one, pace, steps)?;
     foam_case::write_fields(&fields_about_a_moving_wall(case, swing.forward_m_s), &attempt.mesh, folder)?;
     write_dictionary(folder, "constant/dynamicMeshDict", &swing.dictionary())?;
-    let end = attempt.run([0.0, step_s * steps as f64])?;
-    let log = attempt.log()?;
-    if end != End::Whole {
-        let said = log.fatal.unwrap_or_else(|| "nothing".to_owned());
-        return Err(SolveError::Part { program: pace.program(), end, log: folder.join(SOLVER_LOG), said });
-    }
-    attempt.end()?;
+    let log = attempt.run_until(step_s * steps as f64)?;
     let samples = history::read(folder, case.is_half)?;
     let is_whole = samples.len() == steps && samples.iter().all(|s| s.total().iter().all(|load| load.is_finite()));
     if !is_whole {
         let said = format!("forces of {} of {steps} steps that are all numbers; is the disk full?", samples.len());
-        return Err(SolveError::Part { program: pace.program(), end, log: folder.join(SOLVER_LOG), said });
+        return Err(attempt.failed(End::Whole, said));
     }
     Ok(Swung { periods: periods(&samples, swing), samples, cpu_s: log.cpu_s })
 }
@@ -155,6 +141,8 @@ fn periods(samples: &[Sample], swing: &Swing) -> Vec<Period> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     /// μ = 3 kg, b = 2 N s/m, d = 5 N s²/m², along (0.6, −0.8, 0).
@@ -179,8 +167,9 @@ mod tests {
         assert_eq!(found.len(), 2);
         for period in found {
             assert!((period.added_mass_kg - 3.0).abs() < 1e-9, "{period:?}");
-            let linear = Period { damping_n_s_m: period.damping_n_s_m - 2.0, ..period };
-            assert!((linear.quadratic_n_s2_m2(&swing) - 5.0).abs() < 1e-3, "{period:?}");
+            // d of a drag d v|v| that takes the same work.
+            let quadratic_n_s2_m2 = (period.damping_n_s_m - 2.0) * 3.0 * PI / (8.0 * swing.speed_m_s());
+            assert!((quadratic_n_s2_m2 - 5.0).abs() < 1e-3, "{period:?}");
         }
     }
 }

@@ -9,6 +9,8 @@ pub enum PatchKind {
     Wall,
     /// A plane of symmetry.
     Symmetry,
+    /// A surface of symmetry, which need not be plane.
+    Mirror,
     /// The front and the back of a mesh in two dimensions.
     Empty,
 }
@@ -24,6 +26,20 @@ pub struct Patch {
     pub start: usize,
     /// How many there are.
     pub count: usize,
+}
+
+impl Patch {
+    /// Whether water flows over it.
+    #[must_use]
+    pub fn is_wall(&self) -> bool {
+        self.kind == PatchKind::Wall
+    }
+
+    /// Whether water may cross it.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.kind == PatchKind::Patch
+    }
 }
 
 /// A volume mesh.

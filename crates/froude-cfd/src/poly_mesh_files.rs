@@ -11,6 +11,9 @@ use crate::mesh_error::MeshError;
 use crate::poly_mesh::{PatchKind, PolyMesh};
 
 impl PatchKind {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Wall, Self::Patch, Self::Symmetry, Self::Mirror, Self::Empty];
+
     /// OpenFOAM's word.
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -18,6 +21,7 @@ impl PatchKind {
             Self::Patch => "patch",
             Self::Wall => "wall",
             Self::Symmetry => "symmetryPlane",
+            Self::Mirror => "symmetry",
             Self::Empty => "empty",
         }
     }

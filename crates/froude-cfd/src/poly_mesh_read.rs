@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::foam_mesh::{FoamMesh, FoamMeshError, refuse, without_comments};
 use crate::input;
-use crate::poly_mesh::{Patch, PatchKind, PolyMesh};
+use crate::poly_mesh::PolyMesh;
 
 impl PolyMesh {
     /// Reads points, faces, owner, neighbour and boundary of a folder.
@@ -30,7 +30,6 @@ impl PolyMesh {
         }
         let (path, text) = read("neighbour")?;
         let neighbour = labels_of(&text, found.cells).map_err(|problem| refuse(&path, problem))?;
-        let mut patches = Vec::with_capacity(found.patches.len());
         let mut next = neighbour.len();
         for patch in &found.patches {
             if patch.start != next || patch.count > faces.len().saturating_sub(next) {
@@ -44,19 +43,12 @@ impl PolyMesh {
                 return Err(refuse(&folder.join("boundary"), problem));
             }
             next += patch.count;
-            let kind = match patch.kind.as_str() {
-                "wall" => PatchKind::Wall,
-                "patch" => PatchKind::Patch,
-                "empty" => PatchKind::Empty,
-                _ => PatchKind::Symmetry,
-            };
-            patches.push(Patch { name: patch.name.clone(), kind, start: patch.start, count: patch.count });
         }
         if next != faces.len() {
             let problem = format!("its patches end at the face {next} of {}", faces.len());
             return Err(refuse(&folder.join("boundary"), problem));
         }
-        Ok(Self { points_m, faces, owner, neighbour, patches, cells: found.cells })
+        Ok(Self { points_m, faces, owner, neighbour, patches: found.patches, cells: found.cells })
     }
 }
 

@@ -109,7 +109,7 @@ impl Quality {
 #[must_use]
 pub fn layered_area(mesh: &PolyMesh, height_m: f64) -> f64 {
     let shapes = Shapes::of(mesh);
-    let walls = mesh.patches.iter().filter(|patch| patch.kind == PatchKind::Wall);
+    let walls = mesh.patches.iter().filter(|patch| patch.is_wall());
     let (mut all_m2, mut layered_m2) = (0.0, 0.0);
     for face in walls.flat_map(|patch| patch.start..patch.start + patch.count) {
         let area_m2 = norm(shapes.area_m2[face]);

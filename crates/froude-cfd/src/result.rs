@@ -151,7 +151,7 @@ pub fn left_over(case_folder: &Path, case: &Case) -> Result<Option<Attempted>, S
 ///
 /// [`StoreError::File`] where the folder cannot be read.
 pub fn attempts(case_folder: &Path) -> Result<Vec<u32>, StoreError> {
-    numbered(case_folder, "attempt-", "")
+    input::numbers(case_folder, ["attempt-", ""], u32::MAX)
 }
 
 /// Those of them that no retry has set aside.
@@ -160,20 +160,8 @@ pub fn attempts(case_folder: &Path) -> Result<Vec<u32>, StoreError> {
 ///
 /// [`StoreError::File`] where the folder cannot be read.
 pub fn open_attempts(case_folder: &Path) -> Result<Vec<u32>, StoreError> {
-    let retired = numbered(case_folder, "retired-", ".json")?.into_iter().max().unwrap_or(0);
+    let retired = input::numbers(case_folder, ["retired-", ".json"], u32::MAX)?.into_iter().max().unwrap_or(0);
     Ok(attempts(case_folder)?.into_iter().filter(|n| *n > retired).collect())
-}
-
-fn numbered(folder: &Path, before: &str, behind: &str) -> Result<Vec<u32>, StoreError> {
-    let failed = |e: std::io::Error| StoreError::file(folder, e.to_string());
-    let mut numbers = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let name = entry.map_err(failed)?.file_name();
-        let number: Option<u32> =
-            name.to_str().and_then(|n| n.strip_prefix(before)?.strip_suffix(behind)?.parse().ok());
-        numbers.extend(number.filter(|n| *n < u32::MAX));
-    }
-    Ok(numbers)
 }
 
 /// Folder of an attempt.

@@ -133,9 +133,7 @@ impl Snappy {
             area_coverage: layered_area(&finished, LAYER_HEIGHT * self.first_layer_m),
             openfoam: openfoam.version.clone(),
         };
-        let text = serde_json::to_string_pretty(&made)
-            .map_err(|e| RecordError::Write { path: folder.clone(), reason: e.to_string() })?;
-        write_atomically(&meshes.join(format!("{name}.json")), (text + "\n").as_bytes())?;
+        input::write_json(&meshes.join(format!("{name}.json")), &made)?;
         std::fs::remove_dir_all(&folder).map_err(failed)?;
         Ok(made)
     }

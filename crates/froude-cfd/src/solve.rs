@@ -46,9 +46,9 @@ pub fn solve(
     Ok(Outcome {
         status: judgement.status,
         reason: judgement.reason,
-        loads: judgement.loads,
-        pressure: judgement.pressure,
-        std_iterative: judgement.std_iterative,
+        loads: judgement.window.map(|window| window.mean),
+        pressure: judgement.window.map(|window| window.pressure),
+        std_iterative: judgement.window.map(|window| window.std_of_mean),
         iterations: history::read(folder, case.is_half)?.len(),
         cpu_s: attempt.log()?.cpu_s * how.ranks as f64,
         y_plus: y_plus(folder)?,

@@ -6,7 +6,6 @@ use froude_mesh::vector::{Vec3, add, scale};
 
 use crate::case::Case;
 use crate::flow_field::FlowField;
-use crate::poly_mesh::PatchKind;
 use crate::quality::face;
 
 /// A face of the surface.
@@ -36,7 +35,7 @@ impl Facet {
 #[must_use]
 pub fn facets(case: &Case, field: &FlowField) -> Vec<Facet> {
     let mesh = &field.mesh;
-    let walls = mesh.patches.iter().filter(|patch| patch.kind == PatchKind::Wall);
+    let walls = mesh.patches.iter().filter(|patch| patch.is_wall());
     let mut facets: Vec<Facet> = walls
         .flat_map(|wall| wall.start..wall.start + wall.count)
         .map(|index| {

@@ -4,11 +4,10 @@
 
 use std::path::Path;
 
-use crate::attempt::{Attempt, How, SOLVER_LOG, SolveError};
+use crate::attempt::{Attempt, How, SolveError};
 use crate::case::Case;
 use crate::foam_system::Pace;
 use crate::history::{self, Sample};
-use crate::openfoam::End;
 use crate::window::Window;
 
 /// How a case goes through time, s.
@@ -51,13 +50,7 @@ pub fn solve_in_time(
     let pace = Pace::Transient { step_s: times.step_s };
     let steps = (times.to_s / times.step_s).round() as usize;
     let attempt = Attempt::begin(case, mesh, start_from, folder, how, pace, steps)?;
-    let end = attempt.run([0.0, times.to_s])?;
-    let log = attempt.log()?;
-    if end != End::Whole {
-        let said = log.fatal.unwrap_or_else(|| "nothing".to_owned());
-        return Err(SolveError::Part { program: pace.program(), end, log: folder.join(SOLVER_LOG), said });
-    }
-    attempt.end()?;
+    let log = attempt.run_until(times.to_s)?;
     let samples = history::read(folder, case.is_half)?;
     let counted: Vec<Sample> = samples.iter().copied().filter(|sample| sample.time >= times.from_s).collect();
     let (sin, cos) = case.flow.angle_rad.sin_cos();

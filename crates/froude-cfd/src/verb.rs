@@ -176,11 +176,12 @@ impl Asked {
         let body = spec.body.clone().ok_or_else(|| {
             refused(format!("source {:?} names no body: write body = \"body.toml\" in [source.cfd]", source.name))
         })?;
-        if spec.is_half && source.plan.iter().any(|block| block.pitch_rad.iter().any(|p| *p != 0.0)) {
+        let is_pitched = source.plan.iter().any(|block| block.pitch_rad.iter().any(|p| *p != 0.0));
+        if spec.is_half && is_pitched {
             let problem = "plans angles out of the plane of symmetry, and half a domain has none: write domain = \"full\" in [source.cfd]";
             return Err(refused(problem.to_owned()));
         }
-        if spec.tank.is_some() && source.plan.iter().any(|block| block.pitch_rad.iter().any(|p| *p != 0.0)) {
+        if spec.tank.is_some() && is_pitched {
             let problem = "plans angles out of the horizontal plane in a tank, whose walls lie along the velocity: leave pitch out, or tank";
             return Err(refused(problem.to_owned()));
         }

@@ -16,10 +16,10 @@ use std::path::Path;
 
 use froude_records::RecordError;
 use froude_records::read;
-use froude_records::write::write_atomically;
 use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, Model};
+use crate::input;
 use crate::outcome::{Loads, Outcome, Status};
 
 /// Name of the file in a mesh's folder.
@@ -74,10 +74,7 @@ impl MeshQuality {
     ///
     /// [`RecordError::Write`].
     pub fn write(&self, mesh: &Path) -> Result<(), RecordError> {
-        let path = mesh.join(FILE);
-        let text = serde_json::to_string_pretty(self)
-            .map_err(|e| RecordError::Write { path: path.clone(), reason: e.to_string() })?;
-        write_atomically(&path, (text + "\n").as_bytes())
+        input::write_json(&mesh.join(FILE), self)
     }
 
     /// Part of the body's area with layers \[-\].

@@ -4,7 +4,7 @@ use crate::history::Sample;
 use crate::outcome::Loads;
 
 /// Of a window, a number a load.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Window {
     /// Iterations.
     pub length: usize,
@@ -28,15 +28,7 @@ impl Window {
     pub fn of(samples: &[Sample], length: usize) -> Self {
         let length = length.min(samples.len());
         let start = samples.len() - length;
-        let mut window = Self {
-            length,
-            mean: [0.0; 6],
-            pressure: [0.0; 6],
-            drift: [0.0; 6],
-            spread: [0.0; 6],
-            std_of_mean: [0.0; 6],
-            is_cycle: [false; 6],
-        };
+        let mut window = Self { length, ..Self::default() };
         for load in 0..6 {
             let all: Vec<f64> = samples.iter().map(|sample| sample.total()[load]).collect();
             let (before, series) = all.split_at(start);

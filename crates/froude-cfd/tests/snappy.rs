@@ -36,7 +36,8 @@ fn openfoam() -> Option<OpenFoam> {
 
 /// Patches and their types, in order of their names.
 fn patches(folder: &Path) -> Vec<(String, String)> {
-    let mut found: Vec<_> = FoamMesh::read(folder).unwrap().patches.into_iter().map(|p| (p.name, p.kind)).collect();
+    let patches = FoamMesh::read(folder).unwrap().patches.into_iter();
+    let mut found: Vec<_> = patches.map(|p| (p.name, p.kind.word().to_owned())).collect();
     found.sort_unstable();
     found
 }

@@ -119,14 +119,8 @@ impl Submission {
 
 fn numbers(root: &Path) -> Result<Vec<u32>, StoreError> {
     let folder = root.join(LEDGER);
-    let failed = |e: std::io::Error| StoreError::file(&folder, e.to_string());
-    std::fs::create_dir_all(&folder).map_err(failed)?;
-    let mut numbers = Vec::new();
-    for entry in std::fs::read_dir(&folder).map_err(failed)? {
-        let number: Option<u32> = entry.map_err(failed)?.file_name().to_str().and_then(|n| n.parse().ok());
-        numbers.extend(number.filter(|n| *n < u32::MAX));
-    }
-    Ok(numbers)
+    std::fs::create_dir_all(&folder).map_err(|e| StoreError::file(&folder, e.to_string()))?;
+    input::numbers(&folder, ["", ""], u32::MAX)
 }
 
 /// Each task does the cases of its line, one behind another.

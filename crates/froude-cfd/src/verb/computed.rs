@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::case::Case;
 use crate::collect::Collected as Row;
 use crate::outcome::Loads;
 use crate::section::{CFD, declared};
@@ -125,31 +124,23 @@ fn iterative(observations: &Observations, std: &BTreeMap<&str, Loads>) -> Vec<Sh
 /// A mesh errs in one direction about bodies that differ in their length alone, and at all speeds: its error does not average down, over cases or over configurations. (It is no constant: all configurations have as many stations, so that the cells of a longer body are longer.) So each load has one, of the size that it has in each row. What an endless domain changes is known with its sign; loads are not corrected for it, so it lies between nothing and all of it.
 fn of_grid(observations: &Observations, collected: &Collected) -> Vec<SharedError> {
     let rows: BTreeMap<&str, &Row> = collected.rows.iter().map(|row| (row.case.id.as_str(), row)).collect();
-    let of = |case: &dyn Fn(&Case) -> Option<Loads>, load: usize| -> Option<Vec<f64>> {
-        let row = |run: &String| Some(case(&rows.get(run.as_str())?.case)?[load]);
+    let of = |left: &dyn Fn(&Row) -> Option<Loads>, load: usize| -> Option<Vec<f64>> {
+        let row = |run: &String| Some(left(rows.get(run.as_str())?)?[load]);
         observations.data.run.iter().map(row).collect()
     };
-    let mut out = Vec::new();
-    let of_wall = |load: usize| -> Option<Vec<f64>> {
-        let std = |run: &String| rows.get(run.as_str()).map(|row| std_of_wall(&row.case, &row.outcome)[load]);
-        observations.data.run.iter().map(std).collect()
+    let of_load = |name: &str, load: &'static str, standard: &[f64]| {
+        SharedError::of_load(&format!("{name} ({load})"), load, standard, 1.0, f64::INFINITY)
     };
+    let mut out = Vec::new();
     for (k, load) in LOADS.iter().enumerate().filter(|(_, load)| observations.data.values(load).is_some()) {
-        if let Some(standard) = of(&|case| collected.numerical.std_of_mesh(case), k) {
-            let error = SharedError::of_load(&format!("mesh ({load})"), load, &standard, 1.0, f64::INFINITY);
-            out.push(error.evaluated_as(Kind::Numerical));
-        }
-        if let Some(standard) = of_wall(k).filter(|all| all.iter().any(|std| *std > 0.0)) {
-            let error =
-                SharedError::of_load(&format!("mesh at the wall ({load})"), load, &standard, 1.0, f64::INFINITY);
-            out.push(error.evaluated_as(Kind::Numerical));
-        }
-        if let Some(change) = of(&|case| collected.numerical.endless(case), k) {
-            out.push(
-                SharedError::between(&format!("domain ({load})"), load, &change, [-1.0, 0.0])
-                    .evaluated_as(Kind::Numerical),
-            );
-        }
+        let of_mesh = of(&|row| collected.numerical.std_of_mesh(&row.case), k);
+        out.extend(of_mesh.map(|standard| of_load("mesh", load, &standard)));
+        let of_wall = of(&|row| Some(std_of_wall(&row.case, &row.outcome)), k);
+        let of_wall = of_wall.filter(|all| all.iter().any(|std| *std > 0.0));
+        out.extend(of_wall.map(|standard| of_load("mesh at the wall", load, &standard)));
+        let of_domain = of(&|row| collected.numerical.endless(&row.case), k);
+        let between = |change: Vec<f64>| SharedError::between(&format!("domain ({load})"), load, &change, [-1.0, 0.0]);
+        out.extend(of_domain.map(between));
     }
-    out
+    out.into_iter().map(|error| error.evaluated_as(Kind::Numerical)).collect()
 }

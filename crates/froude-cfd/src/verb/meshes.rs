@@ -33,10 +33,8 @@ pub(super) struct Ready {
     pub again: Option<Again>,
     /// Cells.
     pub cells: usize,
-    /// Largest non-orthogonality, rad.
-    pub max_non_orthogonality_rad: f64,
-    /// Largest skewness \[-\].
-    pub max_skewness: f64,
+    /// How good it is.
+    pub quality: MeshQuality,
     /// Height of the layer at the wall that was asked for, m.
     pub first_layer_m: f64,
     /// What snappyHexMesh made, where it did.
@@ -166,8 +164,7 @@ fn of_angle(asked: &Asked, body: &Shaped, angle_rad: Option<f64>, cancel: &Atomi
         mesh: made.mesh.clone(),
         again: None,
         cells: made.cells,
-        max_non_orthogonality_rad: made.max_non_orthogonality_rad,
-        max_skewness: made.max_skewness,
+        quality,
         first_layer_m: cubes.first_layer_m,
         cubes: Some(made),
         instead,
@@ -182,12 +179,12 @@ fn written(
     (mesh, quality): (PolyMesh, Quality),
 ) -> Result<Ready, MeshError> {
     let folder = mesh.write(meshes)?;
-    let at_wall = MeshQuality {
+    let quality = MeshQuality {
         max_non_orthogonality_rad: quality.max_non_orthogonality_rad.value,
         max_skewness: quality.max_skewness.value,
         layers: None,
     };
-    at_wall.write(&folder)?;
+    quality.write(&folder)?;
     let first_layer_m = match (again, asked.spec.fine) {
         (Some(Again::Fine), Some(fine)) => fine.mesh.first_layer_m,
         _ => asked.spec.mesh.first_layer_m,
@@ -196,8 +193,7 @@ fn written(
         mesh: folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         again,
         cells: mesh.cells,
-        max_non_orthogonality_rad: quality.max_non_orthogonality_rad.value,
-        max_skewness: quality.max_skewness.value,
+        quality,
         first_layer_m,
         cubes: None,
         instead: None,

@@ -10,10 +10,10 @@ use froude_records::number::{bytes, count, duration, percent, significant};
 use froude_records::outcome::Outcome;
 use froude_records::text::counted;
 
-use super::meshes::{Group, of_body};
+use super::meshes::{Group, Ready, of_body};
 use super::{Asked, VerbError, bodies};
 use crate::again::Again;
-use crate::case::{Case, LAMINAR_REYNOLDS, Reference, Water};
+use crate::case::{Case, LAMINAR_REYNOLDS, Water};
 use crate::change::{Change, plan as plan_cases};
 use crate::cost::Cost;
 use crate::matrix::{Meshed, cases, computed_again};
@@ -42,19 +42,10 @@ pub(super) struct Planned {
 
 /// What is planned of a configuration.
 struct PlannedConfiguration {
-    configuration: String,
+    body: Meshed,
+    ready: Ready,
     /// Empty for the campaign's own mesh; of others as their cases end: `fine`, `coarser`, `finer2`, `r6`.
     mesh: String,
-    /// The angle that its mesh is for; `None`: all.
-    angle_rad: Option<f64>,
-    /// Lengths and the point that its loads refer to.
-    reference: Reference,
-    cells: usize,
-    /// Largest of the mesh.
-    non_orthogonality_rad: f64,
-    skewness: f64,
-    /// What snappyHexMesh made; `None`: it is an O-grid.
-    cubes: Option<Made>,
     /// y+ to expect of the mean over the body at the highest speed, from the friction of a plate of its length \[-\].
     y_plus: f64,
     /// Part of a tank's section that the body blocks \[-\].
@@ -145,14 +136,9 @@ pub(super) fn planned(
         let reynolds = own.iter().map(|c| c.reynolds());
         let speed_m_s = own.iter().map(|c| c.flow.speed_m_s).fold(0.0, f64::max);
         PlannedConfiguration {
-            configuration: configuration.clone(),
+            body: group.meshed.clone(),
+            ready: ready.clone(),
             mesh: ready.again.map_or_else(String::new, Again::suffix),
-            angle_rad: *angle_rad,
-            reference: *reference,
-            cells: ready.cells,
-            non_orthogonality_rad: ready.max_non_orthogonality_rad,
-            skewness: ready.max_skewness,
-            cubes: ready.cubes.clone(),
             y_plus: y_plus(asked.water, reference.length_m, speed_m_s, ready.first_layer_m),
             blockage: group.blockage,
             cases: own.len(),
@@ -234,9 +220,10 @@ fn said(asked: &Asked, meshed: &[Group], cases: &[Case], change: &Change) -> Vec
 
 impl PlannedConfiguration {
     fn name(&self) -> String {
-        match self.angle_rad {
-            Some(angle) => format!("{} at {:.1}°", self.configuration, angle.to_degrees()).trim_start().to_owned(),
-            None => format!("{} {}", self.configuration, self.mesh).trim().to_owned(),
+        let configuration = &self.body.configuration;
+        match self.body.angle_rad {
+            Some(angle) => format!("{configuration} at {:.1}°", angle.to_degrees()).trim_start().to_owned(),
+            None => format!("{configuration} {}", self.mesh).trim().to_owned(),
         }
     }
 }
@@ -253,10 +240,10 @@ impl Planned {
         let t = TableBuilder::new("configurations", format!("cases in {}", self.store.root().display()), all);
         let cases = t.build(vec![
             t.text("", "body", PlannedConfiguration::name),
-            t.text("configuration", "", |c| c.configuration.clone()),
+            t.text("configuration", "", |c| c.body.configuration.clone()),
             t.text("mesh", "", |c| c.mesh.clone()),
-            t.number("angle_rad", "", |c| c.angle_rad),
-            t.count("cells", "cells", |c| c.cells),
+            t.number("angle_rad", "", |c| c.body.angle_rad),
+            t.count("cells", "cells", |c| c.ready.cells),
             t.interval("reynolds", "Re of the width", |c| c.reynolds).range(),
             t.count("cases", "cases", |c| c.cases),
             t.count("open", "to compute", |c| c.open),
@@ -265,14 +252,17 @@ impl Planned {
         ]);
         let caption = "meshes; y+ is what the friction of a plate lets expect at the highest speed";
         let t = TableBuilder::new("configurations", caption, all);
-        let of = |c: &PlannedConfiguration, of: fn(&Made) -> f64| c.cubes.as_ref().map(of);
+        let of = |c: &PlannedConfiguration, of: fn(&Made) -> f64| c.ready.cubes.as_ref().map(of);
         let meshes = t.build(vec![
             t.text("", "body", PlannedConfiguration::name),
-            t.text("mesher", "mesh", |c| if c.cubes.is_some() { "snappyHexMesh" } else { "O-grid" }.to_owned()),
-            t.number("max_non_orthogonality_rad", "non-orthogonality [deg]", |c| c.non_orthogonality_rad).places(0),
-            t.number("max_skewness", "skewness", |c| c.skewness).significant(2),
+            t.text("mesher", "mesh", |c| if c.ready.cubes.is_some() { "snappyHexMesh" } else { "O-grid" }.to_owned()),
+            t.number("max_non_orthogonality_rad", "non-orthogonality [deg]", |c| {
+                c.ready.quality.max_non_orthogonality_rad
+            })
+            .places(0),
+            t.number("max_skewness", "skewness", |c| c.ready.quality.max_skewness).significant(2),
             t.number("layers/mean", "mean layers", |c| of(c, |made| made.layers)).significant(3),
-            t.count("layers/asked", "requested", |c| c.cubes.as_ref().map(|made| made.layers_asked)),
+            t.count("layers/asked", "requested", |c| c.ready.cubes.as_ref().map(|made| made.layers_asked)),
             t.number("layers/coverage", "", |c| of(c, |made| made.coverage)),
             t.number("layers/area_coverage", "of the area", |c| of(c, |made| made.area_coverage)).percent(),
             t.number("layers/thickness_m", "", |c| of(c, |made| made.layers_m)),
@@ -283,10 +273,10 @@ impl Planned {
         let t = TableBuilder::new("configurations", caption, all);
         let lengths = t.build(vec![
             t.text("", "body", PlannedConfiguration::name),
-            t.number("length_m", "length [m]", |c| c.reference.length_m),
-            t.number("width_m", "width [m]", |c| c.reference.width_m),
-            t.number("area_m2", "area [m²]", |c| c.reference.area_m2),
-            t.numbers("point_m", "point [m]", |c| c.reference.point_m.to_vec()).significant(3),
+            t.number("length_m", "length [m]", |c| c.body.reference.length_m),
+            t.number("width_m", "width [m]", |c| c.body.reference.width_m),
+            t.number("area_m2", "area [m²]", |c| c.body.reference.area_m2),
+            t.numbers("point_m", "point [m]", |c| c.body.reference.point_m.to_vec()).significant(3),
         ]);
         let sum = |of: fn(&PlannedConfiguration) -> f64| all.iter().map(of).sum::<f64>();
         let cpu_s = sum(|c| c.cpu_s);
