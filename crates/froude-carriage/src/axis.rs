@@ -27,7 +27,7 @@ use crate::servo::scale::ForcePerVolt;
 use crate::servo::two_mass::FlexibleReport;
 use crate::servo::{Chain, Friction, ServoCoefficient, ServoLog, ServoReport, identify_servo, record};
 use crate::source::file_of;
-use crate::two_masses::{motor_of, pulses, servo_log, two_masses};
+use crate::two_masses::{motor_of, pulses, relative_errors, servo_log, two_masses};
 
 mod cross;
 mod long;
@@ -111,7 +111,7 @@ pub struct Repeatability {
 }
 
 /// What came out.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct AxisModels {
     /// Rigid models.
     pub models: Vec<Model>,
@@ -158,16 +158,7 @@ pub fn of_table(
     findings.push(one_excitation());
     let files = files_of_table(path, sidecar);
     let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, gain), files.clone());
-    Ok(AxisModels {
-        estimates: models.iter().map(rigid).collect(),
-        models,
-        rigid_mounts: Vec::new(),
-        flexible: None,
-        two_mass_mounts: Vec::new(),
-        repeatability: Vec::new(),
-        motor: None,
-        findings,
-    })
+    Ok(AxisModels { estimates: models.iter().map(rigid).collect(), models, findings, ..AxisModels::default() })
 }
 
 /// Reads a log from another program; rejects it if a sample is far from all others.
@@ -218,15 +209,15 @@ fn files_of_table(path: &Path, sidecar: Option<&Path>) -> Vec<ReadFile> {
 }
 
 fn reported(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
-    for model in models {
-        for text in &model.report.findings {
-            findings.push(Finding::new(Severity::Warning, "servo", format!("{}: {text}", model.name)));
-        }
-        for text in &model.report.excitation {
-            findings.push(Finding::new(Severity::Warning, "weak-excitation", format!("{}: {text}", model.name)));
-        }
-    }
+    findings.extend(models.iter().flat_map(|m| doubts(&m.name, &m.report.findings, &m.report.excitation)));
     findings
+}
+
+/// What is doubtful of a model, and what the motion does not determine of it.
+fn doubts(name: &str, said: &[String], weak: &[String]) -> Vec<Finding> {
+    let of = |(code, text): (&str, &String)| Finding::new(Severity::Warning, code, format!("{name}: {text}"));
+    let said = said.iter().map(|text| ("servo", text));
+    said.chain(weak.iter().map(|text| ("weak-excitation", text))).map(of).collect()
 }
 
 /// The models that came out, and a finding and error for each that did not: it costs its own row and no other.
@@ -316,11 +307,11 @@ pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModel
     }
     let repeatability = repeatability(&slow, &motor)?;
     let files = |logs: &[&RunLog]| -> Vec<ReadFile> { logs.iter().copied().map(file_of).collect() };
-    let part = |d: &Declared| d.standard_uncertainty / d.value;
+    let [torque_relative, radius_relative] = relative_errors(constants);
     let drive = Drive {
         motor,
-        torque_relative: part(&constants.torque_constant_n_m_a).hypot(part(&constants.amplifier_a_v)),
-        radius_relative: part(&constants.sprocket_radius_m),
+        torque_relative,
+        radius_relative,
         rig: rig_key(runs, Some(constants)).unwrap_or_else(|| format!("{OWN}rig")),
     };
     let gain = ForcePerVolt::of_drive(&drive);

@@ -21,7 +21,7 @@ use crate::drag::report::{DragReport, drag_by};
 use crate::drag::run::{self as drag_run, DragRun};
 use crate::drag::setup::{Ballast, DragSetup, Efficiency, ErrorKeys, SensorBudget};
 use crate::runs::{Runs, density_kg_m3, for_drag};
-use crate::two_masses::two_masses;
+use crate::two_masses::{relative_errors, two_masses};
 
 pub mod page;
 
@@ -189,9 +189,7 @@ pub fn setup_of(campaign: Option<&DrivenCampaign>, axis: Option<&AxisConstants>)
     if let Some(c) = spec.map(|s| &s.constants).or(axis) {
         let ratio = c.gear_ratio.value / c.sprocket_radius_m.value;
         setup.ideal_force_per_volt_n = ratio * c.torque_constant_n_m_a.value * c.amplifier_a_v.value;
-        let relative = |d: &froude_records::run::Declared| d.standard_uncertainty / d.value;
-        setup.torque_constant_relative = relative(&c.torque_constant_n_m_a).hypot(relative(&c.amplifier_a_v));
-        setup.speed_scale_relative = relative(&c.sprocket_radius_m);
+        [setup.torque_constant_relative, setup.speed_scale_relative] = relative_errors(c);
         if let Some(e) = &c.efficiency_forward {
             setup.efficiency = Efficiency::Declared(Uncertain::new(e.value, e.standard_uncertainty));
         }

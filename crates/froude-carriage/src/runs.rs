@@ -434,11 +434,7 @@ pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, MethodError> 
         command_v: column("command", Dimension::VOLTAGE)?,
         force_n,
         kind,
-        body: match meta.mounted.body {
-            BodyState::None => drag::BodyState::None,
-            BodyState::Dry => drag::BodyState::Dry,
-            BodyState::Wet => drag::BodyState::Wet,
-        },
+        body: meta.mounted.body,
         target_speed_m_s,
         direction: direction.sign(),
         pair: meta.carriage.pair.unwrap_or(0),

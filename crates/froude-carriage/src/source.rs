@@ -22,7 +22,7 @@ const NAMES: [&str; 5] = {
     [a.name(), b.name(), c.name(), d.name(), e.name()]
 };
 
-fn named(name: &str) -> Option<CarriageMethod> {
+fn method_of(name: &str) -> Option<CarriageMethod> {
     CarriageMethod::ALL.into_iter().find(|method| method.name() == name)
 }
 
@@ -32,11 +32,11 @@ impl Method for Carriage {
     }
 
     fn words(&self, name: &str) -> &'static str {
-        named(name).map_or("", CarriageMethod::words)
+        method_of(name).map_or("", CarriageMethod::words)
     }
 
     fn needs(&self, name: &str) -> &'static [Need] {
-        named(name).map_or(&[], needs)
+        method_of(name).map_or(&[], needs)
     }
 
     fn runs(&self) -> &'static str {
@@ -50,7 +50,7 @@ impl Method for Carriage {
         asked: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let methods: Vec<CarriageMethod> = asked.iter().filter_map(|name| named(name)).collect();
+        let methods: Vec<CarriageMethod> = asked.iter().filter_map(|name| method_of(name)).collect();
         let mut found = identify(source, &methods, progress)?;
         found.findings.extend(passed_over(campaign, source));
         Ok(found)
@@ -173,6 +173,11 @@ fn passed_over(campaign: &Campaign, source: &Source) -> Option<Finding> {
         );
         Finding::new(Severity::Note, "runs-know-their-own", text)
     })
+}
+
+/// What results of a source are called after: its own name, or `what` of the runs' campaign.
+pub(crate) fn named(source: &Source, runs: &Runs, what: &str) -> String {
+    if source.name.is_empty() { runs.own_name(what) } else { source.name.clone() }
 }
 
 /// The logs of runs, each in its role.

@@ -44,6 +44,14 @@ pub fn motor_of(constants: &AxisConstants) -> MotorSide {
     }
 }
 
+/// Standard uncertainties of what makes volts into torques, and of the radius that makes these into forces, as parts.
+#[must_use]
+pub fn relative_errors(constants: &AxisConstants) -> [f64; 2] {
+    let part = |d: &Declared| d.standard_uncertainty / d.value;
+    let torque = part(&constants.torque_constant_n_m_a).hypot(part(&constants.amplifier_a_v));
+    [torque, part(&constants.sprocket_radius_m)]
+}
+
 /// The run that determines the two masses.
 #[must_use]
 pub fn pulses(logs: &[RunLog]) -> Option<&RunLog> {
@@ -79,8 +87,6 @@ fn flexible_options(motor: MotorSide, constants: &AxisConstants) -> FlexibleOpti
         _ if motor.gear_ratio == 1.0 => Gear::Lossless,
         _ => Gear::Undeclared,
     };
-    let part = |d: &Declared| d.standard_uncertainty / d.value;
-    let force_relative = part(&constants.torque_constant_n_m_a).hypot(part(&constants.amplifier_a_v));
-    let radius_relative = part(&constants.sprocket_radius_m);
+    let [force_relative, radius_relative] = relative_errors(constants);
     FlexibleOptions { gear, delay_s: DELAY_S, force_relative, radius_relative, ..FlexibleOptions::new(motor) }
 }

@@ -152,13 +152,7 @@ pub(super) fn of_table(
         let report = servo.finish().map_err(MethodError::refused)?;
         let coefficients = coefficients(&report);
         let doubts: Vec<String> = negative(&coefficients).collect();
-        let said = doubts.iter().map(|text| Finding::new(Severity::Warning, "servo", format!("{words}: {text}")));
-        out.findings.extend(said);
-        let weak = report
-            .excitation
-            .iter()
-            .map(|text| Finding::new(Severity::Warning, "weak-excitation", format!("{words}: {text}")));
-        out.findings.extend(weak);
+        out.findings.extend(super::doubts(words, &doubts, &report.excitation));
         let mut estimate = record::long(name, words, (&report, &coefficients), &doubts, gain);
         kind.clone_into(&mut estimate.kind);
         let caption = format!(
@@ -182,16 +176,8 @@ fn coefficients(report: &LongReport) -> Vec<ServoCoefficient> {
     let coverage = coverage_factor(0.95, report.dof);
     let of = |(j, (name, unit)): (usize, &(String, &'static str))| {
         let hac_std = if report.is_told[j] { report.hac[j] } else { f64::NAN };
-        let (value, half) = (report.coefficients[j], coverage * hac_std);
-        ServoCoefficient {
-            name: name.clone(),
-            unit,
-            value,
-            classical_std: report.classical[j],
-            hac_std,
-            block_std: hac_std,
-            interval: [value - half, value + half],
-        }
+        let std = [report.classical[j], hac_std, hac_std];
+        ServoCoefficient::new(name, unit, report.coefficients[j], std, coverage * hac_std)
     };
     report.names.iter().enumerate().map(of).collect()
 }

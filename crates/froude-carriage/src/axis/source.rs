@@ -15,7 +15,7 @@ use super::page::sections;
 use super::{AxisModel, AxisModels, KINDS, force_per_volt_n_v, long, of_runs, of_table};
 use crate::runs::read;
 use crate::servo::scale::{ForcePerVolt, Scale};
-use crate::source::lacking_in;
+use crate::source::{lacking_in, named};
 
 /// The models of an axis.
 pub struct Servo;
@@ -40,7 +40,7 @@ impl Servo {
     pub const OF_LOGS: [&'static str; 2] = [AxisModel::Symmetric.name(), AxisModel::Asymmetric.name()];
 }
 
-fn named(name: &str) -> Option<AxisModel> {
+fn model_of(name: &str) -> Option<AxisModel> {
     AxisModel::ALL.into_iter().find(|model| model.name() == name)
 }
 
@@ -64,11 +64,11 @@ impl Method for Servo {
     }
 
     fn words(&self, name: &str) -> &'static str {
-        named(name).map_or("", AxisModel::words)
+        model_of(name).map_or("", AxisModel::words)
     }
 
     fn needs(&self, name: &str) -> &'static [Need] {
-        named(name).map_or(&[], needs)
+        model_of(name).map_or(&[], needs)
     }
 
     fn runs(&self) -> &'static str {
@@ -82,14 +82,13 @@ impl Method for Servo {
         asked: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let asked: Vec<AxisModel> = asked.iter().filter_map(|name| named(name)).collect();
+        let asked: Vec<AxisModel> = asked.iter().filter_map(|name| model_of(name)).collect();
         match &source.input {
             Input::Runs { paths, campaign } => {
                 progress("reading the runs");
                 let runs = read(paths, &KINDS, campaign.as_deref())?;
                 progress("identifying the axis");
-                let name = if source.name.is_empty() { runs.own_name("servo") } else { source.name.clone() };
-                let axis = of_runs(&runs, &asked, &name)?;
+                let axis = of_runs(&runs, &asked, &named(source, &runs, "servo"))?;
                 let mut found = found(axis, source, &asked, |model| lacking_in(needs(model), &runs))?;
                 found.beside = Some(runs.results("servo"));
                 found.is_part = runs.beside > 0;

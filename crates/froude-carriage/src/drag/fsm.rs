@@ -25,15 +25,11 @@ pub fn point(run: &DragRun<'_>, drift_half_width_n: f64, settings: SteadySetting
     let window = settled_window(run, &force, 2.0 * zero.half_n, settings)?;
     let steady = mean(window.of(&force), run.step_s());
     let zero_variance = zero.variance_n2(centre_s(run, window));
+    let point = Point::of(run, window, &steady, 1.0);
     Ok(Point {
-        run: run.id.to_owned(),
-        speed_m_s: mean_speed(run, window),
-        force_n: steady.value,
         standard_n: (steady.standard.powi(2) + zero_variance).sqrt(),
-        effective_n: steady.effective_n,
-        pair: run.pair,
-        position_m: reach(window.of(run.position_m)),
-        trend_n: (steady.has_trend() && steady.trend.abs() > 2.0 * zero.half_n).then_some(steady.trend),
+        trend_n: point.trend_n.filter(|trend_n| trend_n.abs() > 2.0 * zero.half_n),
+        ..point
     })
 }
 

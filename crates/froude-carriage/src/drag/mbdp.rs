@@ -10,7 +10,7 @@
 use froude_fit::series::mean;
 
 use super::friction::Friction;
-use super::fsm::{mean_speed, reach};
+use super::fsm::reach;
 use super::run::DragRun;
 use super::steady::{Rejected, SteadySettings, Window, driving_part, window};
 use crate::drag::point::Point;
@@ -87,17 +87,7 @@ fn on_the_map(wet: &DragRun<'_>, friction: &Friction, settings: SteadySettings) 
 }
 
 fn of_force(wet: &DragRun<'_>, w: Window, force_n: &[f64]) -> Point {
-    let m = mean(force_n, wet.step_s());
-    Point {
-        run: wet.id.to_owned(),
-        speed_m_s: mean_speed(wet, w),
-        force_n: m.value,
-        standard_n: m.standard,
-        effective_n: m.effective_n,
-        pair: wet.pair,
-        position_m: reach(w.of(wet.position_m)),
-        trend_n: m.has_trend().then_some(m.trend),
-    }
+    Point::of(wet, w, &mean(force_n, wet.step_s()), 1.0)
 }
 
 /// Eq. 2 solved for the resistance, sample by sample, from motor-side signals alone.

@@ -6,7 +6,7 @@
 
 use froude_fit::series::mean;
 
-use super::fsm::{mean_speed, reach};
+use super::fsm::reach;
 use super::run::DragRun;
 use super::steady::{Rejected, SteadySettings, Window, driving_part, settled_part, window};
 use crate::drag::point::Point;
@@ -48,16 +48,7 @@ pub fn point(
     let settled = settled_part(wet, &difference_v, slack, settings)?;
     let m = mean(settled.of(&difference_v), wet.step_s());
     let used = Window { first: used.first + settled.first, end: used.end.min(used.first + settled.end) };
-    Ok(Point {
-        run: wet.id.to_owned(),
-        speed_m_s: mean_speed(wet, used),
-        force_n: force_per_volt_n * m.value,
-        standard_n: force_per_volt_n * m.standard,
-        effective_n: m.effective_n,
-        pair: wet.pair,
-        position_m: reach(used.of(wet.position_m)),
-        trend_n: m.has_trend().then_some(force_per_volt_n * m.trend),
-    })
+    Ok(Point::of(wet, used, &m, force_per_volt_n))
 }
 
 /// Wet less dry command, V, at the samples of the wet window whose positions the dry window reaches.

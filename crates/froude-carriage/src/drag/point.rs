@@ -1,5 +1,11 @@
 //! A drag at one speed by one method, and the slope over points.
 
+use froude_fit::series::Mean;
+
+use super::fsm::{mean_speed, reach};
+use super::run::DragRun;
+use super::steady::Window;
+
 /// A steady force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
@@ -19,6 +25,23 @@ pub struct Point {
     pub position_m: [f64; 2],
     /// Change of the force over the window, N, where it is more than chance.
     pub trend_n: Option<f64>,
+}
+
+impl Point {
+    /// Of a mean over a window of a run, each of whose units is so many newtons.
+    #[must_use]
+    pub fn of(run: &DragRun<'_>, window: Window, mean: &Mean, unit_n: f64) -> Self {
+        Self {
+            run: run.id.to_owned(),
+            speed_m_s: mean_speed(run, window),
+            force_n: unit_n * mean.value,
+            standard_n: unit_n * mean.standard,
+            effective_n: mean.effective_n,
+            pair: run.pair,
+            position_m: reach(window.of(run.position_m)),
+            trend_n: mean.has_trend().then_some(unit_n * mean.trend),
+        }
+    }
 }
 
 /// How the force was got.

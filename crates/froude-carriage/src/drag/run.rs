@@ -1,15 +1,6 @@
 //! What the reduction of a carriage's runs takes: the columns of each run and what is declared about the rig.
 
-/// What hangs on the strut.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum BodyState {
-    /// Nothing.
-    None,
-    /// The body, above the water.
-    Dry,
-    /// The body, in the water.
-    Wet,
-}
+pub use froude_records::run::BodyState;
 
 /// What a run is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

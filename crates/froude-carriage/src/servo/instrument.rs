@@ -111,14 +111,9 @@ fn with_intervals(instruments: &[Vec<f64>], rows: &Rows, chain: &Chain) -> Resul
     let block_std = diagonal_roots(&over.covariance);
     let k = coverage_factor(options.confidence, over.dof);
     Ok((rows.names.iter().enumerate())
-        .map(|(j, (name, unit))| ServoCoefficient {
-            name: name.clone(),
-            unit,
-            value: values[j],
-            classical_std: (sigma2 * gram[(j, j)]).sqrt(),
-            hac_std: hac_std[j],
-            block_std: block_std[j],
-            interval: [values[j] - k * block_std[j], values[j] + k * block_std[j]],
+        .map(|(j, (name, unit))| {
+            let std = [(sigma2 * gram[(j, j)]).sqrt(), hac_std[j], block_std[j]];
+            ServoCoefficient::new(name, unit, values[j], std, k * block_std[j])
         })
         .collect())
 }

@@ -38,6 +38,14 @@ pub struct ServoCoefficient {
     pub interval: [f64; 2],
 }
 
+impl ServoCoefficient {
+    /// With its standard deviations, white, HAC and of the blocks, and the half-width of its interval.
+    pub(crate) fn new(name: &str, unit: &'static str, value: f64, std: [f64; 3], half: f64) -> Self {
+        let ([classical_std, hac_std, block_std], interval) = (std, [value - half, value + half]);
+        Self { name: name.to_owned(), unit, value, classical_std, hac_std, block_std, interval }
+    }
+}
+
 /// What a record says about an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServoReport {
@@ -241,16 +249,8 @@ fn reported(
         .map(|(j, (name, unit))| {
             let value = solution.coefficients[j];
             let [hac_std, block_std] = [spread.hac[j], spread.blocks[j]].map(|s| if is_told[j] { s } else { f64::NAN });
-            let half = spread.coverage_factor[j] * block_std;
-            ServoCoefficient {
-                name: name.clone(),
-                unit,
-                value,
-                classical_std: spread.classical[j],
-                hac_std,
-                block_std,
-                interval: [value - half, value + half],
-            }
+            let std = [spread.classical[j], hac_std, block_std];
+            ServoCoefficient::new(name, unit, value, std, spread.coverage_factor[j] * block_std)
         })
         .collect();
     ServoReport {

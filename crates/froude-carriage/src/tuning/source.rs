@@ -12,7 +12,7 @@ use froude_rig::campaign::prepare::configured;
 use super::choice::{self, tuned};
 use super::modes::{self, modes_of};
 use crate::runs::{Runs, read};
-use crate::source::files_of;
+use crate::source::{file_of, files_of, named};
 use crate::tuning::bench::ConfiguredLoop;
 
 /// Gains of the position loop, with the margins that they have on the measured response.
@@ -51,27 +51,26 @@ impl Method for Tuning {
         _: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
-        progress("reading the runs");
-        let runs = read(paths, &[Role::Relay, Role::Sweep], campaign.as_deref())?;
-        let what = || {
-            format!(
-                "no campaign lies with these runs, and gains are judged by the rig that it declares; copy it there as {CAMPAIGN_COPY}"
-            )
-        };
-        let declared = runs.campaign.as_ref().ok_or_else(|| MethodError::input(&runs.folder, what()))?;
-        let configured = configured(&declared.campaign).map_err(MethodError::refused)?;
-        progress("judging gains");
-        let of = ConfiguredLoop {
-            axis: configured.axis(),
-            tick_us: configured.tick_us(),
-            hardest_ramp: configured.hardest_ramp(),
-        };
-        let tuned = tuned(&runs.logs, of)?;
-        let estimates = choice::record::estimates(&named(source, &runs, TUNING), &tuned);
-        let files = files_of(&runs);
-        let estimates = estimates.into_iter().map(|estimate| (estimate, files.clone())).collect();
-        Ok(found(runs, TUNING, estimates, choice::page::section(&tuned)))
+        found(source, "tuning", &[Role::Relay, Role::Sweep], progress, |runs, name| {
+            let what = || {
+                format!(
+                    "no campaign lies with these runs, and gains are judged by the rig that it declares; copy it there as {CAMPAIGN_COPY}"
+                )
+            };
+            let declared = runs.campaign.as_ref().ok_or_else(|| MethodError::input(&runs.folder, what()))?;
+            let configured = configured(&declared.campaign).map_err(MethodError::refused)?;
+            progress("judging gains");
+            let of = ConfiguredLoop {
+                axis: configured.axis(),
+                tick_us: configured.tick_us(),
+                hardest_ramp: configured.hardest_ramp(),
+            };
+            let tuned = tuned(&runs.logs, of)?;
+            let files = files_of(runs);
+            let of_all = |estimate| (estimate, files.clone());
+            let estimates = choice::record::estimates(name, &tuned).into_iter().map(of_all).collect();
+            Ok((estimates, choice::page::section(&tuned)))
+        })
     }
 }
 
@@ -99,37 +98,39 @@ impl Method for Resonance {
         _: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
-        progress("reading the runs");
-        let runs = read(paths, &[Role::Sweep], campaign.as_deref())?;
-        progress("finding the modes");
-        let modes = modes_of(&runs.logs)?;
-        let files = files_of(&runs);
-        let estimates = modes::record::estimates(&named(source, &runs, RESONANCE), &modes);
-        // Each is of its own sweep.
-        let estimates = estimates.into_iter().map(|(i, estimate)| (estimate, vec![files[i].clone()])).collect();
-        Ok(found(runs, RESONANCE, estimates, modes::page::section(&modes)))
+        found(source, "resonance", &[Role::Sweep], progress, |runs, name| {
+            progress("finding the modes");
+            let modes = modes_of(&runs.logs)?;
+            // Each is of its own sweep.
+            let of_sweep = |(i, estimate): (usize, Estimate)| (estimate, vec![file_of(&runs.logs[i])]);
+            let estimates = modes::record::estimates(name, &modes).into_iter().map(of_sweep).collect();
+            Ok((estimates, modes::page::section(&modes)))
+        })
     }
 }
 
-/// What results are called after.
-const TUNING: &str = "tuning";
-const RESONANCE: &str = "resonance";
-
-fn named(source: &Source, runs: &Runs, what: &str) -> String {
-    if source.name.is_empty() { runs.own_name(what) } else { source.name.clone() }
-}
-
-fn found(runs: Runs, what: &str, estimates: Vec<(Estimate, Vec<ReadFile>)>, summary: Section) -> Found {
+/// What `reduce` makes of the runs of a source in these roles, given what its results are called after: estimates with their files, and how
+/// they are told.
+fn found(
+    source: &Source,
+    what: &str,
+    roles: &[Role],
+    progress: &dyn Fn(&str),
+    reduce: impl FnOnce(&Runs, &str) -> Result<(Vec<(Estimate, Vec<ReadFile>)>, Section), MethodError>,
+) -> Result<Found, MethodError> {
+    let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
+    progress("reading the runs");
+    let runs = read(paths, roles, campaign.as_deref())?;
+    let (estimates, summary) = reduce(&runs, &named(source, &runs, what))?;
     let answer = |(estimate, files): (Estimate, Vec<ReadFile>)| -> Answer {
         Made { name: format!("{}, {}", estimate.source, estimate.law.name), estimate, files }.into()
     };
-    Found {
+    Ok(Found {
         results: estimates.into_iter().map(answer).collect(),
         summary: Some(summary),
         beside: Some(runs.results(what)),
         is_part: runs.beside > 0,
         findings: runs.findings,
         ..Found::default()
-    }
+    })
 }
