@@ -65,7 +65,7 @@ fn all_methods_stand_side_by_side_and_hold_the_truth() {
     assert!((mapped / flexible - 1.0).abs() < 2e-3, "{mapped} {flexible}");
     assert_eq!(report.recommended, Some(Method::Fsm));
     assert!(report.rejected.is_empty(), "{:?}", report.rejected);
-    let (c_d, _) = report.drag_coefficients[0].unwrap();
+    let (c_d, _) = report.coefficients[0].drag_coefficient(&setup).unwrap();
     assert!((c_d - 1.0).abs() < 0.02);
 }
 

@@ -62,6 +62,14 @@ impl State {
     }
 }
 
+/// Net, positive and absolute power of joints with these torques and rates, W.
+pub(crate) fn powers_w(torque_n_m: &[f64], rate_rad_s: &[f64]) -> [f64; 3] {
+    let of = |[net, positive, absolute]: [f64; 3], power: f64| {
+        [net + power, positive + power.max(0.0), absolute + power.abs()]
+    };
+    torque_n_m.iter().zip(rate_rad_s).map(|(torque, rate)| torque * rate).fold([0.0; 3], of)
+}
+
 /// A swimmer with its gait.
 #[derive(Debug, Clone)]
 pub struct Swimmer<'a> {
@@ -90,13 +98,7 @@ impl<'a> Swimmer<'a> {
         self.gait.at(time_s, &mut self.shape);
         let joints = Joints { angle: &self.shape.angle, rate: &self.shape.rate };
         let head = self.work.evaluate(state.head, joints, Given::Acceleration(&self.shape.acceleration))?;
-        let (mut net, mut positive, mut absolute) = (0.0, 0.0, 0.0);
-        for (torque, rate) in self.work.answer.iter().zip(&self.shape.rate) {
-            let power = torque * rate;
-            net += power;
-            positive += power.max(0.0);
-            absolute += power.abs();
-        }
+        let [net, positive, absolute] = powers_w(&self.work.answer, &self.shape.rate);
         let (s, c) = state.heading.sin_cos();
         let [w, u, v] = state.head;
         Some(State {

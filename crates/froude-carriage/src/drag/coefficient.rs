@@ -6,6 +6,7 @@ use froude_fit::budget::{Part, Uncertain};
 use froude_identify::source::SourceResult;
 
 use crate::drag::point::{Method, Point};
+use crate::drag::setup::DragSetup;
 
 /// D_d by one method.
 #[derive(Debug, Clone)]
@@ -40,11 +41,11 @@ pub struct Coefficient {
 }
 
 impl Coefficient {
-    /// C_D = 2 D_d/(ρA), with its interval.
+    /// C_D = 2 D_d/(ρA), with its interval; `None` where no area is declared.
     #[must_use]
-    pub fn drag_coefficient(&self, density_kg_m3: f64, area_m2: f64) -> (f64, Option<[f64; 2]>) {
-        let q = 0.5 * density_kg_m3 * area_m2;
-        (self.value / q, self.interval_95.map(|[low, high]| [low / q, high / q]))
+    pub fn drag_coefficient(&self, setup: &DragSetup) -> Option<(f64, Option<[f64; 2]>)> {
+        let q = 0.5 * setup.density_kg_m3 * setup.reference_area_m2?;
+        Some((self.value / q, self.interval_95.map(|[low, high]| [low / q, high / q])))
     }
 
     /// Half-width of the interval as part of the value.

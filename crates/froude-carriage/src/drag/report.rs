@@ -30,10 +30,8 @@ const OFFSET_MATTERS: f64 = 0.005;
 pub struct DragReport {
     /// D_d by every method that the runs allow: FSM, MCD, MBDP constant, mapped, flexible.
     pub coefficients: Vec<Coefficient>,
-    /// C_D of each, with its interval, where an area is declared; same order.
-    pub drag_coefficients: Vec<Option<(f64, Option<[f64; 2]>)>>,
-    /// Each D_d over that of the reference method (force sensor, else MCD); same order.
-    pub ratios: Vec<f64>,
+    /// D_d of the reference method: the force sensor, else MCD, else the first.
+    pub reference_n_s2_m2: Option<f64>,
     /// The method whose estimate is recommended.
     pub recommended: Option<Method>,
     /// What the dry repeats predict.
@@ -97,7 +95,7 @@ fn judge(
 ) -> DragReport {
     let Reported { rejected, mut findings } = reported;
     let by = |method: Method| coefficients.iter().find(|c| c.method == method);
-    let reference = by(Method::Fsm).or(by(Method::Mcd)).or(coefficients.first()).map(|c| c.value);
+    let reference_n_s2_m2 = by(Method::Fsm).or(by(Method::Mcd)).or(coefficients.first()).map(|c| c.value);
     let differences = by(Method::Mcd).map_or(&[][..], |c| &c.points);
     let promised = tows.filter(|tows| !tows.dry.is_empty()).and_then(|tows| tows.promised(differences, setup));
     let agrees = promised.as_ref().and_then(|d| agreement(differences, d, setup));
@@ -137,11 +135,7 @@ fn judge(
         }
     }
     DragReport {
-        drag_coefficients: coefficients
-            .iter()
-            .map(|c| setup.reference_area_m2.map(|a| c.drag_coefficient(setup.density_kg_m3, a)))
-            .collect(),
-        ratios: coefficients.iter().map(|c| c.value / reference.unwrap_or(f64::NAN)).collect(),
+        reference_n_s2_m2,
         recommended,
         detectability,
         agreement: agrees,

@@ -16,7 +16,8 @@ use crate::drag::setup::DragSetup;
 pub fn sections(reduction: &Reduction) -> (Section, Vec<Section>) {
     let Reduction { runs, setup, calibration, report } = reduction;
     let said = Block::words(summary(report, setup));
-    let drag = Section::new("Drag by every method", [methods_table(report).into(), said, force_chart(report).into()]);
+    let drag =
+        Section::new("Drag by every method", [methods_table(report, setup).into(), said, force_chart(report).into()]);
     let mut more = Vec::new();
     if let Some(c) = calibration {
         let value = format!(
@@ -118,26 +119,20 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
 }
 
 /// The methods side by side: the paper's Table IV.
-fn methods_table(report: &DragReport) -> ResultTable {
-    let rows: Vec<(&Coefficient, Option<(f64, Option<[f64; 2]>)>, f64)> = report
-        .coefficients
-        .iter()
-        .zip(&report.drag_coefficients)
-        .zip(&report.ratios)
-        .map(|((c, drag), ratio)| (c, *drag, *ratio))
-        .collect();
+fn methods_table(report: &DragReport, setup: &DragSetup) -> ResultTable {
     let caption = "D_d by every method that the runs allow; ratio to the force sensor, or to MCD where there is none.";
-    let t = TableBuilder::new("methods", caption, &rows);
+    let t = TableBuilder::new("methods", caption, &report.coefficients);
+    let drag = |c: &Coefficient| c.drag_coefficient(setup);
     t.build(vec![
-        t.text("method", "", |(c, _, _)| c.method.name().to_owned()),
-        t.text("", "method", |(c, _, _)| format!("{} ({})", c.method.words(), c.method.name())),
-        t.number("d_d_n_s2_m2", "D_d [N s²/m²]", |(c, _, _)| c.value).plain(5),
-        t.interval("d_d_interval_95_n_s2_m2", "95 % interval", |(c, _, _)| c.interval_95),
-        t.number("d_d_relative_half_width", "half-width", |(c, _, _)| c.relative_half_width()).percent(),
-        t.number("c_d", "C_D [1]", |(_, drag, _)| drag.map(|(value, _)| value)).plain(4),
-        t.interval("c_d_interval_95", "95 % interval", |(_, drag, _)| drag.and_then(|(_, interval)| interval)),
-        t.number("ratio", "ratio", |(_, _, ratio)| *ratio).plain(4),
-        t.count("pairs", "pairs per speed", |(c, _, _)| c.pairs),
+        t.text("method", "", |c| c.method.name().to_owned()),
+        t.text("", "method", |c| format!("{} ({})", c.method.words(), c.method.name())),
+        t.number("d_d_n_s2_m2", "D_d [N s²/m²]", |c| c.value).plain(5),
+        t.interval("d_d_interval_95_n_s2_m2", "95 % interval", |c| c.interval_95),
+        t.number("d_d_relative_half_width", "half-width", |c| c.relative_half_width()).percent(),
+        t.number("c_d", "C_D [1]", |c| drag(c).map(|(value, _)| value)).plain(4),
+        t.interval("c_d_interval_95", "95 % interval", |c| drag(c).and_then(|(_, interval)| interval)),
+        t.number("ratio", "ratio", |c| c.value / report.reference_n_s2_m2.unwrap_or(f64::NAN)).plain(4),
+        t.count("pairs", "pairs per speed", |c| c.pairs),
     ])
 }
 

@@ -12,6 +12,7 @@ use super::engine::{Head, Workspace};
 use super::vector::{Motion, parts};
 use crate::engine::{Given, Joints};
 use crate::gait::{Course, Shape};
+use crate::path::powers_w;
 
 /// A state; the same numbers are its rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -120,13 +121,7 @@ impl<'a> Swimmer<'a> {
         let world = world_from_body(state.attitude);
         let head = Head { motion: state.head, down: world[2] };
         let head = self.work.evaluate(self.chain, head, joints, Given::Acceleration(&self.shape.acceleration))?;
-        let (mut net, mut positive, mut absolute) = (0.0, 0.0, 0.0);
-        for (torque, rate) in self.work.answer.iter().zip(&self.shape.rate) {
-            let power = torque * rate;
-            net += power;
-            positive += power.max(0.0);
-            absolute += power.abs();
-        }
+        let [net, positive, absolute] = powers_w(&self.work.answer, &self.shape.rate);
         let [turning, moving] = parts(state.head);
         let over_ground = to_world(&world, moving);
         Some(State {
