@@ -61,66 +61,102 @@
 //! Not here: what the forces say of coefficients (`froude-identify`), potential flow (`froude-panel`).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-pub mod again;
-mod attempt;
-pub mod block;
-pub mod body;
-pub mod case;
-pub mod change;
-pub mod collect;
-pub mod cost;
-pub mod dictionary;
-pub mod engine;
-pub mod evidence;
-pub mod family;
-pub mod flow_field;
-mod foam_binary;
-pub mod foam_case;
-pub mod foam_fields;
-pub mod foam_mesh;
-pub mod foam_solver;
-pub mod foam_system;
-pub mod grid_error;
-pub mod history;
-mod input;
-pub mod judge;
-pub mod layers;
-pub mod lock;
-pub mod matrix;
-pub mod meridian;
-pub mod mesh_error;
-pub mod midplane;
-pub mod mirror;
-pub mod numerical;
-pub mod o_grid;
-pub mod openfoam;
-pub mod orphans;
-pub mod oscillation;
-pub mod outcome;
-pub mod over_angles;
-pub mod poly_mesh;
-pub mod poly_mesh_files;
-mod poly_mesh_read;
-pub mod process;
-pub mod quality;
-pub mod result;
-pub mod retry;
-pub mod section;
-pub mod snappy;
-pub mod snappy_files;
-pub mod snappy_log;
-pub mod solve;
-pub mod solver_log;
-pub mod status;
-pub mod store;
-pub mod store_error;
-pub mod study;
-pub mod suggest;
-pub mod surface;
-pub mod surface_pressure;
-pub mod transient;
+// Settings to compute, and what a campaign says of them.
+mod settings {
+    pub mod again;
+    pub mod case;
+    pub mod matrix;
+    pub mod section;
+    pub mod study;
+    pub mod suggest;
+}
+
+// Volume meshes about bodies.
+mod mesh {
+    pub mod block;
+    pub mod body;
+    pub mod family;
+    pub mod layers;
+    pub mod meridian;
+    pub mod mesh_error;
+    pub mod o_grid;
+    pub mod poly_mesh;
+    pub mod poly_mesh_files;
+    pub(crate) mod poly_mesh_read;
+    pub mod quality;
+    pub mod snappy;
+    pub mod snappy_files;
+    pub mod snappy_log;
+    pub mod surface;
+}
+
+// Cases of OpenFOAM: written, solved, read.
+mod foam {
+    pub(crate) mod attempt;
+    pub mod dictionary;
+    pub(crate) mod foam_binary;
+    pub mod foam_case;
+    pub mod foam_fields;
+    pub mod foam_mesh;
+    pub mod foam_solver;
+    pub mod foam_system;
+    pub mod history;
+    pub mod openfoam;
+    pub mod oscillation;
+    pub mod solve;
+    pub mod solver_log;
+    pub mod transient;
+    pub mod warm;
+}
+
+// Whether forces may be believed, and how far.
+mod judging {
+    pub mod grid_error;
+    pub mod judge;
+    pub mod mirror;
+    pub mod numerical;
+    pub mod outcome;
+    pub mod over_angles;
+    pub mod wall;
+    pub mod window;
+}
+
+// Flow fields of solved cases.
+mod fields {
+    pub mod flow_field;
+    pub mod midplane;
+    pub mod surface_pressure;
+}
+
+// The folder of a campaign.
+mod folder {
+    pub mod change;
+    pub mod collect;
+    pub mod evidence;
+    pub(crate) mod input;
+    pub mod lock;
+    pub mod result;
+    pub mod retry;
+    pub mod status;
+    pub mod store;
+    pub mod store_error;
+}
+
+// Who works through it.
+mod workers {
+    pub mod cost;
+    pub mod engine;
+    pub mod orphans;
+    pub mod process;
+    pub mod work;
+}
+
 pub mod verb;
-pub mod wall;
-pub mod warm;
-pub mod window;
-pub mod work;
+
+pub use fields::*;
+pub use foam::*;
+pub use folder::*;
+pub use judging::*;
+pub use mesh::*;
+pub use settings::*;
+pub use workers::*;

@@ -349,10 +349,10 @@ fn input_files_are_opened_in_one_place() {
         ("froude-records/src/read.rs", "the one place"),
         ("froude-records/src/unfinished.rs", "locks folders that this program made"),
         ("froude-records/src/write.rs", "synchronises a folder"),
-        ("froude-cfd/src/process.rs", "/proc"),
-        ("froude-cfd/src/orphans.rs", "/proc"),
+        ("froude-cfd/src/workers/process.rs", "/proc"),
+        ("froude-cfd/src/workers/orphans.rs", "/proc"),
         ("froude-panel/src/refine.rs", "/proc/meminfo"),
-        ("froude-cfd/src/lock.rs", "a lock, opened for writing"),
+        ("froude-cfd/src/folder/lock.rs", "a lock, opened for writing"),
         ("froude-rig/src/drive/serial.rs", "a port"),
         ("froude-link/src", "a port"),
     ];

@@ -38,40 +38,56 @@
 #![allow(clippy::inline_always)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-mod added;
-pub mod blueprint;
-pub mod chain;
-pub mod course;
-pub mod drag;
-mod drag_lanes;
-pub mod draws;
-pub mod drive;
-pub mod driven;
-pub mod driven_period;
-pub mod engine;
-pub mod front;
-pub mod gait;
-pub mod gait_file;
-pub mod head;
-pub mod joints;
-mod losses;
-pub mod means;
-pub mod motor_file;
-pub mod moving;
-pub mod path;
-pub mod period;
-pub mod planar;
-pub mod robot;
-pub mod robot_file;
-pub mod seen;
-pub mod sensitivity;
-mod settled;
-pub mod shares;
-mod sine;
+// The robot: its links, joints and drives.
+mod body {
+    pub(crate) mod added;
+    pub mod blueprint;
+    pub mod chain;
+    pub mod drag;
+    pub(crate) mod drag_lanes;
+    pub mod drive;
+    pub mod joints;
+    pub(crate) mod losses;
+    pub mod motor_file;
+    pub mod planar;
+    pub mod robot;
+    pub mod robot_file;
+    pub mod shares;
+}
+
+// How it moves.
+mod motion {
+    pub mod course;
+    pub mod driven;
+    pub mod driven_period;
+    pub mod engine;
+    pub mod gait;
+    pub mod gait_file;
+    pub mod head;
+    pub mod moving;
+    pub mod path;
+    pub mod period;
+    pub(crate) mod settled;
+    pub(crate) mod sine;
+    pub mod stability;
+    pub mod trajectory;
+}
+
+// What that comes to.
+mod answers {
+    pub mod draws;
+    pub mod front;
+    pub mod means;
+    pub mod seen;
+    pub mod sensitivity;
+    pub mod sweep;
+    pub mod swim;
+    pub mod track;
+}
+
 pub mod spatial;
-pub mod stability;
-pub mod sweep;
-pub mod swim;
-pub mod track;
-pub mod trajectory;
 pub mod verb;
+
+pub use answers::*;
+pub use body::*;
+pub use motion::*;
