@@ -3,16 +3,14 @@
 //! Components that no coefficient and no constraint couples are separate
 //! problems, each with its own σ; solving them apart keeps σ of one out of
 //! the other, to the last bit. A block holds one such part: its columns scaled
-//! to unit length, fixed coefficients moved to the right-hand side, equalities
-//! eliminated through an orthonormal basis `Z`: `β = β₀ + Z γ`.
+//! to unit length, fixed coefficients moved to the right-hand side.
 
 use faer::Mat;
 
-use crate::dense::{column_norm, mul_vec, norm};
+use crate::dense::{column_norm, norm};
 use crate::error::FitError;
 use crate::options::Options;
 use crate::problem::Problem;
-use crate::rank::PivotedQr;
 
 /// A constraint of unit length is contradicted beyond this, relative to its terms.
 const CONTRADICTION: f64 = 1e-9;
@@ -38,12 +36,6 @@ pub(crate) struct Block {
     pub observations: Option<Vec<usize>>,
     /// Each prior as its row entries and right-hand side, both divided by its standard uncertainty.
     pub priors: Vec<(Vec<(usize, f64)>, f64)>,
-    /// `β₀`.
-    pub offset: Vec<f64>,
-    /// `Z`, columns × q.
-    pub basis: Mat<f64>,
-    /// Whether an equality was eliminated (else `Z` is the identity).
-    pub has_equalities: bool,
     /// Lower bounds.
     pub lower: Vec<f64>,
     /// Upper bounds.
@@ -55,15 +47,6 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// Scaled coefficients from free coordinates.
-    pub(crate) fn expand(&self, gamma: &[f64]) -> Vec<f64> {
-        let mut beta = mul_vec(self.basis.as_ref(), gamma);
-        for (beta, offset) in beta.iter_mut().zip(&self.offset) {
-            *beta += offset;
-        }
-        beta
-    }
-
     /// Observations of each component of the block.
     pub(crate) fn n_rows_of(&self) -> Vec<usize> {
         if let Some(observations) = &self.observations {
@@ -96,7 +79,7 @@ pub(crate) fn blocks(problem: &Problem, options: &Options) -> Result<Vec<Block>,
             roots.push(root);
         }
     }
-    roots.iter().map(|&root| block(problem, options, &held, &group, root)).collect()
+    Ok(roots.iter().map(|&root| block(problem, options, &held, &group, root)).collect())
 }
 
 /// Value of each coefficient that is not estimated.
@@ -123,7 +106,7 @@ fn groups(problem: &Problem, options: &Options, held: &[Option<f64>]) -> Vec<usi
             }
         }
     }
-    for constraint in options.equalities.iter().chain(&options.inequalities) {
+    for constraint in &options.inequalities {
         let mut first = None;
         for j in free_columns_of(&constraint.row, held) {
             let first = *first.get_or_insert(j);
@@ -151,12 +134,6 @@ fn free_columns_of<'a>(row: &'a [f64], held: &'a [Option<f64>]) -> impl Iterator
 
 /// Constraints without a free coefficient hold or they do not.
 fn check_constant_rows(options: &Options, held: &[Option<f64>]) -> Result<(), FitError> {
-    for (index, c) in options.equalities.iter().enumerate() {
-        let (rest, size) = remainder(&c.row, c.value, held);
-        if free_columns_of(&c.row, held).next().is_none() && rest.abs() > CONTRADICTION * size {
-            return Err(FitError::Inconsistent { index });
-        }
-    }
     for c in &options.inequalities {
         let (rest, size) = remainder(&c.row, c.value, held);
         if free_columns_of(&c.row, held).next().is_none() && rest < -CONTRADICTION * size {
@@ -179,13 +156,7 @@ fn remainder(row: &[f64], value: f64, held: &[Option<f64>]) -> (f64, f64) {
     (rest, size)
 }
 
-fn block(
-    problem: &Problem,
-    options: &Options,
-    held: &[Option<f64>],
-    group: &[usize],
-    root: usize,
-) -> Result<Block, FitError> {
+fn block(problem: &Problem, options: &Options, held: &[Option<f64>], group: &[usize], root: usize) -> Block {
     let n_components = problem.components.len();
     let components: Vec<usize> = (0..n_components).filter(|&c| group[c] == root).collect();
     let columns: Vec<usize> =
@@ -242,14 +213,6 @@ fn block(
         let unit: Vec<f64> = row.iter().map(|r| r / length).collect();
         (unit, rest / length)
     };
-    let mut equalities = Vec::new();
-    let mut equality_index = Vec::new();
-    for (index, c) in options.equalities.iter().enumerate() {
-        if here(&c.row) {
-            equalities.push(scaled(&c.row, c.value));
-            equality_index.push(index);
-        }
-    }
     let mut inequalities = Vec::new();
     let mut inequality_index = Vec::new();
     for (index, c) in options.inequalities.iter().enumerate() {
@@ -259,12 +222,9 @@ fn block(
         }
     }
     let bounds: Vec<_> = columns.iter().map(|&j| options.bound(j)).collect();
-    let (offset, basis) =
-        eliminate(columns.len(), &equalities).map_err(|k| FitError::Inconsistent { index: equality_index[k] })?;
-    Ok(Block {
+    Block {
         lower: bounds.iter().zip(&scale).map(|(b, s)| b.lower * s).collect(),
         upper: bounds.iter().zip(&scale).map(|(b, s)| b.upper * s).collect(),
-        has_equalities: !equalities.is_empty(),
         columns,
         rows,
         observations: (!options.observations.is_empty())
@@ -275,31 +235,9 @@ fn block(
         response,
         row_component,
         priors,
-        offset,
-        basis,
         inequalities,
         inequality_index,
-    })
-}
-
-/// `β₀` and `Z` with `{β : C β = d} = {β₀ + Z γ}`; the error is the first
-/// equality that contradicts the others.
-pub(crate) fn eliminate(p: usize, equalities: &[(Vec<f64>, f64)]) -> Result<(Vec<f64>, Mat<f64>), usize> {
-    if equalities.is_empty() {
-        return Ok((vec![0.0; p], Mat::identity(p, p)));
     }
-    let transposed = Mat::from_fn(p, equalities.len(), |j, k| equalities[k].0[j]);
-    let qr = PivotedQr::with_full_q(transposed.as_ref());
-    let mut u: Vec<f64> = qr.order[..qr.rank].iter().map(|&k| equalities[k].1).collect();
-    qr.forward_substitute(&mut u);
-    let offset = mul_vec(qr.q.get(.., ..qr.rank), &u);
-    for (k, (row, value)) in equalities.iter().enumerate() {
-        let found = crate::dense::dot(row, &offset);
-        if (found - value).abs() > CONTRADICTION * (value.abs() + norm(&offset)) {
-            return Err(k);
-        }
-    }
-    Ok((offset, qr.q.get(.., qr.rank..).to_owned()))
 }
 
 /// Disjoint sets, joined towards the smaller index.

@@ -13,7 +13,6 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use faer::{Mat, MatRef};
 
-use crate::block::eliminate;
 use crate::dense::{dot, mul, mul_vec, norm, tr_mul_vec};
 use crate::error::FitError;
 use crate::rank::PivotedQr;
@@ -25,6 +24,8 @@ const FEASIBILITY: f64 = 1e-11;
 const MULTIPLIER: f64 = 1e-11;
 /// What the dual's solution may break a constraint by, relative to the coefficients.
 const FEASIBLE_DUAL: f64 = 1e-9;
+/// Active constraints of unit length contradict each other beyond this, relative.
+const CONTRADICTION: f64 = 1e-9;
 /// Keeps the interior-point solver bounded in directions no data determine.
 const RIDGE: f64 = 1e-9;
 
@@ -283,18 +284,25 @@ fn on_active(
     active: &[usize],
     x: &[f64],
 ) -> Option<Vec<f64>> {
-    let equalities: Vec<Inequality> = active
-        .iter()
-        .map(|&k| {
-            let rest = -excess(&constraints[k], x);
-            (constraints[k].0.clone(), rest)
-        })
-        .collect();
-    let (offset, basis) = eliminate(x.len(), &equalities).ok()?;
-    let reduced = mul(a, basis.as_ref());
+    // `{step : C step = d} = {offset + Z γ}`.
+    let of = |k: usize| &constraints[active[k]];
+    let transposed = Mat::from_fn(x.len(), active.len(), |j, k| of(k).0[j]);
+    let qr = PivotedQr::with_full_q(transposed.as_ref());
+    let mut u: Vec<f64> = qr.order[..qr.rank].iter().map(|&k| -excess(of(k), x)).collect();
+    qr.forward_substitute(&mut u);
+    let offset = mul_vec(qr.q.get(.., ..qr.rank), &u);
+    let is_met = |k: usize| {
+        let rest = -excess(of(k), x);
+        (dot(&of(k).0, &offset) - rest).abs() <= CONTRADICTION * (rest.abs() + norm(&offset))
+    };
+    if !(0..active.len()).all(is_met) {
+        return None;
+    }
+    let basis = qr.q.get(.., qr.rank..);
+    let reduced = mul(a, basis);
     let base: Vec<f64> = x.iter().zip(&offset).map(|(x, o)| x + o).collect();
     let residual: Vec<f64> = mul_vec(a, &base).iter().zip(b).map(|(f, y)| y - f).collect();
-    let step = mul_vec(basis.as_ref(), &PivotedQr::new(reduced.as_ref()).solve(&residual));
+    let step = mul_vec(basis, &PivotedQr::new(reduced.as_ref()).solve(&residual));
     Some(base.iter().zip(step).map(|(x, s)| x + s).collect())
 }
 

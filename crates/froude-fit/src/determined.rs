@@ -1,6 +1,6 @@
 //! What a rank-deficient design still determines.
 //!
-//! With null vectors `N` of the design (after equalities and priors), a
+//! With null vectors `N` of the design (after priors), a
 //! coefficient is determined when its row of `N` vanishes, and a combination
 //! `a · β` when `aᵀ N = 0`. Restricted to the undetermined coefficients, those
 //! combinations are given in reduced echelon form: each holds one coefficient

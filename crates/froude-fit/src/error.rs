@@ -145,13 +145,6 @@ pub enum FitError {
         must: &'static str,
     },
 
-    /// An equality contradicts the ones before it, or the fixed coefficients.
-    #[error("equality {index} contradicts the other equalities or the fixed coefficients")]
-    Inconsistent {
-        /// Index of the equality.
-        index: usize,
-    },
-
     /// No coefficients satisfy all constraints.
     #[error("no coefficients satisfy all constraints at once; drop or widen one")]
     Infeasible,

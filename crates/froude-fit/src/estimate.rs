@@ -1,6 +1,6 @@
 //! The unconstrained estimate of one block, with σ of its components.
 //!
-//! Rows are whitened by σ of their component and the columns of `X Z` are
+//! Rows are whitened by σ of their component and the columns are
 //! factored once more each time σ changes. Where one component stands alone
 //! without a prior, σ does not matter and one factorisation does. Else σ is
 //! iterated to the fixed point
@@ -36,7 +36,7 @@ const HOLD_SCALE_AFTER: usize = 50;
 /// Prior rows come first, then the rows of the block.
 #[derive(Debug, Clone)]
 pub(crate) struct Estimate {
-    /// Whitened `X Z`.
+    /// Whitened design.
     pub design: Mat<f64>,
     /// Whitened right-hand side.
     pub response: Vec<f64>,
@@ -44,7 +44,7 @@ pub(crate) struct Estimate {
     pub n_priors: usize,
     /// Its factorisation.
     pub qr: PivotedQr,
-    /// Free coordinates.
+    /// Scaled coefficients.
     pub gamma: Vec<f64>,
     /// Whitened residuals.
     pub residual: Vec<f64>,
@@ -74,29 +74,23 @@ struct Whitened {
 }
 
 fn whiten(block: &Block, sigma: &[f64]) -> Whitened {
-    let q = block.basis.ncols();
+    let q = block.columns.len();
     let n_priors = block.priors.len();
     let n = block.rows.len();
-    let reduced = if block.has_equalities {
-        crate::dense::mul(block.design.as_ref(), block.basis.as_ref())
-    } else {
-        block.design.clone()
-    };
-    let at_offset = mul_vec(block.design.as_ref(), &block.offset);
     let mut design = Mat::zeros(n_priors + n, q);
     let mut response = Vec::with_capacity(n_priors + n);
     for (k, (entries, value)) in block.priors.iter().enumerate() {
-        for l in 0..q {
-            design[(k, l)] = entries.iter().map(|(column, x)| x * block.basis[(*column, l)]).sum();
+        for (column, x) in entries {
+            design[(k, *column)] += x;
         }
-        response.push(value - entries.iter().map(|(column, x)| x * block.offset[*column]).sum::<f64>());
+        response.push(*value);
     }
     for i in 0..n {
         let s = sigma[block.row_component[i]];
         for l in 0..q {
-            design[(n_priors + i, l)] = reduced[(i, l)] / s;
+            design[(n_priors + i, l)] = block.design[(i, l)] / s;
         }
-        response.push((block.response[i] - at_offset[i]) / s);
+        response.push(block.response[i] / s);
     }
     Whitened { design, response }
 }

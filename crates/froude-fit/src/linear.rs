@@ -83,21 +83,20 @@ impl Part {
     pub(crate) fn new(problem: &Problem, options: &Options, block: Block) -> Result<Self, FitError> {
         let estimate = estimate(&block, options.loss);
         let core = core(problem, &block, &estimate, options.loss, options.covariance)?;
-        let mut lift = mul(block.basis.as_ref(), estimate.qr.lift().as_ref());
+        let mut lift = estimate.qr.lift();
         for l in 0..block.columns.len() {
             for k in 0..lift.ncols() {
                 lift[(l, k)] /= block.scale[l];
             }
         }
-        let null = mul(block.basis.as_ref(), estimate.qr.null_space().as_ref());
-        let indeterminacy = Indeterminacy::new(null.as_ref());
+        let indeterminacy = Indeterminacy::new(estimate.qr.null_space().as_ref());
         let shaped = if block.is_constrained() { Some(shape(&block, &estimate, options.loss)?) } else { None };
         Ok(Self { block, estimate, core, lift, indeterminacy, shaped })
     }
 
     /// Estimate without bounds and inequalities, in the problem's units.
     pub(crate) fn unconstrained(&self) -> Vec<f64> {
-        self.unscale(&self.block.expand(&self.estimate.gamma))
+        self.unscale(&self.estimate.gamma)
     }
 
     fn unscale(&self, beta: &[f64]) -> Vec<f64> {
@@ -312,8 +311,7 @@ fn coefficient(problem: &Problem, options: &Options, part: &Part, l: usize, valu
     if !part.indeterminacy.determined[l] {
         return FitCoefficient::unfitted(name, Status::Undetermined, None);
     }
-    let free = part.block.offset[l] + dot(&row(part.block.basis.as_ref(), l), &part.estimate.gamma);
-    let free = free / part.block.scale[l];
+    let free = part.estimate.gamma[l] / part.block.scale[l];
     let (standard, dof) = part.spread(&[(l, 1.0)]);
     let bound = options.bound(j);
     let is_at_bound = part.shaped.as_ref().is_some_and(|s| s.at_bound[l].is_some());
@@ -420,8 +418,7 @@ fn overall_condition(parts: &[Part]) -> f64 {
         if part.estimate.qr.n_columns() == 0 {
             continue;
         }
-        let reduced = mul(part.block.design.as_ref(), part.block.basis.as_ref());
-        match condition_number(reduced.as_ref()) {
+        match condition_number(part.block.design.as_ref()) {
             Some((high, low)) => {
                 largest = largest.max(high);
                 smallest = smallest.min(low);

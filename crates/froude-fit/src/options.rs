@@ -11,8 +11,6 @@ use crate::problem::{Problem, size};
 pub struct Options {
     /// Bounds of the coefficients: empty (all free) or one per coefficient.
     pub bounds: Vec<Bound>,
-    /// Linear equalities `row · β = value`.
-    pub equalities: Vec<Constraint>,
     /// Linear inequalities `row · β ≤ value`.
     pub inequalities: Vec<Constraint>,
     /// Published values taken as observations with a known standard deviation.
@@ -39,7 +37,6 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             bounds: Vec::new(),
-            equalities: Vec::new(),
             inequalities: Vec::new(),
             priors: Vec::new(),
             fixed: Vec::new(),
@@ -182,13 +179,10 @@ impl Options {
                 });
             }
         }
-        for (constraints, what) in [(&self.equalities, "equality row"), (&self.inequalities, "inequality row")] {
-            for constraint in constraints {
-                size(what, constraint.row.len(), p, of_columns)?;
-                let all = constraint.row.iter().chain([&constraint.value]);
-                for &value in all {
-                    finite("a number of a constraint", value)?;
-                }
+        for constraint in &self.inequalities {
+            size("inequality row", constraint.row.len(), p, of_columns)?;
+            for &value in constraint.row.iter().chain([&constraint.value]) {
+                finite("a number of a constraint", value)?;
             }
         }
         if !(self.confidence > 0.0 && self.confidence < 1.0) {

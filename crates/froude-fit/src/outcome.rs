@@ -74,7 +74,7 @@ pub struct ComponentSummary {
     pub name: String,
     /// Its rows.
     pub n: usize,
-    /// How many parameters its rows determine (equalities subtracted).
+    /// How many parameters its rows determine.
     pub rank: usize,
     /// `n − tr H`: rows less the parameters that they determine; a fraction
     /// where a prior or another component shares in one.

@@ -3,7 +3,7 @@
 use crate::block::Block;
 use crate::bounded::{Side, bounded_least_squares};
 use crate::constrained::{Inequality, constrained};
-use crate::dense::{dot, mul_vec, norm, tr_mul_vec};
+use crate::dense::{mul_vec, norm};
 use crate::error::FitError;
 use crate::estimate::{Estimate, huber_weights};
 use crate::options::Loss;
@@ -11,8 +11,6 @@ use crate::report::{End, Report};
 
 /// Iterations of Huber's weights under constraints.
 const WEIGHT_ITERATIONS: usize = 200;
-/// A constraint is constant when this little of it is left by the equalities.
-const CONSTANT: f64 = 1e-12;
 
 /// A block's constrained estimate, in scaled units.
 #[derive(Debug, Clone)]
@@ -31,7 +29,7 @@ pub(crate) struct Shaped {
     pub loss_weight: Vec<f64>,
 }
 
-/// What a constraint on γ stands for.
+/// What a constraint stands for.
 #[derive(Debug, Clone, Copy)]
 enum Tag {
     Bound(usize, Side),
@@ -48,9 +46,11 @@ pub(crate) fn shape(block: &Block, estimate: &Estimate, loss: Loss) -> Result<Sh
     loop {
         iterations += 1;
         let mut shaped = solve(block, estimate, &weight)?;
-        let gamma = coordinates(block, &shaped.beta);
-        let residual: Vec<f64> =
-            mul_vec(estimate.design.as_ref(), &gamma).iter().zip(&estimate.response).map(|(f, y)| y - f).collect();
+        let residual: Vec<f64> = mul_vec(estimate.design.as_ref(), &shaped.beta)
+            .iter()
+            .zip(&estimate.response)
+            .map(|(f, y)| y - f)
+            .collect();
         let change = previous
             .as_ref()
             .map_or(f64::INFINITY, |old| shaped.beta.iter().zip(old).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max));
@@ -66,12 +66,6 @@ pub(crate) fn shape(block: &Block, estimate: &Estimate, loss: Loss) -> Result<Sh
     }
 }
 
-/// γ of scaled coefficients.
-fn coordinates(block: &Block, beta: &[f64]) -> Vec<f64> {
-    let moved: Vec<f64> = beta.iter().zip(&block.offset).map(|(b, o)| b - o).collect();
-    tr_mul_vec(block.basis.as_ref(), &moved)
-}
-
 fn solve(block: &Block, estimate: &Estimate, weight: &[f64]) -> Result<Shaped, FitError> {
     let mut design = estimate.design.clone();
     let mut response = estimate.response.clone();
@@ -84,7 +78,7 @@ fn solve(block: &Block, estimate: &Estimate, weight: &[f64]) -> Result<Shaped, F
             }
         }
     }
-    if !block.has_equalities && block.inequalities.is_empty() {
+    if block.inequalities.is_empty() {
         let found = bounded_least_squares(design.as_ref(), &response, &block.lower, &block.upper);
         return Ok(Shaped {
             beta: found.x,
@@ -95,9 +89,9 @@ fn solve(block: &Block, estimate: &Estimate, weight: &[f64]) -> Result<Shaped, F
             loss_weight: weight.to_vec(),
         });
     }
-    let (constraints, tags) = reduced_constraints(block)?;
+    let (constraints, tags) = constraints_of(block);
     let found = constrained(design.as_ref(), &response, &constraints)?;
-    let mut beta = block.expand(&found.x);
+    let mut beta = found.x;
     let mut at_bound = vec![None; beta.len()];
     let mut active_inequalities = Vec::new();
     for k in found.active {
@@ -122,37 +116,20 @@ fn solve(block: &Block, estimate: &Estimate, weight: &[f64]) -> Result<Shaped, F
     })
 }
 
-/// Bounds and inequalities as constraints of unit length on γ.
-fn reduced_constraints(block: &Block) -> Result<(Vec<Inequality>, Vec<Tag>), FitError> {
-    let mut all: Vec<(Vec<f64>, f64, Tag)> = Vec::new();
+/// Bounds and inequalities as constraints of unit length, with what each stands for.
+fn constraints_of(block: &Block) -> (Vec<Inequality>, Vec<Tag>) {
+    let mut all: Vec<(Inequality, Tag)> = Vec::new();
     for l in 0..block.columns.len() {
         let mut unit = vec![0.0; block.columns.len()];
         if block.upper[l].is_finite() {
             unit[l] = 1.0;
-            all.push((unit.clone(), block.upper[l], Tag::Bound(l, Side::Upper)));
+            all.push(((unit.clone(), block.upper[l]), Tag::Bound(l, Side::Upper)));
         }
         if block.lower[l].is_finite() {
             unit[l] = -1.0;
-            all.push((unit, -block.lower[l], Tag::Bound(l, Side::Lower)));
+            all.push(((unit, -block.lower[l]), Tag::Bound(l, Side::Lower)));
         }
     }
-    for (k, (row, value)) in block.inequalities.iter().enumerate() {
-        all.push((row.clone(), *value, Tag::Inequality(k)));
-    }
-    let mut constraints = Vec::new();
-    let mut tags = Vec::new();
-    for (row, value, tag) in all {
-        let rest = value - dot(&row, &block.offset);
-        let reduced = tr_mul_vec(block.basis.as_ref(), &row);
-        let length = norm(&reduced);
-        if length <= CONSTANT {
-            if rest < -1e-9 * (value.abs() + norm(&block.offset)) {
-                return Err(FitError::Infeasible);
-            }
-            continue;
-        }
-        constraints.push((reduced.iter().map(|r| r / length).collect(), rest / length));
-        tags.push(tag);
-    }
-    Ok((constraints, tags))
+    all.extend(block.inequalities.iter().enumerate().map(|(k, row)| (row.clone(), Tag::Inequality(k))));
+    all.into_iter().unzip()
 }

@@ -82,7 +82,7 @@ pub struct WildResult {
 /// Wild cluster bootstrap of coefficient `index`.
 ///
 /// Bounds and inequalities are left out, as in every interval of this crate;
-/// equalities and held coefficients are kept.
+/// held coefficients are kept.
 ///
 /// # Errors
 ///
@@ -170,13 +170,12 @@ impl Sums {
             None => part.estimate.residual.clone(),
             Some(null) => {
                 // Whitened as the full fit, so that both use one metric.
-                let value = part.block.scale[local] * null - part.block.offset[local];
-                let basis_row = row(part.block.basis.as_ref(), local);
-                let length = crate::dense::norm(&basis_row);
-                if length == 0.0 {
-                    return Err(FitError::Undetermined { name: problem.names[index].clone() });
-                }
-                restricted_residual(&part.estimate.design, &part.estimate.response, &basis_row, value)
+                restricted_residual(
+                    &part.estimate.design,
+                    &part.estimate.response,
+                    local,
+                    part.block.scale[local] * null,
+                )
             }
         };
         let clusters = clusters(problem, &part.block, FEWEST_CLUSTERS)?;
@@ -272,17 +271,12 @@ impl Sums {
 }
 
 /// Residuals of `min ‖A γ − b‖` with `row · γ = value`.
-fn restricted_residual(design: &faer::Mat<f64>, response: &[f64], row: &[f64], value: f64) -> Vec<f64> {
-    let length = crate::dense::norm(row);
-    let unit: Vec<f64> = row.iter().map(|r| r / length).collect();
-    let Ok((offset, basis)) = crate::block::eliminate(row.len(), &[(unit, value / length)]) else {
-        return response.to_vec();
-    };
-    let base = mul_vec(design.as_ref(), &offset);
-    let rest: Vec<f64> = response.iter().zip(&base).map(|(y, f)| y - f).collect();
-    let reduced = crate::dense::mul(design.as_ref(), basis.as_ref());
-    let gamma = crate::rank::PivotedQr::new(reduced.as_ref()).solve(&rest);
-    rest.iter().zip(mul_vec(reduced.as_ref(), &gamma)).map(|(y, f)| y - f).collect()
+fn restricted_residual(design: &faer::Mat<f64>, response: &[f64], column: usize, value: f64) -> Vec<f64> {
+    let rest: Vec<f64> = response.iter().enumerate().map(|(i, y)| y - value * design[(i, column)]).collect();
+    let others =
+        faer::Mat::from_fn(design.nrows(), design.ncols() - 1, |i, j| design[(i, j + usize::from(j >= column))]);
+    let gamma = crate::rank::PivotedQr::new(others.as_ref()).solve(&rest);
+    rest.iter().zip(mul_vec(others.as_ref(), &gamma)).map(|(y, f)| y - f).collect()
 }
 
 /// A seed of its own for each resample (the finaliser of SplitMix64).

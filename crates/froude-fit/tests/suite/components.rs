@@ -1,7 +1,7 @@
 //! Several components in one problem.
 
 use faer::Mat;
-use froude_fit::{Constraint, End, Options, Problem, fit};
+use froude_fit::{End, Options, Problem, fit};
 
 use crate::{assert_close, names, normal, rng, single};
 
@@ -81,26 +81,6 @@ fn a_shared_coefficient_is_weighed_by_the_components_sigma() {
     let quiet = found.components[0].dof;
     let dof = found.coefficients[0].dof.unwrap();
     assert!(dof >= quiet - 0.5 && dof < quiet + 3.0, "{dof} {quiet}");
-}
-
-#[test]
-fn an_equality_couples_components_too() {
-    let problem = stacked(false);
-    let options = Options {
-        equalities: vec![
-            Constraint { row: vec![1.0, 0.0, -1.0, 0.0], value: 0.0 },
-            Constraint { row: vec![0.0, 1.0, 0.0, -1.0], value: 0.0 },
-        ],
-        ..Options::default()
-    };
-    let tied = fit(&problem, &options).unwrap();
-    let shared = fit(&stacked(true), &Options::default()).unwrap();
-    for j in 0..2 {
-        let c = &shared.coefficients[j];
-        assert_close(tied.coefficients[j].value.unwrap(), c.value.unwrap(), 1e-10);
-        assert_close(tied.coefficients[j + 2].value.unwrap(), c.value.unwrap(), 1e-10);
-        assert_close(tied.coefficients[j].standard.unwrap(), c.standard.unwrap(), 1e-9);
-    }
 }
 
 #[test]

@@ -36,8 +36,8 @@ fn sizes_that_do_not_match() {
     refused(&problem, &Options::default(), "cluster has 2 entries where 4 are needed (one per row of the design)");
     let options = Options { bounds: vec![Bound::FREE], ..Options::default() };
     refused(&good(), &options, "bounds has 1 entries where 2 are needed (one per column of the design)");
-    let options = Options { equalities: vec![Constraint { row: vec![1.0], value: 0.0 }], ..Options::default() };
-    refused(&good(), &options, "equality row has 1 entries where 2 are needed (one per column of the design)");
+    let options = Options { inequalities: vec![Constraint { row: vec![1.0], value: 0.0 }], ..Options::default() };
+    refused(&good(), &options, "inequality row has 1 entries where 2 are needed (one per column of the design)");
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn options_that_cannot_be() {
         "cluster-robust covariance needs a cluster for every row, and none are given: name the column that has them, group = \"run\" say",
     );
     with(
-        Options { equalities: vec![Constraint { row: vec![f64::NAN, 0.0], value: 0.0 }], ..Options::default() },
+        Options { inequalities: vec![Constraint { row: vec![f64::NAN, 0.0], value: 0.0 }], ..Options::default() },
         "a number of a constraint is NaN; it must be finite",
     );
 }
@@ -112,9 +112,9 @@ fn constraints_on_held_coefficients_hold_or_are_refused() {
     let row = vec![1.0, 0.0];
     let held = |value: f64| Options {
         fixed: vec![(0, 1.0)],
-        equalities: vec![Constraint { row: row.clone(), value }],
+        inequalities: vec![Constraint { row: row.clone(), value }],
         ..Options::default()
     };
     assert!(fit(&good(), &held(1.0)).is_ok());
-    refused(&good(), &held(2.0), "equality 0 contradicts the other equalities or the fixed coefficients");
+    refused(&good(), &held(0.5), "no coefficients satisfy all constraints at once; drop or widen one");
 }

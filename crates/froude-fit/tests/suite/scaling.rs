@@ -30,7 +30,6 @@ fn rescaled(problem: &Problem, options: &Options, factor: &[f64]) -> Fit {
             .zip(factor)
             .map(|(b, f)| Bound { lower: b.lower / f, upper: b.upper / f })
             .collect(),
-        equalities: options.equalities.iter().map(row).collect(),
         inequalities: options.inequalities.iter().map(row).collect(),
         priors: options
             .priors
@@ -89,7 +88,6 @@ proptest! {
         };
         let with_prior = Options {
             priors: vec![Prior::new(3, 0.1, 0.05)],
-            equalities: vec![Constraint { row: vec![0.0, 1.0, 1.0, 0.0], value: 0.8 }],
             ..Options::default()
         };
         for options in [Options::default(), with_bounds, with_constraint, with_prior] {

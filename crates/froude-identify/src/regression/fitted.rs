@@ -202,7 +202,6 @@ impl ModelFit {
         if k == 0 || self.declared.nrows() != n {
             return (self.problem.clone(), options);
         }
-        options.equalities.iter_mut().for_each(|equality| equality.row.resize(p + k, 0.0));
         options.priors.extend((0..k).map(|error| fit::Prior::new(p + error, 0.0, 1.0)));
         let entry = |i: usize, j: usize| if j < p { self.problem.design[(i, j)] } else { self.declared[(i, j - p)] };
         let mut names = self.problem.names.clone();

@@ -117,7 +117,6 @@ pub(crate) fn widened(
             ..fit::Options::default()
         };
     }
-    options.equalities.iter_mut().for_each(|equality| equality.row.resize(p + m, 0.0));
     let fitted = fit::fit(&larger, &options).ok()?;
     let gamma: Vec<f64> = fitted.coefficients[p..].iter().map(|c| c.value).collect::<Option<_>>()?;
     let dof =
