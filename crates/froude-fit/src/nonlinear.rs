@@ -1,8 +1,8 @@
 //! Non-linear least squares: bounded, with parameters of single runs, and realistic intervals.
 //!
 //! A [`Model`] gives weighted residuals, measured less modelled, run by run; [`minimise`] looks for the [`Parameter`]s that make their sum of
-//! squares least. What comes out of a simulation in time has serially correlated residuals: its intervals are made from whole runs, or from a
-//! stated lag, and not as if every sample were new.
+//! squares least. What comes out of a simulation in time has serially correlated residuals: its intervals are made with a
+//! lag, and not as if every sample were new.
 //!
 //! **Setting.** Parameters shared by all runs, and parameters that move one run alone (its amplitude, its phase); bounds on each; derivatives by
 //! the model or by central differences.
@@ -16,9 +16,8 @@
 //! | standard uncertainty            | [`Solution::covariance`]              | see [`Scatter`]                                   |
 //!
 //! **Measured.** Seven problems of NIST's, certified to eleven digits: parameters to 1e-7, standard uncertainties to 1e-6 of themselves, from both
-//! starts but one; from MGH10's first start the valley is too long, and the report says so. 95 % intervals, 2,000 repetitions: by runs 95.0 %
-//! (6 runs) and 95.3 % (15) of noise that remembers 0.75 of itself from row to row, where the classical interval covers 60 % and 62 %; with a
-//! lag, one run of 1,000 rows, 92.2 %: somewhat too short, as such intervals are. On a curved model, a line read on a logarithmic scale, the linear interval covers 87.8 %.
+//! starts but one; from MGH10's first start the valley is too long, and the report says so. 95 % intervals, 2,000 repetitions: with a
+//! lag, one run of 1,000 rows of noise that remembers 0.75 of itself from row to row, 92.2 %: somewhat too short, as such intervals are. On a curved model, a line read on a logarithmic scale, the linear interval covers 87.8 %.
 //!
 //! Not here: more than one minimum (start from several places), inequalities between parameters, robust losses, second derivatives: where
 //! residuals are large and the model strongly curved, steps converge slowly and the covariance is Gauss and Newton's.
@@ -74,7 +73,6 @@ pub struct Solution {
     pub dof: usize,
     /// How it ended.
     pub report: Report,
-    parameters: Vec<Parameter>,
     layout: Layout,
 }
 
@@ -180,7 +178,6 @@ pub fn minimise(model: &dyn Model, parameters: &[Parameter], settings: &Settings
         residuals: here.residuals,
         columns: here.columns,
         report,
-        parameters: parameters.to_vec(),
         layout: problem.layout,
     })
 }

@@ -1,35 +1,25 @@
-//! Covariance of the shared parameters: of independent residuals, by runs, and with a lag.
+//! Covariance of the shared parameters: of independent residuals, and with a lag.
 //!
 //! All of it is of the linearised model, in the coordinates `Qᵀ r` of the projected rows (see [`super::border`]): what is added up is one
-//! score `q r` per row, per run, or per pair of rows within a lag.
+//! score `q r` per row, or per pair of rows within a lag.
 
 use faer::Mat;
 
 use super::Solution;
 use super::border::{Eliminated, eliminate};
 use super::error::NonlinearError;
-use crate::budget::jackknife;
-use crate::covariance::FEWEST_CLUSTERS;
-use crate::dense::{Cholesky, dot, mul, row};
+use crate::dense::{dot, mul, row};
 use crate::determined::Indeterminacy;
-use crate::distribution::coverage_factor;
-use crate::nonlinear::model::Parameter;
-
-/// A run decides something alone when a pivot without it falls below this.
-const ALONE: f64 = 1e-10;
 
 /// What is known about the noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scatter {
     /// Residuals are independent and equally wide: `σ² (CᵀC)⁻¹`. Not true of a simulated time series.
     Independent,
-    /// Runs are independent, whatever happens inside: one-step delete-a-run jackknife about its own mean, Student's t with a degree of freedom
-    /// less than there are runs. Nuisances go with their run. Bell & McCaffrey (2002), Surv. Methodol. 28, 169; Efron & Stein (1981).
-    Runs,
     /// Residuals of a run are correlated over some rows: Bartlett's weights up to `lag` rows, `None` for the lag that an autoregression of the
     /// scores asks for. Newey & West (1987), Econometrica 55, 703; Andrews (1991), Econometrica 59, 817 (the lag); degrees of freedom
     /// 1.5 n/(lag + 1) of the window at frequency zero, Priestley (1981), 6.2, with `n` the rows that count for the parameter that rests on
-    /// fewest, `(Σ w²)²/Σ w⁴` of their influences. For one long run; with several take [`Self::Runs`].
+    /// fewest, `(Σ w²)²/Σ w⁴` of their influences. For long runs.
     Serial {
         /// Largest distance of rows that are correlated.
         lag: Option<usize>,
@@ -39,8 +29,6 @@ pub enum Scatter {
 /// Covariance of the shared parameters; those at a bound are held there.
 #[derive(Debug, Clone)]
 pub struct SharedCovariance {
-    /// What was taken to be known about the noise.
-    pub scatter: Scatter,
     /// The lag that was used, in rows.
     pub lag: Option<usize>,
     /// Degrees of freedom of Student's t.
@@ -70,22 +58,17 @@ impl Solution {
     ///
     /// # Errors
     ///
-    /// [`NonlinearError`] without degrees of freedom; for [`Scatter::Runs`], below [`FEWEST_CLUSTERS`] runs, or where one run alone determines
-    /// a parameter.
+    /// [`NonlinearError`] without degrees of freedom.
     pub fn covariance(&self, scatter: Scatter) -> Result<SharedCovariance, NonlinearError> {
         let rows: usize = self.residuals.iter().map(Vec::len).sum();
         let Some(sigma) = self.sigma() else {
             return Err(NonlinearError::NoDegreesOfFreedom { rows, rank: rows - self.dof });
         };
-        let linear = self.eliminated();
+        let linear = eliminate(&self.point(), &self.layout, |j| !self.at_bound[j], &self.residuals, None);
         let rank = linear.shared.qr.rank;
         let (core, dof, lag) = match scatter {
             Scatter::Independent => {
                 (Mat::from_fn(rank, rank, |i, j| sigma * sigma * f64::from(u8::from(i == j))), self.dof as f64, None)
-            }
-            Scatter::Runs => {
-                let (core, dof) = by_runs(&linear)?;
-                (core, dof, None)
             }
             Scatter::Serial { lag } => {
                 let scores: Vec<Vec<Vec<f64>>> = (0..linear.rows.len()).map(|run| linear.scores(run)).collect();
@@ -99,95 +82,8 @@ impl Solution {
         let lift = linear.lift();
         let matrix = mul(mul(lift.as_ref(), core.as_ref()).as_ref(), lift.transpose());
         let determined = Indeterminacy::new(linear.shared.qr.null_space().as_ref()).determined;
-        Ok(SharedCovariance { scatter, lag, dof, free: linear.free, determined, matrix })
+        Ok(SharedCovariance { lag, dof, free: linear.free, determined, matrix })
     }
-
-    /// Interval of a shared parameter, `value ± t · standard`: right where the model is nearly straight over it.
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::covariance`], and [`NonlinearError::Undetermined`] for a parameter without a standard uncertainty.
-    pub fn interval(&self, parameter: usize, scatter: Scatter, confidence: f64) -> Result<[f64; 2], NonlinearError> {
-        self.named(parameter)?;
-        check_confidence(confidence)?;
-        let covariance = self.covariance(scatter)?;
-        let standard = covariance.standard(parameter).ok_or_else(|| self.undetermined(parameter))?;
-        let half = coverage_factor(confidence, covariance.dof) * standard;
-        Ok([self.values[parameter] - half, self.values[parameter] + half])
-    }
-
-    /// What one more in a residual of a run changes the free shared parameters by: a row per shared parameter, zero where held, a column per
-    /// residual. The runs' own parameters follow along.
-    ///
-    /// `None` for a run that does not exist.
-    #[must_use]
-    pub fn sensitivity(&self, run: usize) -> Option<Mat<f64>> {
-        let n = self.residuals.get(run)?.len();
-        let linear = self.eliminated();
-        let (lift, rotated) = (linear.lift(), linear.rotated(run));
-        let mut out = Mat::zeros(self.layout.shared.len(), n);
-        for (k, j) in self.layout.shared.iter().enumerate() {
-            if let Some(l) = linear.free.iter().position(|f| f == j) {
-                let lift = row(lift.as_ref(), l);
-                for (i, q) in rotated.iter().enumerate() {
-                    out[(k, i)] = dot(&lift, q);
-                }
-            }
-        }
-        Some(out)
-    }
-
-    fn eliminated(&self) -> Eliminated {
-        eliminate(&self.point(), &self.layout, |j| !self.at_bound[j], &self.residuals, None)
-    }
-
-    fn named(&self, parameter: usize) -> Result<&Parameter, NonlinearError> {
-        let count = self.parameters.len();
-        self.parameters.get(parameter).ok_or(NonlinearError::NoSuchParameter { index: parameter, count })
-    }
-
-    fn undetermined(&self, parameter: usize) -> NonlinearError {
-        let Parameter { name, run, .. } = &self.parameters[parameter];
-        let why = if run.is_some() {
-            "it belongs to one run alone"
-        } else if self.at_bound[parameter] {
-            "it lies on a bound"
-        } else {
-            "the data do not determine it; fix it, or add data that depend on it"
-        };
-        NonlinearError::Undetermined { name: name.clone(), why }
-    }
-}
-
-fn check_confidence(confidence: f64) -> Result<(), NonlinearError> {
-    if confidence > 0.0 && confidence < 1.0 {
-        return Ok(());
-    }
-    Err(NonlinearError::Setting { setting: "confidence", value: confidence, must: "between 0 and 1" })
-}
-
-/// `(G−1)/G Σ (Δ − Δ̄)(Δ − Δ̄)ᵀ`, with `Δ` the change of the rotated parameters when a run is left out.
-fn by_runs(linear: &Eliminated) -> Result<(Mat<f64>, f64), NonlinearError> {
-    let (runs, rank) = (linear.rows.len(), linear.shared.qr.rank);
-    let too_few = NonlinearError::TooFewRuns { found: runs, needed: FEWEST_CLUSTERS };
-    if runs < FEWEST_CLUSTERS {
-        return Err(too_few);
-    }
-    let without = |run: usize| -> Result<Vec<f64>, NonlinearError> {
-        let mut rest = Mat::<f64>::identity(rank, rank);
-        for q in linear.rotated(run) {
-            add_outer(&mut rest, &q, &q, -1.0);
-        }
-        let rest = Cholesky::new(rest.as_ref(), ALONE).ok_or(NonlinearError::RunDecides { run })?;
-        let mut change = vec![0.0; rank];
-        for score in linear.scores(run) {
-            change.iter_mut().zip(score).for_each(|(c, s)| *c -= s);
-        }
-        rest.solve(&mut change);
-        Ok(change)
-    };
-    let changes: Vec<Vec<f64>> = (0..runs).map(without).collect::<Result<_, _>>()?;
-    jackknife(runs, |run| Some(changes[run].clone())).ok_or(too_few)
 }
 
 /// `Σ_runs Σ_|l| ≤ lag (1 − |l|/(lag+1)) Σ s_i s_{i−l}ᵀ`.

@@ -143,24 +143,6 @@ pub enum NonlinearError {
         name: String,
     },
 
-    /// A parameter is asked for that does not exist.
-    #[error("parameter {index} is asked for, but {count} are given")]
-    NoSuchParameter {
-        /// The index.
-        index: usize,
-        /// How many there are.
-        count: usize,
-    },
-
-    /// A parameter is asked for that has no covariance.
-    #[error("{name:?} has no standard uncertainty: {why}")]
-    Undetermined {
-        /// The parameter.
-        name: String,
-        /// Why, and what could be done.
-        why: &'static str,
-    },
-
     /// Nothing is left to estimate the noise from.
     #[error("{rows} residuals for {rank} determined parameters leave none to estimate the noise from; add data")]
     NoDegreesOfFreedom {
@@ -168,21 +150,5 @@ pub enum NonlinearError {
         rows: usize,
         /// Parameters they determine.
         rank: usize,
-    },
-
-    /// Too few runs for an interval that means anything.
-    #[error("{found} runs; the jackknife over runs needs {needed}; take the serial covariance or add runs")]
-    TooFewRuns {
-        /// How many runs there are.
-        found: usize,
-        /// How many are needed.
-        needed: usize,
-    },
-
-    /// One run alone determines some shared parameter.
-    #[error("without run {run} the others no longer determine all shared parameters; repeat that run")]
-    RunDecides {
-        /// The run.
-        run: usize,
     },
 }
