@@ -3,23 +3,15 @@
 //! | what                      | function                 | source                        |
 //! |---------------------------|--------------------------|-------------------------------|
 //! | correlation of neighbours | [`durbin_watson`]        | Durbin & Watson (1950)        |
-//! | its probability           | [`durbin_watson_p`]      | Durbin & Watson (1951), beta approximation |
 //! | correlation at any lag    | [`ljung_box`]            | Ljung & Box (1978)            |
 //! | collinearity              | [`condition_number`]     | Belsley, Kuh & Welsch (1980)  |
 
 use faer::linalg::svd::{ComputeSvdVectors, svd, svd_scratch};
-use faer::{Mat, MatRef, Par};
+use faer::{MatRef, Par};
 
-use crate::dense::{dot, mul};
-use crate::distribution::{beta_lower, chi_squared_upper};
+use crate::dense::dot;
+use crate::distribution::chi_squared_upper;
 use crate::rank::{PivotedQr, RANK_TOLERANCE};
-
-/// Residuals count as serially correlated when independent errors would give a
-/// Durbin–Watson statistic this far out more rarely than this.
-///
-/// One in a hundred: a campaign fits several models to several components, and
-/// one false alarm in twenty would be one in most reports.
-pub const SERIAL_P: f64 = 0.01;
 
 /// Durbin–Watson statistic `Σ (r_i − r_{i−1})² / Σ r_i²` of residuals in order.
 ///
@@ -33,64 +25,6 @@ pub fn durbin_watson(residuals: &[f64]) -> Option<f64> {
     }
     let steps: f64 = residuals.windows(2).map(|pair| (pair[1] - pair[0]) * (pair[1] - pair[0])).sum();
     Some(steps / size)
-}
-
-/// Probability that independent normal errors give a Durbin–Watson statistic
-/// as far from its mean, on either side.
-///
-/// `q` (`n × rank`) is an orthonormal basis of the columns that were fitted:
-/// mean and variance under independence follow from it exactly, and `d/4` is
-/// taken as a beta variable with these. `None` without two degrees of freedom.
-///
-/// # Source
-///
-/// Durbin & Watson (1951), *Testing for serial correlation in least squares
-/// regression II*, section 4.
-#[must_use]
-pub fn durbin_watson_p(statistic: f64, q: MatRef<'_, f64>) -> Option<f64> {
-    let (n, rank) = q.shape();
-    if n < rank + 2 || n < 3 {
-        return None;
-    }
-    let aq = second_difference(q);
-    let aaq = second_difference(aq.as_ref());
-    let qaq = mul(q.transpose(), aq.as_ref());
-    let qaaq = mul(q.transpose(), aaq.as_ref());
-    let n = n as f64;
-    let dof = n - rank as f64;
-    let mut trace_1 = 2.0 * (n - 1.0);
-    let mut trace_2 = 2.0 * (3.0 * n - 4.0);
-    for i in 0..rank {
-        trace_1 -= qaq[(i, i)];
-        trace_2 -= 2.0 * qaaq[(i, i)];
-        for j in 0..rank {
-            trace_2 += qaq[(i, j)] * qaq[(j, i)];
-        }
-    }
-    let mean = trace_1 / dof;
-    let variance = 2.0 * (trace_2 - trace_1 * mean) / (dof * (dof + 2.0));
-    let (m, v) = (mean / 4.0, variance / 16.0);
-    let sum = m * (1.0 - m) / v - 1.0;
-    if !(m > 0.0 && m < 1.0 && sum.is_finite() && sum > 0.0) {
-        return None;
-    }
-    let lower = beta_lower(statistic / 4.0, m * sum, (1.0 - m) * sum);
-    Some((2.0 * lower.min(1.0 - lower)).clamp(0.0, 1.0))
-}
-
-/// `A X` with the matrix `A` of the Durbin–Watson numerator `rᵀ A r`.
-fn second_difference(x: MatRef<'_, f64>) -> Mat<f64> {
-    let n = x.nrows();
-    Mat::from_fn(n, x.ncols(), |i, j| {
-        let mut sum = 0.0;
-        if i > 0 {
-            sum += x[(i, j)] - x[(i - 1, j)];
-        }
-        if i + 1 < n {
-            sum += x[(i, j)] - x[(i + 1, j)];
-        }
-        sum
-    })
 }
 
 /// Ljung–Box statistic of the first `lags` autocorrelations, and its
@@ -153,6 +87,8 @@ pub fn condition_number(a: MatRef<'_, f64>) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
+    use faer::Mat;
+
     use super::*;
 
     #[test]
@@ -162,19 +98,6 @@ mod tests {
         let drift = [-1.0, -1.0, 1.0, 1.0];
         assert_eq!(durbin_watson(&drift), Some(1.0));
         assert_eq!(durbin_watson(&[0.0, 0.0]), None);
-    }
-
-    /// Savin & White (1977), 5 % points with an intercept and one regressor;
-    /// for n = 15: d_L = 1.077, d_U = 1.361. Whatever the regressor, a
-    /// statistic of d_L is at or below the 5 % point on one side, d_U at or above.
-    #[test]
-    fn the_probability_respects_the_printed_bounds() {
-        let a = Mat::from_fn(15, 2, |i, j| if j == 0 { 1.0 } else { (i as f64).powi(2) });
-        let q = PivotedQr::new(a.as_ref()).q;
-        let at_lower = durbin_watson_p(1.077, q.as_ref()).unwrap();
-        let at_upper = durbin_watson_p(1.361, q.as_ref()).unwrap();
-        assert!(0.5 * at_lower < 0.05 + 5e-4, "{at_lower}");
-        assert!(0.5 * at_upper > 0.05 - 5e-4, "{at_upper}");
     }
 
     #[test]

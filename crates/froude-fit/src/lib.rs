@@ -87,6 +87,6 @@ pub use factored::{Factored, Solution};
 pub use faer;
 pub use linear::fit;
 pub use options::{Bound, Constraint, CovarianceKind, Loss, Options, Prior};
-pub use outcome::{Combination, ComponentSummary, Fit, FitCoefficient, Optimality, Prediction, Status};
+pub use outcome::{Combination, ComponentSummary, Fit, FitCoefficient, Optimality, Status};
 pub use problem::Problem;
 pub use report::{End, Report};

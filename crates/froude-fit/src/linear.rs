@@ -17,7 +17,7 @@ use crate::block::{Block, blocks};
 use crate::covariance::{Core, core};
 use crate::dense::{dot, mul, mul_vec, row};
 use crate::determined::Indeterminacy;
-use crate::diagnostics::{condition_number, durbin_watson, durbin_watson_p};
+use crate::diagnostics::{condition_number, durbin_watson};
 use crate::distribution::coverage_factor;
 use crate::error::FitError;
 use crate::estimate::{Estimate, estimate};
@@ -200,11 +200,9 @@ fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
         minimiser[j] = value;
     }
     let mut coefficients = held_coefficients(problem, options);
-    let mut full_covariance = Mat::zeros(p, p);
     let mut covariance = Mat::zeros(p, p);
     let mut sensitivity = Mat::zeros(p, n);
     let mut leverage = vec![0.0; n];
-    let mut loss_weight = vec![1.0; n];
     let mut undetermined = Vec::new();
     let mut null_columns: Vec<Vec<f64>> = Vec::new();
     let mut report = Report { end: End::Converged, iterations: 0 };
@@ -221,11 +219,9 @@ fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
         let is_known: Vec<bool> = block.columns.iter().map(|&j| coefficients[j].standard.is_some()).collect();
         for (l, &j) in block.columns.iter().enumerate() {
             for (m, &k) in block.columns.iter().enumerate() {
-                // The mean of both halves: symmetric to the last bit.
-                let both = 0.5 * (of_block[(l, m)] + of_block[(m, l)]);
-                full_covariance[(j, k)] = both;
                 if is_known[l] && is_known[m] {
-                    covariance[(j, k)] = both;
+                    // The mean of both halves: symmetric to the last bit.
+                    covariance[(j, k)] = 0.5 * (of_block[(l, m)] + of_block[(m, l)]);
                 }
             }
             if part.indeterminacy.determined[l] {
@@ -238,10 +234,6 @@ fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
         for (k, &i) in block.rows.iter().enumerate() {
             let q = row(part.estimate.qr.q.as_ref(), n_priors + k);
             leverage[i] = dot(&q, &q);
-            loss_weight[i] = part
-                .shaped
-                .as_ref()
-                .map_or_else(|| part.estimate.loss_weight[n_priors + k], |s| s.loss_weight[n_priors + k]);
         }
         undetermined.extend(combinations(part, &value));
         for k in 0..part.indeterminacy.null.ncols() {
@@ -265,33 +257,24 @@ fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
     if let Some(all) = &mut optimality {
         all.active_inequalities.sort_unstable();
     }
-    let null_space = Mat::from_fn(p, null_columns.len(), |j, k| null_columns[k][j]);
     let fitted = mul_vec(problem.design.as_ref(), &minimiser);
     let residuals: Vec<f64> = problem.response.iter().zip(&fitted).map(|(y, f)| y - f).collect();
     let components = components(problem, options, parts, &residuals);
-    let aicc = components.iter().map(|c| c.aicc).sum();
-    let (correlation, largest_correlation) = correlation(&covariance);
     Fit {
         condition_number: overall_condition(parts),
         coefficients,
+        largest_correlation: largest_correlation(&covariance),
         covariance,
-        covariance_kind: options.covariance,
-        correlation,
-        largest_correlation,
         components,
         fitted,
         residuals,
         leverage,
-        loss_weight,
         undetermined,
-        aicc,
         sensitivity,
         optimality,
-        confidence: options.confidence,
         report,
         minimiser,
-        full_covariance,
-        null_space,
+        null_columns,
     }
 }
 
@@ -384,9 +367,6 @@ fn component(problem: &Problem, options: &Options, part: &Part, k: usize, residu
     let is_rounding = rss <= ROUNDING * ROUNDING * size;
     let is_single = part.block.components.len() == 1;
     let durbin_watson = if n < 3 || is_rounding || is_condensed { None } else { durbin_watson(&weighted) };
-    let is_plain = is_single && part.estimate.n_priors == 0;
-    let durbin_watson_p =
-        durbin_watson.filter(|_| is_plain).and_then(|d| durbin_watson_p(d, part.estimate.qr.q.as_ref()));
     let aicc = if options.loss == Loss::Squares && !is_rounding {
         crate::select::aicc(n, rss, n as f64 - dof).ok()
     } else {
@@ -404,8 +384,6 @@ fn component(problem: &Problem, options: &Options, part: &Part, k: usize, residu
             (rss, size) => (rss / size).sqrt(),
         },
         durbin_watson,
-        durbin_watson_p,
-        is_serially_correlated: durbin_watson_p.is_some_and(|p| p < crate::diagnostics::SERIAL_P),
         aicc,
     }
 }
@@ -429,29 +407,20 @@ fn overall_condition(parts: &[Part]) -> f64 {
     if smallest.is_infinite() { 1.0 } else { largest / smallest }
 }
 
-fn correlation(covariance: &Mat<f64>) -> (Mat<f64>, Option<(usize, usize, f64)>) {
+/// The pair of coefficients with the largest correlation, and that.
+fn largest_correlation(covariance: &Mat<f64>) -> Option<(usize, usize, f64)> {
     let p = covariance.nrows();
-    let root: Vec<f64> = (0..p).map(|j| covariance[(j, j)].sqrt()).collect();
-    let correlation = Mat::from_fn(p, p, |i, j| {
-        let size = root[i] * root[j];
-        if i == j && size > 0.0 {
-            1.0
-        } else if size > 0.0 {
-            (covariance[(i, j)] / size).clamp(-1.0, 1.0)
-        } else {
-            0.0
-        }
-    });
     let mut largest: Option<(usize, usize, f64)> = None;
     for i in 0..p {
         for j in i + 1..p {
-            let r = correlation[(i, j)];
+            let size = covariance[(i, i)].sqrt() * covariance[(j, j)].sqrt();
+            let r = if size > 0.0 { (covariance[(i, j)] / size).clamp(-1.0, 1.0) } else { 0.0 };
             if r != 0.0 && largest.is_none_or(|(_, _, best)| r.abs() > best.abs()) {
                 largest = Some((i, j, r));
             }
         }
     }
-    (correlation, largest)
+    largest
 }
 
 /// The part of a coefficient's block, for methods that need only that.

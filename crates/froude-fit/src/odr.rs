@@ -63,12 +63,8 @@ pub struct OdrSigma {
     pub component: String,
     /// Its σ, without what the input errors contribute.
     pub sigma: f64,
-    /// Whether it was estimated.
-    pub is_estimated: bool,
     /// Degrees of freedom of the estimate, infinite when known.
     pub dof: f64,
-    /// The input errors alone explain all scatter; σ is at its floor.
-    pub is_negligible: bool,
 }
 
 /// The result of [`odr`].
@@ -94,8 +90,6 @@ pub struct OdrFit {
     pub residuals: Mat<f64>,
     /// The sum that was minimised.
     pub objective: f64,
-    /// Probability of the intervals.
-    pub confidence: f64,
     /// How it ended.
     pub report: Report,
 }
@@ -209,15 +203,12 @@ fn finish<M: InputModel>(
             .map(|k| OdrSigma {
                 component: problem.components[k].clone(),
                 sigma: variance.sigma[k],
-                is_estimated: problem.sigma[k] == Sigma::Estimated,
                 dof: spread.sigma_dof(k, variance.sigma[k]),
-                is_negligible: variance.is_at_floor(k),
             })
             .collect(),
         input_correction: state.delta.clone(),
         residuals: Mat::from_fn(n, c, |i, k| linear.residual[i * c + k]),
         objective: solve::objective(problem, state, &linear.residual, &variance.sigma),
-        confidence,
         report,
     }
 }

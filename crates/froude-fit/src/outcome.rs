@@ -2,7 +2,6 @@
 
 use faer::Mat;
 
-use crate::options::CovarianceKind;
 use crate::report::Report;
 
 /// How a coefficient came by its value.
@@ -90,10 +89,6 @@ pub struct ComponentSummary {
     /// Durbin–Watson statistic of the residuals in row order; `None` below
     /// three rows or for residuals that are rounding only.
     pub durbin_watson: Option<f64>,
-    /// Probability of a statistic as far from its mean, errors independent.
-    pub durbin_watson_p: Option<f64>,
-    /// Whether that probability is below [`crate::diagnostics::SERIAL_P`].
-    pub is_serially_correlated: bool,
     /// Corrected Akaike criterion (σ counted); `None` where it is not defined
     /// (see [`crate::select::aicc`]).
     pub aicc: Option<f64>,
@@ -110,15 +105,6 @@ pub struct Combination {
     pub standard: Option<f64>,
     /// Degrees of freedom of that.
     pub dof: Option<f64>,
-}
-
-/// A predicted response.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Prediction {
-    /// Its value.
-    pub value: f64,
-    /// Standard uncertainty of the mean response, not of a new observation.
-    pub standard: Option<f64>,
 }
 
 /// How well a constrained fit meets its optimality conditions.
@@ -138,10 +124,6 @@ pub struct Fit {
     /// Covariance of the unconstrained estimate, `p × p`; rows and columns are
     /// zero for coefficients that are held or not determined, NaN never.
     pub covariance: Mat<f64>,
-    /// Where it comes from.
-    pub covariance_kind: CovarianceKind,
-    /// Correlation, `p × p`, zero where the covariance is.
-    pub correlation: Mat<f64>,
     /// The pair of coefficients with the largest correlation, and that.
     pub largest_correlation: Option<(usize, usize, f64)>,
     /// One per component.
@@ -152,66 +134,38 @@ pub struct Fit {
     pub residuals: Vec<f64>,
     /// Diagonal of the hat matrix of the unconstrained fit, length `n`.
     pub leverage: Vec<f64>,
-    /// Weight that the loss gave each row, 1 for squares.
-    pub loss_weight: Vec<f64>,
     /// Largest over smallest singular value of the column-scaled free design;
     /// infinite when it is rank-deficient, 1 when nothing is free.
     pub condition_number: f64,
     /// What is determined of the coefficients that are not.
     pub undetermined: Vec<Combination>,
-    /// Sum of the components' criteria.
-    pub aicc: Option<f64>,
     /// `∂β/∂y`, `p × n`, of the unconstrained estimate; zero rows like the
     /// covariance. The way of input errors into coefficients: [`crate::propagate`].
     pub sensitivity: Mat<f64>,
     /// How well the bounds and inequalities are met; `None` without any.
     pub optimality: Option<Optimality>,
-    /// Probability of the intervals.
-    pub confidence: f64,
     /// How the iterations ended.
     pub report: Report,
     /// Some minimiser, also where coefficients are not determined.
     pub(crate) minimiser: Vec<f64>,
-    /// Covariance of the unconstrained estimate that goes with it.
-    pub(crate) full_covariance: Mat<f64>,
-    /// Null vectors, `p × k`.
-    pub(crate) null_space: Mat<f64>,
+    /// Null vectors.
+    pub(crate) null_columns: Vec<Vec<f64>>,
 }
 
 /// A row may have this part of its terms along a null vector and still be determined.
 const ALONG_NULL: f64 = 1e-8;
 
 impl Fit {
-    /// The coefficient of that name.
-    #[must_use]
-    pub fn coefficient(&self, name: &str) -> Option<&FitCoefficient> {
-        self.coefficients.iter().find(|c| c.name == name)
-    }
-
-    /// Whether the data determine `row · β`.
-    #[must_use]
-    pub fn determines(&self, row: &[f64]) -> bool {
-        (0..self.null_space.ncols()).all(|k| {
-            let mut sum = 0.0_f64;
-            let mut size = 0.0_f64;
-            for (j, x) in row.iter().enumerate() {
-                let term = x * self.null_space[(j, k)];
-                sum += term;
-                size += term.abs();
-            }
-            sum.abs() <= ALONG_NULL * size
-        })
-    }
-
     /// The response `row · β`, also where only combinations are determined;
     /// `None` when the data do not determine it or the length is not `p`.
     #[must_use]
-    pub fn predict(&self, row: &[f64]) -> Option<Prediction> {
-        if row.len() != self.minimiser.len() || !self.determines(row) {
-            return None;
-        }
-        let value = crate::dense::dot(row, &self.minimiser);
-        let variance = crate::dense::dot(row, &crate::dense::mul_vec(self.full_covariance.as_ref(), row));
-        Some(Prediction { value, standard: variance.is_finite().then(|| variance.max(0.0).sqrt()) })
+    pub fn predict(&self, row: &[f64]) -> Option<f64> {
+        let is_determined = |null: &Vec<f64>| {
+            let terms = row.iter().zip(null).map(|(x, null)| x * null);
+            let (sum, size) = terms.fold((0.0_f64, 0.0), |(sum, size), term| (sum + term, size + term.abs()));
+            sum.abs() <= ALONG_NULL * size
+        };
+        (row.len() == self.minimiser.len() && self.null_columns.iter().all(is_determined))
+            .then(|| crate::dense::dot(row, &self.minimiser))
     }
 }

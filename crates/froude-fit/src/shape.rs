@@ -25,8 +25,6 @@ pub(crate) struct Shaped {
     pub kkt: f64,
     /// How it ended.
     pub report: Report,
-    /// Weight of the loss for each whitened row.
-    pub loss_weight: Vec<f64>,
 }
 
 /// What a constraint stands for.
@@ -86,7 +84,6 @@ fn solve(block: &Block, estimate: &Estimate, weight: &[f64]) -> Result<Shaped, F
             active_inequalities: Vec::new(),
             kkt: found.kkt,
             report: found.report,
-            loss_weight: weight.to_vec(),
         });
     }
     let (constraints, tags) = constraints_of(block);
@@ -106,14 +103,7 @@ fn solve(block: &Block, estimate: &Estimate, weight: &[f64]) -> Result<Shaped, F
             Tag::Inequality(k) => active_inequalities.push(k),
         }
     }
-    Ok(Shaped {
-        beta,
-        at_bound,
-        active_inequalities,
-        kkt: found.kkt,
-        report: found.report,
-        loss_weight: weight.to_vec(),
-    })
+    Ok(Shaped { beta, at_bound, active_inequalities, kkt: found.kkt, report: found.report })
 }
 
 /// Bounds and inequalities as constraints of unit length, with what each stands for.

@@ -261,9 +261,6 @@ pub fn replace(fitted: &mut fit::Fit, design: &Mat<f64>, response: &[f64], resul
         summary.rss = squares(&fitted.residuals);
         summary.relative_residual = (summary.rss / squares(response)).sqrt();
         summary.durbin_watson = fit::diagnostics::durbin_watson(&fitted.residuals[rows]);
-        // The test of the ordinary residuals does not belong to these.
-        summary.durbin_watson_p = None;
-        summary.is_serially_correlated = false;
     }
     fitted.sensitivity = result.sensitivity;
     fitted.covariance = result.covariance;

@@ -56,7 +56,7 @@ pub fn leave_one_group_out(
         let fitted = fit(&training, &options)?;
         for &i in test {
             let row = crate::dense::row(problem.design.as_ref(), i);
-            error[i] = fitted.predict(&row).map(|p| problem.response[i] - p.value).ok_or(group);
+            error[i] = fitted.predict(&row).map(|value| problem.response[i] - value).ok_or(group);
         }
     }
     Ok(problem
@@ -247,7 +247,7 @@ mod tests {
                 let [short, long] = [short, long].map(|p| fit(&p, &options).unwrap());
                 for i in &rows_of[g] {
                     let row = crate::dense::row(problem.design.as_ref(), *i);
-                    let [a, b] = [&short, &long].map(|f| f.predict(&row).unwrap().value);
+                    let [a, b] = [&short, &long].map(|f| f.predict(&row).unwrap());
                     assert!((a - b).abs() < 1e-12 * b.abs(), "{a} {b}");
                 }
             }

@@ -31,6 +31,6 @@ pub fn range_block(problem: &Problem, options: &Options, train: &[bool]) -> Resu
     let rows: Vec<usize> = (0..n).filter(|&i| train[i]).collect();
     let refit = fit(&training(problem, &rows), &predicting(options))?;
     let predicted: Vec<Option<f64>> =
-        (0..n).map(|i| refit.predict(&crate::dense::row(problem.design.as_ref(), i)).map(|p| p.value)).collect();
+        (0..n).map(|i| refit.predict(&crate::dense::row(problem.design.as_ref(), i))).collect();
     Ok(RangeBlock { refit, predicted })
 }

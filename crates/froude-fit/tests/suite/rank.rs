@@ -45,8 +45,7 @@ fn parallel_columns_give_their_factors_as_weights() {
     let at = |k: f64| [k * 3.7, k * 3.7, head_tail, head_tail];
     let force = found.predict(&at(5.0)).unwrap();
     let expected = direct.predict(&[link, link]).unwrap();
-    assert_close(force.value, expected.value, 1e-12);
-    assert_close(force.standard.unwrap(), expected.standard.unwrap(), 1e-11);
+    assert_close(force, expected, 1e-12);
     assert!(found.predict(&at(4.0)).is_none());
 }
 

@@ -13,16 +13,14 @@ fn one_wild_point_does_not_move_a_huber_line() {
     let mut rng = rng(6);
     let rows: Vec<Vec<f64>> = (0..25).map(|i| vec![1.0, f64::from(i)]).collect();
     let clean: Vec<f64> = rows.iter().map(|r| 2.0 + 0.5 * r[1] + 0.1 * normal(&mut rng)).collect();
-    let mut wild = clean.clone();
+    let mut wild = clean;
     wild[20] += 50.0;
-    let before = fit(&single(&rows, &clean), &huber(1.345)).unwrap();
     let after = fit(&single(&rows, &wild), &huber(1.345)).unwrap();
     let squares = fit(&single(&rows, &wild), &Options::default()).unwrap();
     assert_eq!(after.report.end, End::Converged);
     let move_of = |f: &froude_fit::Fit| (f.coefficients[1].value.unwrap() - 0.5).abs();
     assert!(move_of(&after) < 0.01, "{}", move_of(&after));
     assert!(move_of(&squares) > 0.1);
-    assert!(after.loss_weight[20] < 0.01 && before.loss_weight[20] > 0.5);
     assert!(after.components[0].sigma.unwrap() < 0.2);
     for kind in [CovarianceKind::Classical, CovarianceKind::Hc3] {
         let options = Options { covariance: kind, ..huber(1.345) };
@@ -60,7 +58,7 @@ fn huber_solves_its_estimating_equation() {
         let sum: f64 = rows.iter().zip(&fit.residuals).map(|(x, r)| (r / sigma).clamp(-1.345, 1.345) * x[j]).sum();
         assert!(sum.abs() < 1e-6, "{sum}");
     }
-    assert!(fit.aicc.is_none());
+    assert!(fit.components[0].aicc.is_none());
 }
 
 #[test]
@@ -73,7 +71,6 @@ fn huber_with_bounds_holds_them() {
     let fit = fit(&single(&rows, &y), &options).unwrap();
     assert_eq!(fit.coefficients[0].value, Some(0.5));
     assert!((fit.coefficients[1].value.unwrap() - 0.95).abs() < 0.02);
-    assert!(fit.loss_weight[5] < 0.1);
     // On the other coefficient the estimating equation still holds.
     let sigma = fit.components[0].sigma.unwrap();
     let sum: f64 = x.iter().zip(&fit.residuals).map(|(x, r)| (r / sigma).clamp(-1.345, 1.345) * x).sum();

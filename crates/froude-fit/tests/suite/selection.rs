@@ -71,5 +71,5 @@ fn aicc_of_a_fit_counts_sigma() {
     let problem = single(&vec![vec![1.0]; 6], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
     let found = fit(&problem, &Options::default()).unwrap();
     let expected = 6.0 * (17.5_f64 / 6.0).ln() + 4.0 + 12.0 / 3.0;
-    assert_close(found.aicc.unwrap(), expected, 1e-13);
+    assert_close(found.components[0].aicc.unwrap(), expected, 1e-13);
 }
