@@ -7,12 +7,10 @@
 //!
 //! Not here: waves, rods that bend, a wake that lags.
 
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
+use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
-use crate::noise::OrnsteinUhlenbeck;
-use crate::steady::Reading;
+use crate::steady::{Channel, Reading};
 
 /// Time over which a corner of the speed is rounded, s.
 pub const JERK_S: f64 = 0.1;
@@ -102,20 +100,7 @@ pub fn accelerated(
 ) -> AcceleratedTrace {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let step_s = 1.0 / rate_hz;
-    let mut slow =
-        readings.map(|r| r.correlation_s.map(|time| OrnsteinUhlenbeck::new(r.noise, time, step_s, &mut rng)));
-    let mut read = |k: usize, value: f64, t: f64| {
-        let r = readings[k];
-        let noise = match &mut slow[k] {
-            Some(process) => process.step(&mut rng),
-            None => {
-                let z: f64 = rng.sample(StandardNormal);
-                r.noise * z
-            }
-        };
-        let shown = r.gain * value + r.zero + r.drift_per_s * t + noise;
-        if r.step > 0.0 { libm::round(shown / r.step) * r.step } else { shown }
-    };
+    let mut channels = Channel::of(&readings, step_s, &mut rng);
     let samples = libm::round(profile.duration_s() * rate_hz) as usize;
     let mut out = AcceleratedTrace::default();
     for i in 0..samples {
@@ -123,8 +108,8 @@ pub fn accelerated(
         let then = profile.at(t - delay_s);
         let load = load_n(then.speed_m_s, then.acceleration_m_s2);
         out.time_s.push(t);
-        out.position_m.push(read(0, profile.at(t).position_m, t));
-        out.force_n.push(read(1, mass_kg * then.acceleration_m_s2 - load, t));
+        out.position_m.push(channels[0].read(profile.at(t).position_m, t, &mut rng));
+        out.force_n.push(channels[1].read(mass_kg * then.acceleration_m_s2 - load, t, &mut rng));
     }
     out
 }

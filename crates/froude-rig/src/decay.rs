@@ -14,10 +14,9 @@
 //! Not here: waves and their memory, a second mode, mass of the springs.
 
 use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
-use crate::noise::OrnsteinUhlenbeck;
+use crate::steady::{Channel, Reading};
 
 /// Longest step, rad of the undamped phase: (0.05)⁴/120 = 5e-8 rad of phase a radian.
 const STEP_RAD: f64 = 0.05;
@@ -188,7 +187,9 @@ impl DecayRig {
         let samples = libm::ceil((release.held_s + release.free_s) * sensor.rate_hz) as usize;
         let mut state = DecayState { position: self.rest + release.displacement, speed: 0.0 };
         let mut is_held = true;
-        let mut slow = sensor.correlation_s.map(|time| OrnsteinUhlenbeck::new(sensor.noise, time, step_s, &mut rng));
+        let DecaySensor { noise, correlation_s, step, drift_per_s, .. } = sensor;
+        let reading = Reading { noise, correlation_s, step, zero: 0.0, drift_per_s, gain: 1.0 };
+        let mut channels = Channel::of(&[reading], step_s, &mut rng);
         let mut out = DecayTrace { time_s: Vec::new(), position: Vec::new(), truth: Vec::new(), released_s };
         for i in 0..samples {
             let t = i as f64 * step_s;
@@ -196,13 +197,8 @@ impl DecayRig {
                 state = self.after(state, if is_held { t - released_s } else { step_s });
                 is_held = false;
             }
-            let noise = match &mut slow {
-                Some(slow) => slow.step(&mut rng),
-                None => sensor.noise * rng.sample::<f64, _>(StandardNormal),
-            };
-            let sensed = state.position + sensor.drift_per_s * t + noise;
             out.time_s.push(t);
-            out.position.push(if sensor.step > 0.0 { libm::round(sensed / sensor.step) * sensor.step } else { sensed });
+            out.position.push(channels[0].read(state.position, t, &mut rng));
             out.truth.push(state);
         }
         out

@@ -15,12 +15,10 @@
 
 use core::f64::consts::{PI, TAU};
 
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
+use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
-use crate::noise::OrnsteinUhlenbeck;
-use crate::steady::Reading;
+use crate::steady::{Channel, Reading};
 
 /// Longest step of the motion, rad of the wave: (0.05)⁵/120 = 3e-9 of the motion in a step.
 const STEP_RAD: f64 = 0.05;
@@ -148,21 +146,7 @@ impl WaveRig {
     fn logged(&self, readings: WaveReadings, seed: u64, mut signal: impl FnMut(f64) -> f64) -> WaveTrace {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let step_s = 1.0 / self.rate_hz;
-        let channels = [readings.reference, readings.signal];
-        let mut slow =
-            channels.map(|r| r.correlation_s.map(|time| OrnsteinUhlenbeck::new(r.noise, time, step_s, &mut rng)));
-        let mut read = |k: usize, value: f64, t: f64| {
-            let r = channels[k];
-            let noise = match &mut slow[k] {
-                Some(process) => process.step(&mut rng),
-                None => {
-                    let z: f64 = rng.sample(StandardNormal);
-                    r.noise * z
-                }
-            };
-            let shown = r.gain * value + r.zero + r.drift_per_s * t + noise;
-            if r.step > 0.0 { libm::round(shown / r.step) * r.step } else { shown }
-        };
+        let mut channels = Channel::of(&[readings.reference, readings.signal], step_s, &mut rng);
         let samples = libm::round((self.still_s + self.lasts_s) * self.rate_hz) as usize;
         let mut out = WaveTrace::default();
         for i in 0..samples {
@@ -170,8 +154,8 @@ impl WaveRig {
             let since_s = t - self.still_s;
             let reference = self.stroke_m * self.envelope(since_s) * libm::cos(self.omega_rad_s * since_s % TAU);
             out.time_s.push(t);
-            out.reference_m.push(read(0, reference, t));
-            out.signal.push(read(1, signal(t - readings.delay_s), t));
+            out.reference_m.push(channels[0].read(reference, t, &mut rng));
+            out.signal.push(channels[1].read(signal(t - readings.delay_s), t, &mut rng));
         }
         out
     }

@@ -63,7 +63,7 @@ pub mod plant;
 pub mod propagator;
 pub mod rotation;
 pub mod steady;
-mod swung;
+pub mod swung;
 pub mod twin;
 pub mod weight_tow;
 

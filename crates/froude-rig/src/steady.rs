@@ -48,6 +48,38 @@ pub struct Reading {
     pub gain: f64,
 }
 
+/// A channel over time: a reading with its slow noise.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Channel {
+    reading: Reading,
+    slow: Option<OrnsteinUhlenbeck>,
+}
+
+impl Channel {
+    /// One for each reading.
+    pub(crate) fn of(readings: &[Reading], step_s: f64, rng: &mut Pcg64Mcg) -> Vec<Self> {
+        let slow = |r: &Reading, rng: &mut Pcg64Mcg| {
+            r.correlation_s.map(|time| OrnsteinUhlenbeck::new(r.noise, time, step_s, rng))
+        };
+        readings.iter().map(|reading| Self { reading: *reading, slow: slow(reading, rng) }).collect()
+    }
+
+    /// What it shows of a value.
+    pub(crate) fn read(&mut self, value: f64, time_s: f64, rng: &mut Pcg64Mcg) -> f64 {
+        let r = self.reading;
+        let noise = match &mut self.slow {
+            Some(process) => process.step(rng),
+            None => r.noise * rng.sample::<f64, _>(StandardNormal),
+        };
+        stepped(r.gain * value + r.zero + r.drift_per_s * time_s + noise, r.step)
+    }
+}
+
+/// A number in steps; 0 is none.
+pub(crate) fn stepped(value: f64, step: f64) -> f64 {
+    if step > 0.0 { libm::round(value / step) * step } else { value }
+}
+
 /// What is logged of a tow.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TowTrace {
@@ -69,22 +101,7 @@ pub fn tow(tow: Tow, speed_m_s: f64, readings: &[Reading], loads_n: &dyn Fn(f64)
     let ramp_s = speed_m_s.abs() / tow.acceleration_m_s2;
     let [up, down] = [tow.still_s, tow.still_s + ramp_s + tow.steady_s];
     let end_s = down + ramp_s + tow.still_s;
-    let mut slow: Vec<Option<OrnsteinUhlenbeck>> = readings
-        .iter()
-        .map(|r| r.correlation_s.map(|time| OrnsteinUhlenbeck::new(r.noise, time, step_s, &mut rng)))
-        .collect();
-    let mut read = |k: usize, value: f64, t: f64| {
-        let r = readings[k];
-        let noise = match &mut slow[k] {
-            Some(process) => process.step(&mut rng),
-            None => {
-                let z: f64 = rng.sample(StandardNormal);
-                r.noise * z
-            }
-        };
-        let shown = r.gain * value + r.zero + r.drift_per_s * t + noise;
-        if r.step > 0.0 { libm::round(shown / r.step) * r.step } else { shown }
-    };
+    let mut channels = Channel::of(readings, step_s, &mut rng);
     let samples = libm::round(end_s * tow.rate_hz) as usize;
     let loads = readings.len() - 1;
     let mut out = TowTrace { loads_n: vec![Vec::with_capacity(samples); loads], ..TowTrace::default() };
@@ -100,12 +117,12 @@ pub fn tow(tow: Tow, speed_m_s: f64, readings: &[Reading], loads_n: &dyn Fn(f64)
             * speed_m_s.signum()
             * (f64::from(u8::from(is_rising)) - f64::from(u8::from(is_falling)));
         out.time_s.push(t);
-        out.speed_m_s.push(read(0, speed, t));
+        out.speed_m_s.push(channels[0].read(speed, t, &mut rng));
         let there = if speed == 0.0 { vec![0.0; loads] } else { loads_n(speed) };
         for (l, load) in there.into_iter().enumerate() {
             lagged[l] += follow * (load - lagged[l]);
             let inertia = if l == 0 { -INERTIA_KG * acceleration } else { 0.0 };
-            out.loads_n[l].push(read(1 + l, lagged[l] + inertia, t));
+            out.loads_n[l].push(channels[1 + l].read(lagged[l] + inertia, t, &mut rng));
         }
     }
     out

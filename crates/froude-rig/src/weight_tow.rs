@@ -7,12 +7,10 @@
 //!
 //! Not here: strings that stretch, waves that the wall throws back, a shutter that smears the mark.
 
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
+use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
-use crate::noise::OrnsteinUhlenbeck;
-use crate::steady::Reading;
+use crate::steady::{Channel, Reading};
 
 /// Gravity, m/s².
 pub const G_M_S2: f64 = 9.80665;
@@ -69,22 +67,7 @@ pub fn pull(
     let mass = rig.moving_mass_kg + rig.weight_n / G_M_S2;
     let pull_n = (rig.weight_n - rig.friction_n).max(0.0);
     let acceleration = |v: f64| (pull_n - drag_n(v)) / mass;
-    let mut slow: Vec<Option<OrnsteinUhlenbeck>> = readings
-        .iter()
-        .map(|r| r.correlation_s.map(|time| OrnsteinUhlenbeck::new(r.noise, time, frame_s, &mut rng)))
-        .collect();
-    let mut read = |k: usize, value: f64| {
-        let r = readings[k];
-        let noise = match &mut slow[k] {
-            Some(process) => process.step(&mut rng),
-            None => {
-                let z: f64 = rng.sample(StandardNormal);
-                r.noise * z
-            }
-        };
-        let shown = r.gain * value + r.zero + noise;
-        if r.step > 0.0 { libm::round(shown / r.step) * r.step } else { shown }
-    };
+    let mut channels = Channel::of(readings, frame_s, &mut rng);
     let mut out = WeightTrace { loads_n: vec![Vec::new(); readings.len()], ..WeightTrace::default() };
     let (mut x, mut v) = (0.0_f64, 0.0_f64);
     let h = frame_s / STEPS as f64;
@@ -98,7 +81,7 @@ pub fn pull(
         out.time_s.push(t);
         out.position_m.push(x);
         for (k, load) in there.into_iter().enumerate() {
-            out.loads_n[k].push(read(k, load - along[k] * inertia));
+            out.loads_n[k].push(channels[k].read(load - along[k] * inertia, t, &mut rng));
         }
         if stopped_s.is_some_and(|s| t > s + rig.still_s) || t > LONGEST_S {
             return out;

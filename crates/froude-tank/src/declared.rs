@@ -10,6 +10,7 @@ use froude_records::run::{Declared, declared, declared_value};
 use froude_records::section::{Section, Value, found};
 use froude_records::section_values::{Asks, MOST_RUNS, OF_RUNS, count, plan_of, series};
 use froude_records::units::Dimension;
+use froude_rig::swung::Swing;
 use indexmap::IndexMap;
 
 use crate::motion::Cycles;
@@ -155,6 +156,15 @@ impl Swings {
             }
         }
         Ok(out)
+    }
+
+    /// Every amplitude at every frequency, as often as each is run.
+    pub(crate) fn each(&self) -> impl Iterator<Item = Swing> + '_ {
+        let (still_s, periods) = (self.still_s, self.periods);
+        let swing = move |amplitude_rad, omega_rad_s| Swing { amplitude_rad, omega_rad_s, still_s, periods };
+        let of_amplitude = move |a: f64| self.omega_rad_s.iter().map(move |w| swing(a, *w));
+        let all = self.amplitude_rad.iter().copied().flat_map(of_amplitude);
+        all.flat_map(|swing| std::iter::repeat_n(swing, self.repeats))
     }
 
     /// What they ask for, `times` over: the periods of each, with still water before and behind them.

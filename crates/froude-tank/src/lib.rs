@@ -24,6 +24,7 @@ mod residual_spectrum;
 pub mod rotation;
 mod sensors;
 pub mod steady;
+mod twin;
 pub mod weight_tow;
 
 pub use error::TankError;

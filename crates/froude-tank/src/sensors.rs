@@ -3,6 +3,7 @@
 use froude_identify::method::MethodError;
 use froude_records::campaign::{Campaign, SensorSpec};
 use froude_rig::steady::Reading;
+use froude_rig::swung::SwungSensor;
 
 /// Channels of one kind: the names of their quantity, and what their twin simulates.
 pub(crate) struct Senses<'a> {
@@ -33,6 +34,22 @@ pub(crate) fn reading(sensors: &[SensorSpec], names: &[&str], zero: f64, gain: f
         zero: zero + of(|s| s.bias),
         drift_per_s: 0.0,
         gain,
+    }
+}
+
+/// How angle and load of a body that a motor swings are read.
+pub(crate) fn swung(sensors: &[SensorSpec], angle: &[&str], load: &[&str]) -> SwungSensor {
+    let [angle, load] = [angle, load].map(|names| reading(sensors, names, 0.0, 1.0));
+    let (white, slow) = if load.correlation_s.is_some() { (0.0, load.noise) } else { (load.noise, 0.0) };
+    SwungSensor {
+        angle_noise_rad: angle.noise,
+        angle_step_rad: angle.step,
+        load_noise: white,
+        slow_noise: slow,
+        correlation_s: load.correlation_s.unwrap_or(1.0),
+        load_step: load.step,
+        zero: load.zero,
+        ..SwungSensor::exact()
     }
 }
 

@@ -7,7 +7,8 @@ use froude_hydro::swing::{Medium, Pivot};
 use froude_hydro::{Body as Geometry, CrossTerm, DragModel, Link};
 use froude_identify::law::ForceLaw;
 use froude_records::campaign::{Identify, SensorSpec};
-use froude_rig::oscillation::{OscillationRig, OscillationSensor, OscillationTrace, Swing};
+use froude_rig::oscillation::OscillationRig;
+use froude_rig::swung::{Swing, SwungSensor, SwungTrace};
 use froude_tank::oscillation::forecast::forecast;
 use froude_tank::oscillation::simulate::{Planned, Simulated, Truths, simulated};
 use froude_tank::oscillation::{Body, Drag, OscillationFit, OscillationRun, Setup, fit, motions};
@@ -61,11 +62,11 @@ struct Logged {
     id: String,
     body: usize,
     medium: Medium,
-    trace: OscillationTrace,
+    trace: SwungTrace,
 }
 
 /// The runs of Table 4: two configurations, three amplitudes, three frequencies.
-fn table_4(pivot: Pivot, sensor: OscillationSensor, periods: f64, seed: u64) -> Vec<Logged> {
+fn table_4(pivot: Pivot, sensor: SwungSensor, periods: f64, seed: u64) -> Vec<Logged> {
     let mut out = Vec::new();
     for body in 0..2 {
         for amplitude in [10.0_f64, 15.0, 20.0] {
@@ -81,10 +82,8 @@ fn table_4(pivot: Pivot, sensor: OscillationSensor, periods: f64, seed: u64) -> 
                     servo_damping: 0.6,
                 };
                 let swing = Swing {
-                    medium: Medium::Water,
                     amplitude_rad: amplitude.to_radians(),
                     omega_rad_s: omega.to_radians(),
-                    flow_m_s: 0.2,
                     still_s: 1.0,
                     periods,
                 };
@@ -93,7 +92,7 @@ fn table_4(pivot: Pivot, sensor: OscillationSensor, periods: f64, seed: u64) -> 
                     id: format!("H{}LT {amplitude} deg {omega} deg/s", body + 1),
                     body,
                     medium: Medium::Water,
-                    trace: rig.swing(swing, sensor, &drag_n(k), seed),
+                    trace: rig.swing((Medium::Water, 0.2), swing, sensor, &drag_n(k), seed),
                 });
             }
         }
@@ -111,7 +110,7 @@ fn runs(logged: &[Logged]) -> Vec<OscillationRun<'_>> {
             flow_m_s: 0.2,
             time_s: &trace.time_s,
             angle_rad: &trace.angle_rad,
-            force_n: &trace.force_n,
+            force_n: &trace.load,
         }
     }
     logged.iter().map(run).collect()
@@ -130,8 +129,7 @@ fn value(fit: &OscillationFit, name: &str) -> f64 {
 #[test]
 fn without_noise_the_truth_comes_out_over_whole_and_broken_periods() {
     for periods in [6.3, 7.0, 8.7] {
-        let logged =
-            table_4(Pivot::Stream, OscillationSensor { delay_s: 0.013, ..OscillationSensor::exact() }, periods, 1);
+        let logged = table_4(Pivot::Stream, SwungSensor { delay_s: 0.013, ..SwungSensor::exact() }, periods, 1);
         let setup = Setup { delay_s: None, ..setup() };
         let setup =
             Setup { bodies: setup.bodies.iter().map(|b| Body { buoyancy_n: None, ..b.clone() }).collect(), ..setup };
@@ -148,7 +146,7 @@ fn without_noise_the_truth_comes_out_over_whole_and_broken_periods() {
 /// Mass declared to 10 %, three runs in air at 15 deg beside those in water: m and the delay come from them, C_A follows.
 #[test]
 fn runs_in_air_determine_mass_and_delay() {
-    let sensor = OscillationSensor { delay_s: 0.013, ..OscillationSensor::exact() };
+    let sensor = SwungSensor { delay_s: 0.013, ..SwungSensor::exact() };
     let mut logged = table_4(Pivot::Stream, sensor, 7.0, 1);
     for body in 0..2 {
         for omega in [60.0_f64, 80.0] {
@@ -161,15 +159,8 @@ fn runs_in_air_determine_mass_and_delay() {
                 servo_rad_s: 30.0,
                 servo_damping: 0.6,
             };
-            let swing = Swing {
-                medium: Medium::Air,
-                amplitude_rad: 0.26,
-                omega_rad_s: omega.to_radians(),
-                flow_m_s: 0.0,
-                still_s: 1.0,
-                periods: 7.0,
-            };
-            let trace = rig.swing(swing, sensor, &|_| 9.0, 5);
+            let swing = Swing { amplitude_rad: 0.26, omega_rad_s: omega.to_radians(), still_s: 1.0, periods: 7.0 };
+            let trace = rig.swing((Medium::Air, 0.0), swing, sensor, &|_| 9.0, 5);
             logged.push(Logged { id: format!("air {body} {omega}"), body, medium: Medium::Air, trace });
         }
     }
@@ -189,14 +180,14 @@ fn runs_in_air_determine_mass_and_delay() {
 /// Turning the y axis round changes no coefficient: both angle and force change their sign.
 #[test]
 fn the_sign_of_the_axis_does_not_matter() {
-    let sensor = OscillationSensor { slow_noise_n: 0.02, ..OscillationSensor::exact() };
+    let sensor = SwungSensor { slow_noise: 0.02, ..SwungSensor::exact() };
     let logged = table_4(Pivot::Stream, sensor, 7.0, 3);
     let here = fitted(&logged, &setup(), &f4());
     let turned: Vec<Logged> = (logged.iter())
         .map(|l| {
             let mut trace = l.trace.clone();
             trace.angle_rad.iter_mut().for_each(|x| *x = -*x);
-            trace.force_n.iter_mut().for_each(|x| *x = -*x);
+            trace.load.iter_mut().for_each(|x| *x = -*x);
             Logged { id: l.id.clone(), body: l.body, medium: l.medium, trace }
         })
         .collect();
@@ -218,7 +209,7 @@ fn plan_and_fit_have_the_same_degrees_of_freedom() {
     for body in &mut setup.bodies {
         (body.mass_kg, body.buoyancy_n) = (exact(body.mass_kg), None);
     }
-    let sensor = OscillationSensor { force_noise_n: 0.02, ..OscillationSensor::exact() };
+    let sensor = SwungSensor { load_noise: 0.02, ..SwungSensor::exact() };
     let all = table_4(Pivot::Stream, sensor, 7.0, 4);
     // All, and of H1LT the three amplitudes at one frequency, by a law that one configuration determines.
     let f2 = Drag::new(ForceLaw::drag(DragModel::from_name("f2").unwrap(), geometry(), CrossTerm::AsPrinted)).unwrap();
@@ -239,11 +230,11 @@ fn plan_and_fit_have_the_same_degrees_of_freedom() {
             .map(|(l, i)| Planned {
                 id: l.id.clone(),
                 body: l.body,
+                medium: Medium::Water,
+                flow_m_s: 0.2,
                 swing: Swing {
-                    medium: Medium::Water,
                     amplitude_rad: [10.0_f64, 15.0, 20.0][i % 9 / 3].to_radians(),
                     omega_rad_s: [60.0_f64, 70.0, 80.0][i % 3].to_radians(),
-                    flow_m_s: 0.2,
                     still_s: 1.0,
                     periods: 7.0,
                 },
@@ -308,16 +299,15 @@ fn held(amplitudes_deg: &[f64], omegas_deg_s: &[f64], part: f64, seeds: u64) -> 
             for amplitude in amplitudes_deg {
                 for omega in omegas_deg_s {
                     let swing = Swing {
-                        medium: Medium::Water,
                         amplitude_rad: amplitude.to_radians(),
                         omega_rad_s: omega.to_radians(),
-                        flow_m_s: 0.2,
                         still_s: 1.0,
                         periods: 7.0,
                     };
                     let z: f64 = StandardNormal.sample(&mut rng);
                     let id = format!("{amplitude} {omega}");
-                    planned.push(Planned { id, body: 0, swing, rate_hz: 50.0, of_drag: 1.0 + part * z });
+                    let (medium, flow_m_s, of_drag) = (Medium::Water, 0.2, 1.0 + part * z);
+                    planned.push(Planned { id, body: 0, medium, flow_m_s, swing, rate_hz: 50.0, of_drag });
                 }
             }
             let logged = simulated(&planned, &setup, &truth, std::slice::from_ref(&noise), 1 + seed);
@@ -355,7 +345,7 @@ fn intervals_hold_what_the_drag_changes_by_from_run_to_run() {
         let words = format!("{} runs: {:?}", amplitudes.len() * omegas.len(), counts.map(Count::rate));
         assert!(counts.iter().all(|c| c.z_score(0.94) > -3.0), "{words}");
     }
-    let logged = table_4(Pivot::Stream, OscillationSensor { slow_noise_n: 0.02, ..OscillationSensor::exact() }, 7.0, 4);
+    let logged = table_4(Pivot::Stream, SwungSensor { slow_noise: 0.02, ..SwungSensor::exact() }, 7.0, 4);
     assert!(!fitted(&logged[..2], &one_body(), &quadratic().0).has_runs);
     assert!(fitted(&logged[..3], &one_body(), &quadratic().0).has_runs);
 }

@@ -4,7 +4,8 @@
 use froude_fit::budget::Uncertain;
 use froude_hydro::Link;
 use froude_records::campaign::{Identify, PriorSpec, SensorSpec};
-use froude_rig::rotation::{Mounted, Turn};
+use froude_rig::rotation::Mounted;
+use froude_rig::swung::Swing;
 use froude_tank::TankError;
 use froude_tank::joint::DELAY;
 use froude_tank::rotation::findings::of_fit;
@@ -39,15 +40,14 @@ fn plan(mounted: Mounted, amplitudes_deg: &[f64], omegas_deg: &[f64], periods: f
     let mut out = Vec::new();
     for amplitude in amplitudes_deg {
         for omega in omegas_deg {
-            let turn = Turn {
-                mounted,
+            let turn = Swing {
                 amplitude_rad: amplitude.to_radians(),
                 omega_rad_s: omega.to_radians(),
                 // Longer than a quarter of a period, so that the rest is told from a log that begins in the motion.
                 still_s: 2.0,
                 periods,
             };
-            out.push(Planned { id: format!("{mounted:?} {amplitude} {omega}"), turn, rate_hz: 100.0 });
+            out.push(Planned { id: format!("{mounted:?} {amplitude} {omega}"), mounted, swing: turn, rate_hz: 100.0 });
         }
     }
     out
@@ -128,7 +128,7 @@ fn runs_in_air_and_of_the_shaft_determine_what_is_not_the_body_s() {
         assert!((value(&fit, name) / truth - 1.0).abs() < 1e-5, "{name}: {} {truth}", value(&fit, name));
     }
     // Without the runs of the shaft its water counts as the body's: λ is the sum.
-    let in_water: Vec<Planned> = planned.into_iter().filter(|p| p.turn.mounted != Mounted::Shaft).collect();
+    let in_water: Vec<Planned> = planned.into_iter().filter(|p| p.mounted != Mounted::Shaft).collect();
     let fit = fitted(&simulated(&in_water, &setup, &truth, &[], 1), &setup, &Identify::default()).unwrap();
     for ((name, own), shaft) in ["lambda_1", "lambda_2", "lambda_3"].into_iter().zip(LAMBDAS).zip(shaft) {
         assert!((value(&fit, name) / (own + shaft) - 1.0).abs() < 1e-5, "{name}");
@@ -173,7 +173,7 @@ fn the_sign_of_the_axis_does_not_matter() {
     let here = fitted(&logged, &setup(), &Identify::default()).unwrap();
     for run in &mut logged {
         run.trace.angle_rad.iter_mut().for_each(|x| *x = -*x);
-        run.trace.torque_n_m.iter_mut().for_each(|x| *x = -*x);
+        run.trace.load.iter_mut().for_each(|x| *x = -*x);
     }
     let there = fitted(&logged, &setup(), &Identify::default()).unwrap();
     for (a, b) in here.unknowns.iter().zip(&there.unknowns) {
@@ -282,7 +282,7 @@ fn what_cannot_be_used_is_refused_with_what_to_do() {
     assert!(text.contains("9 are needed: record longer"), "{text}");
     // A cell at the end of its range, half-way up to the largest torque.
     let mut clipped = logged.clone();
-    let torque = &mut clipped[4].trace.torque_n_m;
+    let torque = &mut clipped[4].trace.load;
     let (low, high) = torque.iter().fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
     for x in torque.iter_mut() {
         *x = x.min(low + 0.7 * (high - low));

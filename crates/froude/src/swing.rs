@@ -36,7 +36,7 @@ fn planned(campaign: &Campaign, source: &Source) -> Result<Planned, MethodError>
             radius_m: setup.radius_m.value,
             amplitude_rad: run.swing.amplitude_rad,
             omega_rad_s: run.swing.omega_rad_s,
-            forward_m_s: run.swing.flow_m_s,
+            forward_m_s: run.flow_m_s,
             periods: run.swing.periods,
             mass_kg: body.mass_kg.value,
             buoyancy_n: body.buoyancy_n.map(|b| b.value),

@@ -10,16 +10,15 @@ use froude_identify::simulate::truth;
 use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
 use froude_records::run::{ACCELERATED_TOW, Role};
 use froude_rig::accelerated_tow::{AcceleratedTrace, Profile, accelerated};
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
-use rand_pcg::Pcg64Mcg;
 
 use super::law::{Channels, data, names, with_acceleration};
 use super::reduce::{Mounted, Setup};
 use super::rows::{TowRun, Way};
 use super::section::{self, AcceleratedPlan};
 use super::source::{declared, no_mass, setup_of};
+use crate::declared::uncertain;
 use crate::sensors::{Senses, reading, seed_and_sensors};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
 
 /// Standard deviation of the zero of a run, N.
 const ZERO_N: f64 = 0.2;
@@ -195,25 +194,21 @@ pub fn simulated(
     sensors: &[SensorSpec],
     seed: u64,
 ) -> Option<Vec<Simulated>> {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut draw = |standard: f64| -> f64 {
-        let z: f64 = rng.sample(StandardNormal);
-        standard * z
-    };
-    let delay_s = setup.delay_s.value + draw(setup.delay_s.standard_uncertainty);
-    let [force, motion] = [setup.force_relative, setup.motion_relative].map(|part| 1.0 + draw(part));
-    let masses: Vec<f64> = (setup.bodies.iter())
-        .map(|body| body.mass_kg.map(|m| m.value + draw(m.standard_uncertainty)))
-        .collect::<Option<_>>()?;
+    let mut draws = Draws::of(seed);
+    let delay_s = draws.about(uncertain(setup.delay_s));
+    let [force, motion] = [setup.force_relative, setup.motion_relative].map(|part| draws.gain(part));
+    let masses: Vec<f64> =
+        (setup.bodies.iter()).map(|body| body.mass_kg.map(|m| draws.about(uncertain(m)))).collect::<Option<_>>()?;
     let top = planned.iter().fold(0.0_f64, |m, run| m.max(run.profile.speed_m_s.abs()));
     let tables: Vec<Table> = (0..setup.bodies.len()).map(|b| Table::of(truth, setup, b, 1.01 * top)).collect();
     let mut out = Vec::new();
     for (i, run) in planned.iter().enumerate() {
-        let readings =
-            [reading(sensors, &["position"], 0.0, motion), reading(sensors, &["force"], draw(ZERO_N), force)];
+        let readings = [
+            reading(sensors, &["position"], 0.0, motion),
+            reading(sensors, &["force"], ZERO_N * draws.normal(), force),
+        ];
         let load = |v: f64, a: f64| if run.is_dry { 0.0 } else { tables[run.body].load_n(v, a) };
-        let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1);
-        let trace = accelerated(run.profile, run.rate_hz, masses[run.body], delay_s, readings, &load, seed);
+        let trace = accelerated(run.profile, run.rate_hz, masses[run.body], delay_s, readings, &load, seed_of(seed, i));
         out.push(Simulated { planned: run.clone(), trace });
     }
     Some(out)
@@ -230,34 +225,24 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let truth = Truths::of(campaign, source, &setup)?;
     let planned = planned(&blocks, &setup);
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
-    let mut out = Vec::new();
-    for run in simulated(&planned, &setup, &truth, sensors, seed).ok_or_else(|| no_mass(source, &setup))? {
-        out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });
-        out.push(Export { name: format!("{}.toml", run.planned.id), content: sidecar(&run, &setup).into_bytes() });
-    }
-    Ok(out)
+    let runs = simulated(&planned, &setup, &truth, sensors, seed).ok_or_else(|| no_mass(source, &setup))?;
+    Ok(runs.iter().flat_map(|run| pair(&run.planned.id, log(&run.trace), sidecar(run, &setup))).collect())
 }
 
 fn log(trace: &AcceleratedTrace) -> String {
-    let mut out = String::from("time,x,force\n");
-    for ((t, x), force) in trace.time_s.iter().zip(&trace.position_m).zip(&trace.force_n) {
-        out += &format!("{t:.6},{x:.8},{force:.6}\n");
-    }
-    out
+    csv("time,x,force", &trace.time_s, &[(&trace.position_m, 8), (&trace.force_n, 6)])
 }
 
 fn sidecar(run: &Simulated, setup: &Setup) -> String {
-    let role = if run.planned.is_dry { Role::DryAir } else { Role::Test }.name();
-    let configuration = &setup.bodies[run.planned.body].name;
-    let mounted = if configuration.is_empty() {
-        String::new()
-    } else {
-        format!("\n[mounted]\nconfiguration = {configuration:?}\n")
+    let sidecar = Sidecar {
+        said: "A run of the twin.",
+        method: ACCELERATED_TOW,
+        role: if run.planned.is_dry { Role::DryAir } else { Role::Test }.name(),
+        configuration: &setup.bodies[run.planned.body].name,
+        conditions: &[],
+        time: "time",
+        columns: &[["x", "position", "m", "body", ""], ["force", "force", "N", "body", "   # of the rig on the body"]],
+        width: 5,
     };
-    format!(
-        "# A run of the twin.\nschema = 1\nmethod = \"{ACCELERATED_TOW}\"\nrole = \"{role}\"\n{mounted}\n[columns]\n\
-         time  = {{ name = \"time\", unit = \"s\" }}\n\
-         x     = {{ name = \"position\", unit = \"m\", sign = 1, frame = \"body\", clock = \"log\" }}\n\
-         force = {{ name = \"force\", unit = \"N\", sign = 1, frame = \"body\", clock = \"log\" }}   # of the rig on the body\n"
-    )
+    sidecar.text()
 }

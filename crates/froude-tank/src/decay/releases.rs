@@ -6,14 +6,12 @@ use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, Motion, SensorSpec, Truth};
 use froude_records::run::{FREE_DECAY, Role};
 use froude_rig::decay::{DecayRig, DecaySensor, Release};
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
-use rand_pcg::Pcg64Mcg;
 
 use super::record::LAW;
 use super::run::{DecayRun, DecaySetup, Restoring};
 use super::section::DecayPlan;
 use crate::sensors::{Senses, seed_and_sensors};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
 
 /// Standard deviation of the zero of a release, as part of its displacement.
 const ZERO: f64 = 0.02;
@@ -126,13 +124,11 @@ pub fn simulated(
     sensors: &[SensorSpec],
     seed: u64,
 ) -> Vec<Logged> {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut draw = || -> f64 { rng.sample(StandardNormal) };
-    let mut about = |u: froude_fit::budget::Uncertain| u.value + u.standard * draw();
-    let inertia = about(setup.inertia);
+    let mut draws = Draws::of(seed);
+    let inertia = draws.about(setup.inertia);
     let stiffness = match setup.restoring {
-        Restoring::Spring(c) => about(c),
-        Restoring::Buoyancy { force_n, radius_m } => about(force_n) * about(radius_m),
+        Restoring::Spring(c) => draws.about(c),
+        Restoring::Buoyancy { force_n, radius_m } => draws.about(force_n) * draws.about(radius_m),
     };
     let sensor = sensor_of(sensors, setup.axis);
     let of = |part: Option<f64>| part.unwrap_or(0.0);
@@ -145,7 +141,7 @@ pub fn simulated(
             stiffness,
             is_pendulum: setup.restoring.is_pendulum(),
             coulomb: 0.0,
-            rest: of(sensor.and_then(|s| s.bias)) + ZERO * run.release.displacement * draw(),
+            rest: of(sensor.and_then(|s| s.bias)) + ZERO * run.release.displacement * draws.normal(),
         };
         let sensor = DecaySensor {
             rate_hz: run.rate_hz,
@@ -154,8 +150,7 @@ pub fn simulated(
             step: of(sensor.and_then(|s| s.resolution)),
             drift_per_s: 0.0,
         };
-        let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1);
-        let trace = rig.release(sensor, run.release, seed);
+        let trace = rig.release(sensor, run.release, seed_of(seed, i));
         Logged { id: run.id.clone(), time_s: trace.time_s, position: trace.position }
     };
     planned.iter().enumerate().map(one).collect()
@@ -170,12 +165,9 @@ pub fn files(campaign: &Campaign, blocks: &[DecayPlan], setup: &DecaySetup) -> R
     let truth = truth_of(campaign, setup.axis)?;
     let planned = planned(blocks);
     let (seed, sensors) = seed_and_sensors(campaign, &senses(setup.axis))?;
-    let mut out = Vec::new();
-    for (run, log) in planned.iter().zip(simulated(&planned, setup, truth, sensors, seed)) {
-        out.push(Export { name: format!("{}.csv", run.id), content: text(&log, setup.axis).into_bytes() });
-        out.push(Export { name: format!("{}.toml", run.id), content: sidecar(run, setup.axis).into_bytes() });
-    }
-    Ok(out)
+    let logs = simulated(&planned, setup, truth, sensors, seed);
+    let text = |run: &Planned| sidecar(run, setup.axis);
+    Ok(planned.iter().zip(&logs).flat_map(|(run, log)| pair(&run.id, csv_of(log, setup.axis), text(run))).collect())
 }
 
 /// Name of the column that moves, with its unit.
@@ -183,26 +175,21 @@ const fn column(axis: Motion) -> [&'static str; 2] {
     if axis.is_rotation() { ["angle", "rad"] } else { ["position", "m"] }
 }
 
-fn text(log: &Logged, axis: Motion) -> String {
-    let [name, _] = column(axis);
-    let mut out = format!("time,{name}\n");
-    for (t, q) in log.time_s.iter().zip(&log.position) {
-        out += &format!("{t:.6},{q:.8}\n");
-    }
-    out
+fn csv_of(log: &Logged, axis: Motion) -> String {
+    csv(&format!("time,{}", column(axis)[0]), &log.time_s, &[(&log.position, 8)])
 }
 
 fn sidecar(run: &Planned, axis: Motion) -> String {
     let [name, unit] = column(axis);
-    let mounted = if run.configuration.is_empty() {
-        String::new()
-    } else {
-        format!("\n[mounted]\nconfiguration = {:?}\n", run.configuration)
+    let sidecar = Sidecar {
+        said: "A release of the twin.",
+        method: FREE_DECAY,
+        role: Role::Decay.name(),
+        configuration: &run.configuration,
+        conditions: &[],
+        time: "time",
+        columns: &[[name, name, unit, "sensor", ""]],
+        width: 0,
     };
-    format!(
-        "# A release of the twin.\nschema = 1\nmethod = \"{FREE_DECAY}\"\nrole = \"{}\"\n{mounted}\n[columns]\n\
-         time = {{ name = \"time\", unit = \"s\" }}\n\
-         {name} = {{ name = \"{name}\", unit = \"{unit}\", sign = 1, frame = \"sensor\", clock = \"log\" }}\n",
-        Role::Decay.name()
-    )
+    sidecar.text()
 }

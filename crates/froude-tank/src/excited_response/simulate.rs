@@ -4,21 +4,18 @@
 
 use std::f64::consts::TAU;
 
-use froude_fit::budget::Uncertain;
 use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
 use froude_records::run::{EXCITED_RESPONSE, Role};
 use froude_rig::excited_response::{WaveReadings, WaveRig, WaveTrace};
 use froude_rig::steady::Reading;
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
-use rand_pcg::Pcg64Mcg;
 
 use super::coefficients::NAMES;
 use super::section::{self, ExcitedPlan};
 use super::setup::{Setup, Shows, WaveRun};
 use super::source::setup_of;
 use crate::sensors::{Senses, reading, seed_and_sensors};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
 
 /// Speed of the twin's waves for the phase between wavemaker and body: they have come in by so many turns and a part, whose size does not matter.
 const PHASE_RAD: f64 = -0.7;
@@ -130,19 +127,14 @@ pub(super) fn senses() -> [Senses<'static>; 1] {
 /// The logs of all planned runs; the same seed gives the same logs.
 #[must_use]
 pub fn simulated(planned: &[Planned], setup: &Setup, sensors: &[SensorSpec], seed: u64) -> Vec<Simulated> {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut about = |u: Uncertain| -> f64 {
-        let z: f64 = rng.sample(StandardNormal);
-        u.value + u.standard * z
-    };
-    let (mass_kg, restoring_n_m) = (about(setup.mass_kg), about(setup.restoring_n_m));
-    let delay_s = about(setup.delay_s);
-    let [on_force, on_acceleration] =
-        [setup.force_relative, setup.acceleration_relative].map(|part| about(Uncertain::new(1.0, part)));
+    let mut draws = Draws::of(seed);
+    let [mass_kg, restoring_n_m, delay_s] =
+        [setup.mass_kg, setup.restoring_n_m, setup.delay_s].map(|known| draws.about(known));
+    let [on_force, on_acceleration] = [setup.force_relative, setup.acceleration_relative].map(|part| draws.gain(part));
     let [reference, force, acceleration] = SENSORS.map(|names| reading(sensors, names, 0.0, 1.0));
     let one = |(i, run): (usize, &Planned)| {
         let rig = WaveRig { mass_kg, restoring_n_m, ..run.rig };
-        let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1);
+        let seed = seed_of(seed, i);
         let trace = if run.is_held {
             let signal = Reading { gain: on_force, ..force };
             rig.held(WaveReadings { reference, signal, delay_s }, seed)
@@ -164,40 +156,31 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let setup = setup_of(source)?;
     let planned = planned(&section::plan(source)?, &setup, truth(campaign)?);
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
-    let mut out = Vec::new();
-    for run in simulated(&planned, &setup, sensors, seed) {
-        out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run).into_bytes() });
-        out.push(Export { name: format!("{}.toml", run.planned.id), content: sidecar(&run.planned).into_bytes() });
-    }
-    Ok(out)
+    let runs = simulated(&planned, &setup, sensors, seed);
+    Ok(runs.iter().flat_map(|run| pair(&run.planned.id, log(run), sidecar(&run.planned))).collect())
 }
 
 fn log(run: &Simulated) -> String {
     let signal = if run.planned.is_held { "fz" } else { "acc" };
-    let mut out = format!("t,wavemaker,{signal}\n");
-    for ((t, reference), signal) in run.trace.time_s.iter().zip(&run.trace.reference_m).zip(&run.trace.signal) {
-        out += &format!("{t:.6},{reference:.8},{signal:.7}\n");
-    }
-    out
+    let columns: [(&[f64], usize); 2] = [(&run.trace.reference_m, 8), (&run.trace.signal, 7)];
+    csv(&format!("t,wavemaker,{signal}"), &run.trace.time_s, &columns)
 }
 
 fn sidecar(run: &Planned) -> String {
     let (role, signal) = if run.is_held {
-        (
-            Role::Held,
-            "fz        = { name = \"f_z\", unit = \"N\", sign = 1, frame = \"body\", clock = \"log\" }           # of the water on the body, upwards",
-        )
+        (Role::Held, ["fz", "f_z", "N", "body", "           # of the water on the body, upwards"])
     } else {
-        (
-            Role::Free,
-            "acc       = { name = \"acceleration\", unit = \"m/s^2\", sign = 1, frame = \"body\", clock = \"log\" }   # upwards",
-        )
+        (Role::Free, ["acc", "acceleration", "m/s^2", "body", "   # upwards"])
     };
-    format!(
-        "# A run of the twin.\nschema = 1\nmethod = \"{EXCITED_RESPONSE}\"\nrole = \"{}\"\n\n[conditions]\nperiod = \"{} s\"\n\n[columns]\n\
-         t         = {{ name = \"time\", unit = \"s\" }}\n\
-         wavemaker = {{ name = \"reference\", unit = \"m\", sign = 1, frame = \"sensor\", clock = \"log\" }}\n{signal}\n",
-        role.name(),
-        run.period_s
-    )
+    let sidecar = Sidecar {
+        said: "A run of the twin.",
+        method: EXCITED_RESPONSE,
+        role: role.name(),
+        configuration: "",
+        conditions: &[format!("period = \"{} s\"", run.period_s)],
+        time: "t",
+        columns: &[["wavemaker", "reference", "m", "sensor", ""], signal],
+        width: 9,
+    };
+    sidecar.text()
 }

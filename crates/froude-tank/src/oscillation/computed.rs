@@ -6,12 +6,13 @@ use std::collections::BTreeSet;
 
 use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, Source};
-use froude_rig::oscillation::OscillationTrace;
+use froude_rig::swung::SwungTrace;
 
 use super::section;
 use super::setup::Setup;
 use super::simulate::{Planned, configurations, log, planned, sidecar};
 use super::source::{declared, setup_of};
+use crate::twin::pair;
 use froude_hydro::swing::{Medium, Pivot};
 
 /// The setup of a source and those of its planned runs that are in water, named by what they are: `H1LT-a10-w70-u0.2`, angle and angular frequency in degrees and per second.
@@ -29,14 +30,13 @@ pub fn asked(campaign: &Campaign, source: &Source) -> Result<(Setup, Vec<Planned
         ));
     }
     let mut runs = planned(&blocks, &setup);
-    runs.retain(|run| run.swing.medium == Medium::Water);
+    runs.retain(|run| run.medium == Medium::Water);
     for run in &mut runs {
         let (name, swing) = (&setup.bodies[run.body].name, &run.swing);
         let before = if name.is_empty() { String::new() } else { format!("{name}-") };
         // Of degrees the conversion's rounding is no digit.
         let degrees = |rad: f64| (1e9 * rad.to_degrees()).round() / 1e9;
-        run.id =
-            format!("{before}a{}-w{}-u{}", degrees(swing.amplitude_rad), degrees(swing.omega_rad_s), swing.flow_m_s);
+        run.id = format!("{before}a{}-w{}-u{}", degrees(swing.amplitude_rad), degrees(swing.omega_rad_s), run.flow_m_s);
     }
     let mut names = BTreeSet::new();
     if let Some(twice) = runs.iter().find(|run| !names.insert(run.id.clone())) {
@@ -69,11 +69,10 @@ pub fn files(run: &Planned, setup: &Setup, time_s: &[f64], fluid_n: &[f64], said
         let phi = angle(t);
         -body.mass_kg.value * radius_m * omega * omega * phi - fluid - buoyancy_n * phi.sin()
     };
-    let trace = OscillationTrace {
+    let trace = SwungTrace {
         time_s: time_s.to_vec(),
         angle_rad: time_s.iter().map(|t| angle(*t)).collect(),
-        force_n: time_s.iter().zip(fluid_n).map(of_rig).collect(),
+        load: time_s.iter().zip(fluid_n).map(of_rig).collect(),
     };
-    let export = |end: &str, text: String| Export { name: format!("{}.{end}", run.id), content: text.into_bytes() };
-    [export("csv", log(&trace)), export("toml", sidecar(run, setup, said))]
+    pair(&run.id, log(&trace), sidecar(run, setup, said))
 }

@@ -57,7 +57,7 @@ fn matrix(planned: &[Planned], cycles: &[usize], setup: &Setup, campaign: &Campa
     t.build(vec![
         t.text("run", "run", |(run, ..)| run.id.clone()),
         t.text("configuration", "configuration", |(run, ..)| setup.bodies[run.body].name.clone()),
-        t.number("flow_m_s", "stream [m/s]", |(run, ..)| run.swing.flow_m_s).significant(3),
+        t.number("flow_m_s", "stream [m/s]", |(run, ..)| run.flow_m_s).significant(3),
         t.number("amplitude_rad", "amplitude [deg]", |(run, ..)| run.swing.amplitude_rad).plain(4),
         t.number("omega_rad_s", "ω [deg/s]", |(run, ..)| run.swing.omega_rad_s).plain(4),
         t.number("frequency_hz", "frequency [Hz]", |(run, ..)| run.swing.omega_rad_s / TAU).plain(4),

@@ -9,17 +9,16 @@ use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
 use froude_records::run::{FORCED_OSCILLATION, Role};
 use froude_records::units::Dimension;
-use froude_rig::oscillation::{OscillationRig, OscillationSensor, OscillationTrace, Swing};
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
-use rand_pcg::Pcg64Mcg;
+use froude_rig::oscillation::OscillationRig;
+use froude_rig::swung::{Swing, SwungSensor, SwungTrace};
 
 use super::fit::{ADDED, BUOYANCY, DELAY};
 use super::forces::{Drag, LOAD};
 use super::section::{self, OscillationPlan};
 use super::setup::{OscillationRun, Setup};
 use super::source::{declared, drags, setup_of};
-use crate::sensors::{Senses, seed_and_sensors};
+use crate::sensors::{Senses, seed_and_sensors, swung};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
 use froude_hydro::swing::{Medium, Pivot};
 
 /// Natural frequency of the twin's servo, rad/s, and its damping ratio: a joint module that overshoots a little.
@@ -39,6 +38,10 @@ pub struct Planned {
     pub id: String,
     /// Which body of the setup.
     pub body: usize,
+    /// What it swings in.
+    pub medium: Medium,
+    /// Speed of the stream, m/s.
+    pub flow_m_s: f64,
     /// How it swings.
     pub swing: Swing,
     /// Samples a second.
@@ -53,7 +56,7 @@ pub struct Simulated {
     /// As it was planned.
     pub planned: Planned,
     /// What was logged.
-    pub trace: OscillationTrace,
+    pub trace: SwungTrace,
 }
 
 impl Simulated {
@@ -63,11 +66,11 @@ impl Simulated {
         OscillationRun {
             id: &self.planned.id,
             body: self.planned.body,
-            medium: self.planned.swing.medium,
-            flow_m_s: self.planned.swing.flow_m_s,
+            medium: self.planned.medium,
+            flow_m_s: self.planned.flow_m_s,
             time_s: &self.trace.time_s,
             angle_rad: &self.trace.angle_rad,
-            force_n: &self.trace.force_n,
+            force_n: &self.trace.load,
         }
     }
 }
@@ -83,25 +86,21 @@ pub fn configurations(blocks: &[OscillationPlan]) -> Vec<String> {
 pub fn planned(blocks: &[OscillationPlan], setup: &Setup) -> Vec<Planned> {
     let mut out = Vec::new();
     for block in blocks {
-        let swings = &block.swings;
         for configuration in &block.configurations {
             let body = setup.bodies.iter().position(|b| b.name == *configuration).unwrap_or(0);
             for &flow_m_s in &block.flow_m_s {
-                for &amplitude_rad in &swings.amplitude_rad {
-                    for &omega_rad_s in &swings.omega_rad_s {
-                        for _ in 0..swings.repeats {
-                            let swing = Swing {
-                                medium: if block.in_air { Medium::Air } else { Medium::Water },
-                                amplitude_rad,
-                                omega_rad_s,
-                                flow_m_s,
-                                still_s: swings.still_s,
-                                periods: swings.periods,
-                            };
-                            let id = format!("{:03}", out.len() + 1);
-                            out.push(Planned { id, body, swing, rate_hz: swings.rate_hz, of_drag: 1.0 });
-                        }
-                    }
+                for swing in block.swings.each() {
+                    let id = format!("{:03}", out.len() + 1);
+                    let medium = if block.in_air { Medium::Air } else { Medium::Water };
+                    out.push(Planned {
+                        id,
+                        body,
+                        medium,
+                        flow_m_s,
+                        swing,
+                        rate_hz: block.swings.rate_hz,
+                        of_drag: 1.0,
+                    });
                 }
             }
         }
@@ -196,29 +195,21 @@ pub fn simulated(
     sensors: &[SensorSpec],
     seed: u64,
 ) -> Vec<Simulated> {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut draw = |standard: f64| -> f64 {
-        let z: f64 = rng.sample(StandardNormal);
-        standard * z
-    };
-    let radius_m = setup.radius_m.value + draw(setup.radius_m.standard);
-    let density = setup.density_kg_m3.value + draw(setup.density_kg_m3.standard);
+    let mut draws = Draws::of(seed);
+    let radius_m = draws.about(setup.radius_m);
+    let density = draws.about(setup.density_kg_m3);
     let [angle, force, flow] =
-        [setup.angle_relative, setup.force_relative, setup.flow_relative].map(|part| 1.0 + draw(part));
-    let delay_s = truth.delay_s.unwrap_or_else(|| setup.delay_s.map_or(0.0, |d| d.value + draw(d.standard)));
+        [setup.angle_relative, setup.force_relative, setup.flow_relative].map(|part| draws.gain(part));
+    let delay_s = truth.delay_s.unwrap_or_else(|| setup.delay_s.map_or(0.0, |d| draws.about(d)));
     let bodies: Vec<(f64, f64)> = (setup.bodies.iter().zip(&truth.buoyancy_n))
         .map(|(body, stated)| {
-            let mass = body.mass_kg.value + draw(body.mass_kg.standard);
-            let buoyancy = stated.unwrap_or_else(|| body.buoyancy_n.map_or(0.0, |b| b.value + draw(b.standard)));
+            let mass = draws.about(body.mass_kg);
+            let buoyancy = stated.unwrap_or_else(|| body.buoyancy_n.map_or(0.0, |b| draws.about(b)));
             (mass, if setup.pivot == Pivot::Stream { buoyancy } else { 0.0 })
         })
         .collect();
-    let zeros: Vec<f64> = planned.iter().map(|_| draw(ZERO_N)).collect();
-    let of = |names: [&str; 2]| sensors.iter().find(|s| names.contains(&s.quantity.as_str()));
-    let (on_angle, on_force) = (of(["angle", "phi"]), of(["force", LOAD]));
-    let noise = |s: Option<&SensorSpec>| s.and_then(|s| s.noise).unwrap_or(0.0);
-    let step = |s: Option<&SensorSpec>| s.and_then(|s| s.resolution).unwrap_or(0.0);
-    let slow = on_force.and_then(|s| s.correlation_s);
+    let zeros: Vec<f64> = planned.iter().map(|_| ZERO_N * draws.normal()).collect();
+    let sensor = swung(sensors, &["angle", "phi"], &["force", LOAD]);
     let one = |(i, run): (usize, &Planned)| {
         let (body, (mass_kg, buoyancy_n)) = (&setup.bodies[run.body], bodies[run.body]);
         let rig = OscillationRig {
@@ -230,24 +221,10 @@ pub fn simulated(
             servo_rad_s: SERVO.0,
             servo_damping: SERVO.1,
         };
-        let sensor = OscillationSensor {
-            rate_hz: run.rate_hz,
-            angle_noise_rad: noise(on_angle),
-            angle_step_rad: step(on_angle),
-            force_noise_n: if slow.is_some() { 0.0 } else { noise(on_force) },
-            slow_noise_n: if slow.is_some() { noise(on_force) } else { 0.0 },
-            correlation_s: slow.unwrap_or(1.0),
-            force_step_n: step(on_force),
-            zero_n: zeros[i] + on_force.and_then(|s| s.bias).unwrap_or(0.0),
-            drift_n_s: 0.0,
-            delay_s,
-        };
-        let swing = Swing { flow_m_s: run.swing.flow_m_s * flow, ..run.swing };
+        let sensor = SwungSensor { rate_hz: run.rate_hz, zero: zeros[i] + sensor.zero, delay_s, ..sensor };
         let drag_n = |v: [f64; 2]| run.of_drag * truth.drag_n(body.n_links, density, v);
-        let mut trace =
-            rig.swing(swing, sensor, &drag_n, seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1));
-        trace.angle_rad.iter_mut().for_each(|x| *x *= angle);
-        trace.force_n.iter_mut().for_each(|x| *x *= force);
+        let stream = (run.medium, run.flow_m_s * flow);
+        let trace = rig.swing(stream, run.swing, sensor, &drag_n, seed_of(seed, i)).scaled(angle, force);
         Simulated { planned: run.clone(), trace }
     };
     planned.iter().enumerate().map(one).collect()
@@ -264,39 +241,28 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let truth = Truths::of(campaign, source, &setup)?;
     let planned = planned(&blocks, &setup);
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
-    let mut out = Vec::new();
-    for run in simulated(&planned, &setup, &truth, sensors, seed) {
-        out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });
-        out.push(Export {
-            name: format!("{}.toml", run.planned.id),
-            content: sidecar(&run.planned, &setup, "A run of the twin.").into_bytes(),
-        });
-    }
-    Ok(out)
+    let runs = simulated(&planned, &setup, &truth, sensors, seed);
+    let text = |run: &Simulated| sidecar(&run.planned, &setup, "A run of the twin.");
+    Ok(runs.iter().flat_map(|run| pair(&run.planned.id, log(&run.trace), text(run))).collect())
 }
 
-pub(super) fn log(trace: &OscillationTrace) -> String {
-    let mut out = String::from("time,phi,force\n");
-    for ((t, angle), force) in trace.time_s.iter().zip(&trace.angle_rad).zip(&trace.force_n) {
-        out += &format!("{t:.6},{angle:.8},{force:.6}\n");
-    }
-    out
+pub(super) fn log(trace: &SwungTrace) -> String {
+    csv("time,phi,force", &trace.time_s, &[(&trace.angle_rad, 8), (&trace.load, 6)])
 }
 
-/// `said` is a line for people.
 pub(super) fn sidecar(run: &Planned, setup: &Setup, said: &str) -> String {
-    let role = if run.swing.medium == Medium::Air { Role::DryAir } else { Role::Test }.name();
-    let configuration = &setup.bodies[run.body].name;
-    let mounted = if configuration.is_empty() {
-        String::new()
-    } else {
-        format!("\n[mounted]\nconfiguration = {configuration:?}\n")
+    let sidecar = Sidecar {
+        said,
+        method: FORCED_OSCILLATION,
+        role: if run.medium == Medium::Air { Role::DryAir } else { Role::Test }.name(),
+        configuration: &setup.bodies[run.body].name,
+        conditions: &[format!("flow = \"{} m/s\"", run.flow_m_s)],
+        time: "time",
+        columns: &[
+            ["phi", "angle", "rad", "sensor", "   # positive towards +y"],
+            ["force", "force", "N", "body", "       # of the rig on the body, along +y"],
+        ],
+        width: 5,
     };
-    format!(
-        "# {said}\nschema = 1\nmethod = \"{FORCED_OSCILLATION}\"\nrole = \"{role}\"\n{mounted}\n[conditions]\nflow = \"{} m/s\"\n\n[columns]\n\
-         time  = {{ name = \"time\", unit = \"s\" }}\n\
-         phi   = {{ name = \"angle\", unit = \"rad\", sign = 1, frame = \"sensor\", clock = \"log\" }}   # positive towards +y\n\
-         force = {{ name = \"force\", unit = \"N\", sign = 1, frame = \"body\", clock = \"log\" }}       # of the rig on the body, along +y\n",
-        run.swing.flow_m_s
-    )
+    sidecar.text()
 }

@@ -45,9 +45,9 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     if !pairs.is_empty() {
         paragraphs.push(format!("Correlations to expect: {}.", pairs.join(", ")));
     }
-    let in_water = planned.iter().filter(|run| run.turn.mounted == Mounted::Body);
+    let in_water = planned.iter().filter(|run| run.mounted == Mounted::Body);
     let rates = in_water
-        .map(|run| run.turn.amplitude_rad * run.turn.omega_rad_s)
+        .map(|run| run.swing.amplitude_rad * run.swing.omega_rad_s)
         .fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], rate| [low.min(rate), high.max(rate)]);
     paragraphs.extend(one_rate(rates, found.correlation(LAMBDAS[1], LAMBDAS[2])).map(|text| format!("Mind: {text}.")));
     let tables = [matrix(&planned, &found, &setup), plan::intervals(&found.expected, "")];
@@ -55,15 +55,15 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
 }
 
 fn duration_s(run: &Planned) -> f64 {
-    run.turn.still_s + run.turn.periods * TAU / run.turn.omega_rad_s
+    run.swing.still_s + run.swing.periods * TAU / run.swing.omega_rad_s
 }
 
 fn matrix(planned: &[Planned], found: &Forecast, setup: &Setup) -> ResultTable {
-    let rows: Vec<_> = planned.iter().map(|run| (run, &run.turn)).zip(&found.cycles).collect();
+    let rows: Vec<_> = planned.iter().map(|run| (run, &run.swing)).zip(&found.cycles).collect();
     let t = TableBuilder::new("matrix", "Run matrix.", &rows);
     t.build(vec![
         t.text("run", "run", |((run, _), _)| run.id.clone()),
-        t.text("mounted", "mounted", |((_, turn), _)| words(turn.mounted).to_owned()),
+        t.text("mounted", "mounted", |((run, _), _)| words(run.mounted).to_owned()),
         t.number("amplitude_rad", "amplitude [deg]", |((_, turn), _)| turn.amplitude_rad).plain(4),
         t.number("omega_rad_s", "ω [deg/s]", |((_, turn), _)| turn.omega_rad_s).plain(4),
         t.number("frequency_hz", "frequency [Hz]", |((_, turn), _)| turn.omega_rad_s / TAU).plain(4),

@@ -7,17 +7,16 @@ use froude_fit::budget::Uncertain;
 use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
 use froude_records::run::{ROTATION, Role};
-use froude_rig::rotation::{Lambdas, Mounted, RotationRig, RotationSensor, RotationTrace, Turn};
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
-use rand_pcg::Pcg64Mcg;
+use froude_rig::rotation::{Lambdas, Mounted, RotationRig};
+use froude_rig::swung::{Swing, SwungSensor, SwungTrace};
 
 use super::fit::{INERTIA, LAMBDAS, RESTORING, RESTORING_IN_AIR, TARES, no_inertia};
 use super::section::{self, RotationPlan};
 use super::setup::{RotationRun, Setup};
 use super::source::setup_of;
 use crate::joint::DELAY;
-use crate::sensors::{Senses, seed_and_sensors};
+use crate::sensors::{Senses, seed_and_sensors, swung};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
 
 /// Natural frequency of the twin's servo, rad/s, and its damping ratio: a joint module that overshoots a little.
 const SERVO: (f64, f64) = (30.0, 0.6);
@@ -34,8 +33,10 @@ pub(super) fn senses() -> [Senses<'static>; 2] {
 pub struct Planned {
     /// Its name.
     pub id: String,
+    /// What hangs on the shaft.
+    pub mounted: Mounted,
     /// How it turns.
-    pub turn: Turn,
+    pub swing: Swing,
     /// Samples a second.
     pub rate_hz: f64,
 }
@@ -46,7 +47,7 @@ pub struct Simulated {
     /// As it was planned.
     pub planned: Planned,
     /// What was logged.
-    pub trace: RotationTrace,
+    pub trace: SwungTrace,
 }
 
 impl Simulated {
@@ -55,10 +56,10 @@ impl Simulated {
     pub fn view(&self) -> RotationRun<'_> {
         RotationRun {
             id: &self.planned.id,
-            mounted: self.planned.turn.mounted,
+            mounted: self.planned.mounted,
             time_s: &self.trace.time_s,
             angle_rad: &self.trace.angle_rad,
-            torque_n_m: &self.trace.torque_n_m,
+            torque_n_m: &self.trace.load,
         }
     }
 }
@@ -86,20 +87,9 @@ fn role(mounted: Mounted) -> Role {
 pub fn planned(blocks: &[RotationPlan]) -> Vec<Planned> {
     let mut out = Vec::new();
     for block in blocks {
-        let swings = &block.swings;
-        for &amplitude_rad in &swings.amplitude_rad {
-            for &omega_rad_s in &swings.omega_rad_s {
-                for _ in 0..swings.repeats {
-                    let turn = Turn {
-                        mounted: mounted(block.role),
-                        amplitude_rad,
-                        omega_rad_s,
-                        still_s: swings.still_s,
-                        periods: swings.periods,
-                    };
-                    out.push(Planned { id: format!("{:03}", out.len() + 1), turn, rate_hz: swings.rate_hz });
-                }
-            }
+        for swing in block.swings.each() {
+            let id = format!("{:03}", out.len() + 1);
+            out.push(Planned { id, mounted: mounted(block.role), swing, rate_hz: block.swings.rate_hz });
         }
     }
     out
@@ -188,13 +178,9 @@ pub fn simulated(
     sensors: &[SensorSpec],
     seed: u64,
 ) -> Vec<Simulated> {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut draw = |standard: f64| -> f64 {
-        let z: f64 = rng.sample(StandardNormal);
-        standard * z
-    };
+    let mut draws = Draws::of(seed);
     let mut about = |stated: Option<f64>, known: Option<Uncertain>| {
-        let drawn = known.map_or(0.0, |k| k.value + draw(k.standard));
+        let drawn = known.map_or(0.0, |k| draws.about(k));
         stated.unwrap_or(drawn)
     };
     let rig = RotationRig {
@@ -208,28 +194,12 @@ pub fn simulated(
         servo_damping: SERVO.1,
     };
     let delay_s = about(truth.delay_s, setup.delay_s);
-    let [angle_gain, torque_gain] = [setup.angle_relative, setup.torque_relative].map(|part| 1.0 + draw(part));
-    let zeros: Vec<f64> = planned.iter().map(|_| draw(ZERO_N_M)).collect();
-    let of = |name: &str| sensors.iter().find(|s| s.quantity == name);
-    let (on_angle, on_torque) = (of("angle"), of("torque"));
-    let noise = |s: Option<&SensorSpec>| s.and_then(|s| s.noise).unwrap_or(0.0);
-    let step = |s: Option<&SensorSpec>| s.and_then(|s| s.resolution).unwrap_or(0.0);
-    let slow = on_torque.and_then(|s| s.correlation_s);
+    let [angle_gain, torque_gain] = [setup.angle_relative, setup.torque_relative].map(|part| draws.gain(part));
+    let zeros: Vec<f64> = planned.iter().map(|_| ZERO_N_M * draws.normal()).collect();
+    let sensor = swung(sensors, &["angle"], &["torque"]);
     let one = |(i, run): (usize, &Planned)| {
-        let sensor = RotationSensor {
-            rate_hz: run.rate_hz,
-            angle_noise_rad: noise(on_angle),
-            angle_step_rad: step(on_angle),
-            torque_noise_n_m: if slow.is_some() { 0.0 } else { noise(on_torque) },
-            slow_noise_n_m: if slow.is_some() { noise(on_torque) } else { 0.0 },
-            correlation_s: slow.unwrap_or(1.0),
-            torque_step_n_m: step(on_torque),
-            zero_n_m: zeros[i] + on_torque.and_then(|s| s.bias).unwrap_or(0.0),
-            delay_s,
-        };
-        let mut trace = rig.turn(run.turn, sensor, seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1));
-        trace.angle_rad.iter_mut().for_each(|x| *x *= angle_gain);
-        trace.torque_n_m.iter_mut().for_each(|x| *x *= torque_gain);
+        let sensor = SwungSensor { rate_hz: run.rate_hz, zero: zeros[i] + sensor.zero, delay_s, ..sensor };
+        let trace = rig.turn(run.mounted, run.swing, sensor, seed_of(seed, i)).scaled(angle_gain, torque_gain);
         Simulated { planned: run.clone(), trace }
     };
     planned.iter().enumerate().map(one).collect()
@@ -244,28 +214,27 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let (setup, blocks) = (setup_of(campaign, source)?, section::plan(source)?);
     let truth = Truths::of(campaign, &blocks, &setup)?;
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
-    let mut out = Vec::new();
-    for run in simulated(&planned(&blocks), &setup, &truth, sensors, seed) {
-        out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });
-        out.push(Export { name: format!("{}.toml", run.planned.id), content: sidecar(&run).into_bytes() });
-    }
-    Ok(out)
+    let runs = simulated(&planned(&blocks), &setup, &truth, sensors, seed);
+    Ok(runs.iter().flat_map(|run| pair(&run.planned.id, log(&run.trace), sidecar(run))).collect())
 }
 
-fn log(trace: &RotationTrace) -> String {
-    let mut out = String::from("time,theta,torque\n");
-    for ((t, angle), torque) in trace.time_s.iter().zip(&trace.angle_rad).zip(&trace.torque_n_m) {
-        out += &format!("{t:.6},{angle:.8},{torque:.8}\n");
-    }
-    out
+fn log(trace: &SwungTrace) -> String {
+    csv("time,theta,torque", &trace.time_s, &[(&trace.angle_rad, 8), (&trace.load, 8)])
 }
 
 fn sidecar(run: &Simulated) -> String {
-    format!(
-        "# A run of the twin.\nschema = 1\nmethod = \"{ROTATION}\"\nrole = \"{}\"\n\n[columns]\n\
-         time   = {{ name = \"time\", unit = \"s\" }}\n\
-         theta  = {{ name = \"angle\", unit = \"rad\", sign = 1, frame = \"sensor\", clock = \"log\" }}   # positive about the body's z axis\n\
-         torque = {{ name = \"torque\", unit = \"N m\", sign = 1, frame = \"body\", clock = \"log\" }}    # of the rig on the body, about the same axis\n",
-        role(run.planned.turn.mounted).name()
-    )
+    let sidecar = Sidecar {
+        said: "A run of the twin.",
+        method: ROTATION,
+        role: role(run.planned.mounted).name(),
+        configuration: "",
+        conditions: &[],
+        time: "time",
+        columns: &[
+            ["theta", "angle", "rad", "sensor", "   # positive about the body's z axis"],
+            ["torque", "torque", "N m", "body", "    # of the rig on the body, about the same axis"],
+        ],
+        width: 6,
+    };
+    sidecar.text()
 }

@@ -13,14 +13,12 @@ use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source
 use froude_records::run::STEADY;
 use froude_records::units::Dimension;
 use froude_rig::steady::{Tow, TowTrace, tow as towed};
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
-use rand_pcg::Pcg64Mcg;
 
 use super::point::Run;
 use super::section;
 use super::window::Motion;
 use crate::sensors::{Senses, reading, seed_and_sensors};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
 
 /// Standard deviation of the zero of a run, N or N m.
 const ZERO: f64 = 0.2;
@@ -98,17 +96,16 @@ pub fn loads_at(plan: &Plan, row: usize, speed_m_s: f64, angle_rad: f64) -> Vec<
 /// The logs of all planned runs; the same seed gives the same logs.
 #[must_use]
 pub fn simulated(plan: &Plan, tow: Tow, sensors: &[SensorSpec], budget: &[BudgetEntry], seed: u64) -> Vec<Simulated> {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut draw = || -> f64 { rng.sample(StandardNormal) };
+    let mut draws = Draws::of(seed);
     let value = |name: &str, row: usize| plan.data.values(name).map_or(0.0, |v| v[row]);
     // One error of the campaign for each entry; those of runs are drawn as they come.
-    let common: Vec<f64> = budget.iter().map(|_| draw()).collect();
+    let common: Vec<f64> = budget.iter().map(|_| draws.normal()).collect();
     let mut out = Vec::new();
     for row in 0..plan.data.rows {
         let mut gains = vec![1.0; 1 + plan.law.responses.len()];
         let mut angle_off = 0.0;
         for (entry, common) in budget.iter().zip(&common) {
-            let z = if entry.shared == Shared::Campaign { *common } else { draw() };
+            let z = if entry.shared == Shared::Campaign { *common } else { draws.normal() };
             let at = if entry.quantity == "speed" {
                 Some(0)
             } else {
@@ -122,7 +119,7 @@ pub fn simulated(plan: &Plan, tow: Tow, sensors: &[SensorSpec], budget: &[Budget
         }
         let mut readings = vec![reading(sensors, &["speed"], 0.0, gains[0])];
         for (l, name) in plan.law.responses.iter().enumerate() {
-            readings.push(reading(sensors, &[name], ZERO * draw(), gains[1 + l]));
+            readings.push(reading(sensors, &[name], ZERO * draws.normal(), gains[1 + l]));
         }
         let (speed, angle) = (value("speed", row), value("angle", row));
         let last: RefCell<Option<(f64, Vec<f64>)>> = RefCell::new(None);
@@ -135,13 +132,12 @@ pub fn simulated(plan: &Plan, tow: Tow, sensors: &[SensorSpec], budget: &[Budget
             *last.borrow_mut() = Some((speed, loads.clone()));
             loads
         };
-        let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(row as u64 + 1);
         out.push(Simulated {
             id: format!("{:03}", row + 1),
             configuration: plan.data.configuration[row].clone(),
             angle_rad: angle,
             loads: plan.law.responses.clone(),
-            trace: towed(tow, speed, &readings, &loads, seed),
+            trace: towed(tow, speed, &readings, &loads, seed_of(seed, row)),
         });
     }
     out
@@ -160,43 +156,28 @@ pub(super) fn senses(plan: &Plan) -> [Senses<'_>; 1] {
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
     let plan = plan_of(campaign, source)?;
     let (seed, sensors) = seed_and_sensors(campaign, &senses(&plan))?;
-    let mut out = Vec::new();
-    for run in simulated(&plan, section::declared(source)?.tow, sensors, &source.uncertainty, seed) {
-        out.push(Export { name: format!("{}.csv", run.id), content: log(&run).into_bytes() });
-        out.push(Export { name: format!("{}.toml", run.id), content: sidecar(&run).into_bytes() });
-    }
-    Ok(out)
+    let runs = simulated(&plan, section::declared(source)?.tow, sensors, &source.uncertainty, seed);
+    Ok(runs.iter().flat_map(|run| pair(&run.id, log(run), sidecar(run))).collect())
 }
 
 fn log(run: &Simulated) -> String {
-    let mut out = format!("time,speed,{}\n", run.loads.join(","));
-    for (i, t) in run.trace.time_s.iter().enumerate() {
-        out += &format!("{t:.6},{:.7}", run.trace.speed_m_s[i]);
-        for load in &run.trace.loads_n {
-            out += &format!(",{:.6}", load[i]);
-        }
-        out.push('\n');
-    }
-    out
+    let loads = run.trace.loads_n.iter().map(|load| (load.as_slice(), 6));
+    let columns: Vec<(&[f64], usize)> = std::iter::once((run.trace.speed_m_s.as_slice(), 7)).chain(loads).collect();
+    csv(&format!("time,speed,{}", run.loads.join(",")), &run.trace.time_s, &columns)
 }
 
 fn sidecar(run: &Simulated) -> String {
-    let mounted = if run.configuration.is_empty() {
-        String::new()
-    } else {
-        format!("\n[mounted]\nconfiguration = {:?}\n", run.configuration)
+    let unit = |load: &str| if load.starts_with('m') { "N m" } else { "N" };
+    let loads = run.loads.iter().map(|load| [load, load, unit(load), "body", ""]);
+    let sidecar = Sidecar {
+        said: "A run of the twin.",
+        method: STEADY,
+        role: "test",
+        configuration: &run.configuration,
+        conditions: &[format!("angle = \"{} deg\"", (run.angle_rad.to_degrees() * 1e9).round() / 1e9)],
+        time: "time",
+        columns: &std::iter::once(["speed", "speed", "m/s", "body", ""]).chain(loads).collect::<Vec<_>>(),
+        width: 5,
     };
-    let mut out = format!(
-        "# A run of the twin.\nschema = 1\nmethod = \"{STEADY}\"\nrole = \"test\"\n{mounted}\n[conditions]\nangle = \"{} deg\"\n\n[columns]\n\
-         time  = {{ name = \"time\", unit = \"s\" }}\n\
-         speed = {{ name = \"speed\", unit = \"m/s\", sign = 1, frame = \"body\", clock = \"log\" }}\n",
-        (run.angle_rad.to_degrees() * 1e9).round() / 1e9
-    );
-    for load in &run.loads {
-        let unit = if load.starts_with('m') { "N m" } else { "N" };
-        out += &format!(
-            "{load}   = {{ name = \"{load}\", unit = \"{unit}\", sign = 1, frame = \"body\", clock = \"log\" }}\n"
-        );
-    }
-    out
+    sidecar.text()
 }

@@ -10,16 +10,14 @@ use froude_records::run::WEIGHT_TOW;
 use froude_records::units::Dimension;
 use froude_rig::steady::Reading;
 use froude_rig::weight_tow::{WeightRig, pull};
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
-use rand_pcg::Pcg64Mcg;
 
 use super::reduce::WeightRun;
 use super::section::{self, Lens, WeightTowSpec};
 use super::track::metres;
-use crate::declared::needed;
+use crate::declared::{needed, uncertain};
 use crate::sensors::{Senses, reading, seed_and_sensors};
 use crate::steady::simulate::{Plan, loads_at};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
 
 /// Part of the moving mass that hangs below the load cell: body and water.
 const BELOW_CELL: f64 = 0.75;
@@ -168,14 +166,13 @@ pub fn simulated(
     budget: &[BudgetEntry],
     seed: u64,
 ) -> Vec<Simulated> {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut draw = || -> f64 { rng.sample(StandardNormal) };
+    let mut draws = Draws::of(seed);
     let plan = &weights.plan;
     let scale = spec.scale_m.map_or(USUAL_SCALE_M, |s| s.value);
-    let true_scale = spec.scale_m.map_or(USUAL_SCALE_M, |s| s.value + s.standard_uncertainty * draw());
-    let mass = spec.moving_mass_kg.map_or(USUAL_KG, |m| m.value + m.standard_uncertainty * draw());
-    let friction = (spec.friction_n.value + spec.friction_n.standard_uncertainty * draw()).max(0.0);
-    let common: Vec<f64> = budget.iter().map(|_| draw()).collect();
+    let true_scale = spec.scale_m.map_or(USUAL_SCALE_M, |s| draws.about(uncertain(s)));
+    let mass = spec.moving_mass_kg.map_or(USUAL_KG, |m| draws.about(uncertain(m)));
+    let friction = draws.about(uncertain(spec.friction_n)).max(0.0);
+    let common: Vec<f64> = budget.iter().map(|_| draws.normal()).collect();
     let of = |name: &str| sensors.iter().find(|s| s.quantity == name);
     let mut out = Vec::new();
     for row in 0..plan.data.rows {
@@ -183,7 +180,7 @@ pub fn simulated(
         let mut gains = vec![1.0; names.len()];
         let mut stretch = 1.0;
         for (entry, common) in budget.iter().zip(&common).filter(|(entry, _)| entry.relative) {
-            let z = if entry.shared == Shared::Campaign { *common } else { draw() };
+            let z = if entry.shared == Shared::Campaign { *common } else { draws.normal() };
             if entry.quantity == "speed" {
                 stretch *= 1.0 + entry.standard * z;
             } else if let Some(k) = names.iter().position(|r| *r == entry.quantity) {
@@ -192,7 +189,7 @@ pub fn simulated(
         }
         let each = names.iter().zip(&gains);
         let readings: Vec<Reading> =
-            each.map(|(name, gain)| reading(sensors, &[name], ZERO_N * draw(), *gain)).collect();
+            each.map(|(name, gain)| reading(sensors, &[name], ZERO_N * draws.normal(), *gain)).collect();
         let angle = plan.data.values("angle").map_or(0.0, |a| a[row]);
         let along: Vec<f64> = names.iter().map(|n| if n == "f_x" { angle.cos() } else { -angle.sin() }).collect();
         let rig = WeightRig {
@@ -216,13 +213,12 @@ pub fn simulated(
         };
         let rail = |v: f64| -(0..names.len()).map(|k| at(v, k) * along[k]).sum::<f64>();
         let loads = |v: f64| (0..names.len()).map(|k| at(v, k)).collect();
-        let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(row as u64 + 1);
-        let trace = pull(rig, &readings, &rail, &loads, &along, seed);
+        let trace = pull(rig, &readings, &rail, &loads, &along, seed_of(seed, row));
         let mut marks = pixels(&trace.position_m, true_scale, spec.lens, 0.5 * spec.travel_m);
         let middle = spec.lens.map_or(0.0, |l| l.centre_px);
         let (noise, step) = (of("mark").and_then(|s| s.noise), of("mark").and_then(|s| s.resolution));
         for mark in &mut marks {
-            *mark = middle + stretch * (*mark - middle) + noise.unwrap_or(0.0) * draw();
+            *mark = middle + stretch * (*mark - middle) + noise.unwrap_or(0.0) * draws.normal();
             if let Some(step) = step.filter(|s| *s > 0.0) {
                 *mark = (*mark / step).round() * step;
             }
@@ -259,42 +255,29 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let spec = declared(source)?;
     let weights = weights_of(campaign, source, &spec, section::plan(source)?)?;
     let (seed, sensors) = seed_and_sensors(campaign, &senses(&weights))?;
-    let mut out = Vec::new();
-    for run in simulated(&weights, &spec, sensors, &source.uncertainty, seed) {
-        out.push(Export { name: format!("{}.csv", run.id), content: log(&run).into_bytes() });
-        out.push(Export { name: format!("{}.toml", run.id), content: sidecar(&run).into_bytes() });
-    }
-    Ok(out)
+    let runs = simulated(&weights, &spec, sensors, &source.uncertainty, seed);
+    Ok(runs.iter().flat_map(|run| pair(&run.id, log(run), sidecar(run))).collect())
 }
 
 fn log(run: &Simulated) -> String {
-    let mut out = format!("time,mark,{}\n", run.names.join(","));
-    for (i, t) in run.time_s.iter().enumerate() {
-        out += &format!("{t:.6},{:.4}", run.mark_px[i]);
-        for load in &run.loads_n {
-            out += &format!(",{:.6}", load[i]);
-        }
-        out.push('\n');
-    }
-    out
+    let loads = run.loads_n.iter().map(|load| (load.as_slice(), 6));
+    let columns: Vec<(&[f64], usize)> = std::iter::once((run.mark_px.as_slice(), 4)).chain(loads).collect();
+    csv(&format!("time,mark,{}", run.names.join(",")), &run.time_s, &columns)
 }
 
 fn sidecar(run: &Simulated) -> String {
-    let mounted = if run.configuration.is_empty() {
-        String::new()
-    } else {
-        format!("\n[mounted]\nconfiguration = {:?}\n", run.configuration)
+    let mark = ["mark", "mark", "1", "sensor", "   # pixels along the rail"];
+    let loads = run.names.iter().map(|load| [load, load, "N", "body", ""]);
+    let degrees = (run.angle_rad.to_degrees() * 1e9).round() / 1e9;
+    let sidecar = Sidecar {
+        said: "A run of the twin.",
+        method: WEIGHT_TOW,
+        role: "test",
+        configuration: &run.configuration,
+        conditions: &[format!("angle = \"{degrees} deg\""), format!("weight = \"{} N\"", run.weight_n)],
+        time: "time",
+        columns: &std::iter::once(mark).chain(loads).collect::<Vec<_>>(),
+        width: 4,
     };
-    let mut out = format!(
-        "# A run of the twin.\nschema = 1\nmethod = \"{WEIGHT_TOW}\"\nrole = \"test\"\n{mounted}\n[conditions]\nangle = \"{} deg\"\nweight = \"{} N\"\n\n[columns]\n\
-         time = {{ name = \"time\", unit = \"s\" }}\n\
-         mark = {{ name = \"mark\", unit = \"1\", sign = 1, frame = \"sensor\", clock = \"log\" }}   # pixels along the rail\n",
-        (run.angle_rad.to_degrees() * 1e9).round() / 1e9,
-        run.weight_n
-    );
-    for load in &run.names {
-        out +=
-            &format!("{load}  = {{ name = \"{load}\", unit = \"N\", sign = 1, frame = \"body\", clock = \"log\" }}\n");
-    }
-    out
+    sidecar.text()
 }

@@ -135,7 +135,7 @@ fn log(root: &Path, folder: &Path, periods: usize) -> Result<usize, Box<dyn Erro
         let unit = parse_unit(unit)?;
         Ok(Column { name: name.to_owned(), data: ColumnData::Number { dimension: unit.dimension, unit, si } })
     };
-    let values = [trace.time_s, trace.angle_rad, trace.force_n].into_iter().chain(extra);
+    let values = [trace.time_s, trace.angle_rad, trace.load].into_iter().chain(extra);
     let table = Table::of(
         folder.join("runs/001.parquet"),
         named.into_iter().zip(values).map(column).collect::<Result<_, _>>()?,

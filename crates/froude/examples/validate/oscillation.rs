@@ -109,7 +109,7 @@ fn sines(case: &Case, pivot: Pivot, periods: f64) -> Vec<Sine> {
             let t = i as f64 / run.rate_hz;
             let (sin, cos) = (omega * t).sin_cos();
             let angle = [alpha * sin, alpha * omega * cos, -alpha * omega * omega * sin];
-            let k = Kinematics::of(angle, pivot, radius, run.swing.flow_m_s);
+            let k = Kinematics::of(angle, pivot, radius, run.flow_m_s);
             let drag = truth.drag_n(body.n_links, case.setup.density_kg_m3.value, k.velocity_m_s);
             out.time_s.push(t);
             out.angle_rad.push(angle[0]);
@@ -151,7 +151,7 @@ fn fitted(
             id: "sine",
             body: run.body,
             medium: Medium::Water,
-            flow_m_s: case.planned[0].swing.flow_m_s,
+            flow_m_s: case.planned[0].flow_m_s,
             time_s: &run.time_s,
             angle_rad: &run.angle_rad,
             force_n: &run.force_n,
