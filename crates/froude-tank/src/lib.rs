@@ -15,6 +15,7 @@ mod fluid;
 pub mod joint;
 mod logs;
 mod long_logs;
+pub mod method;
 pub mod motion;
 mod noise;
 pub mod oscillation;

@@ -5,13 +5,7 @@ use froude_carriage::drag::calibration::source::KnownWeights;
 use froude_carriage::source::Carriage;
 use froude_carriage::tuning::source::{Resonance, Tuning};
 use froude_identify::method::Method;
-use froude_tank::accelerated_tow::source::AcceleratedTow;
-use froude_tank::decay::source::FreeDecay;
-use froude_tank::excited_response::source::ExcitedResponse;
-use froude_tank::oscillation::source::ForcedOscillation;
-use froude_tank::rotation::source::Rotation;
-use froude_tank::steady::source::Steady;
-use froude_tank::weight_tow::source::WeightTow;
+use froude_tank::{accelerated_tow, decay, excited_response, oscillation, rotation, steady, weight_tow};
 
 /// Names of the methods that read runs of a method.
 pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
@@ -25,11 +19,11 @@ pub(crate) const METHODS: [&dyn Method; 12] = [
     &KnownWeights,
     &Tuning,
     &Resonance,
-    &FreeDecay,
-    &ForcedOscillation,
-    &Rotation,
-    &Steady,
-    &WeightTow,
-    &AcceleratedTow,
-    &ExcitedResponse,
+    &decay::source::DECAY,
+    &oscillation::source::FORCED,
+    &rotation::source::TURNED,
+    &steady::source::STEADY_TOW,
+    &weight_tow::source::PULLED,
+    &accelerated_tow::source::ACCELERATED,
+    &excited_response::source::EXCITED,
 ];

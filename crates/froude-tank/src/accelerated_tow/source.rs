@@ -1,11 +1,10 @@
 //! Accelerated tows as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
-use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::reduce::Observations;
 use froude_identify::regression::Scatter;
 use froude_identify::seam::Choice;
 use froude_identify::source::{Asked, identify_laws};
-use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::Derived;
 use froude_records::finding::{Finding, Severity};
@@ -21,10 +20,8 @@ use super::{lag, page, plan, section, simulate};
 use crate::between_runs::FEWEST_RUNS;
 use crate::declared::{check, needed};
 use crate::logs::{self, Logs};
+use crate::method::TankMethod;
 use crate::reference;
-
-/// Drag and added mass by weighted rows.
-pub struct AcceleratedTow;
 
 const WHY: &str = "drag and added mass are wrong by its size or its sign where one is guessed";
 /// A row whose acceleration is below this part of the largest is one of constant speed.
@@ -34,112 +31,90 @@ const ATTENUATED: f64 = 0.5;
 /// Masses by runs in air and by declaration further apart than so many standard uncertainties are reported.
 const APART: f64 = 2.5;
 
-impl Method for AcceleratedTow {
-    fn names(&self) -> &'static [&'static str] {
-        &[ACCELERATED_TOW]
-    }
+/// Drag and added mass by weighted rows.
+pub const ACCELERATED: TankMethod = TankMethod {
+    names: &[ACCELERATED_TOW],
+    words: &["drag and added mass of one axis, from a body that is towed up to speed and back to rest"],
+    needs: &[
+        Need::of(&["test"], &["force"]),
+        Need { is_optional: true, is_observed: false, ..Need::of(&["dry_air"], &["force"]) },
+    ],
+    runs: ACCELERATED_TOW,
+    identify: |campaign, source, _, progress| identify(campaign, source, progress),
+    simulate: simulate::files,
+    plan: plan::prospect,
+    check: |source| check(source, ACCELERATED_TOW, section::accelerated_tow, section::plan),
+};
 
-    fn words(&self, _: &str) -> &'static str {
-        "drag and added mass of one axis, from a body that is towed up to speed and back to rest"
+fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Result<Found, MethodError> {
+    let spec = declared(source)?;
+    progress("reading the runs");
+    let Logs { runs: logs, files, mut findings } = logs::read(
+        source.input.path(),
+        ACCELERATED_TOW,
+        &[Role::Test, Role::DryAir],
+        "time, position or speed, and force",
+        progress,
+    )?;
+    let mut setup = setup_of(campaign, source, &spec, &logs::configurations(&logs))?;
+    let late = |log: &ImportedRun| {
+        let of = ["position", "y/position", "speed"].map(|motion| logs::stamps_standard_s(log, [motion, "force"]));
+        of.into_iter().fold(0.0, f64::max)
+    };
+    let clocks_s = logs.iter().map(late).fold(0.0, f64::max);
+    setup.delay_s.standard_uncertainty = setup.delay_s.standard_uncertainty.hypot(clocks_s);
+    progress("weighting motion and force");
+    let mounted = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
+    let mut reduced = reduce(&mounted, &setup).ok_or_else(|| no_mass(source, &setup))?;
+    if reduced.runs.is_empty() {
+        let first = (!reduced.left_out.is_empty()).then(|| reduced.left_out.remove(0));
+        let none = "no run of the role test: what is fitted has role = \"test\" in its sidecar";
+        return Err(first.map_or_else(|| MethodError::input(source.input.path(), none), MethodError::refused));
     }
-
-    fn needs(&self, _: &str) -> &'static [Need] {
-        const DRY: Need = Need { is_optional: true, is_observed: false, ..Need::of(&["dry_air"], &["force"]) };
-        const { &[Need::of(&["test"], &["force"]), DRY] }
+    findings.extend(
+        reduced
+            .left_out
+            .iter()
+            .map(|error| Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}"))),
+    );
+    findings.extend(driven(&reduced, &setup));
+    findings.extend(few(&reduced));
+    let laws = asked(campaign, source, &reduced.data, &setup.axis)?;
+    let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial(reduced.of_rows.clone()) };
+    if laws.len() > 1 {
+        let text = "several laws are compared as if the rows of a run were independent, so that a law with more terms wins too easily: trust it where its extra coefficients \
+                    are outside their intervals of zero";
+        findings.push(Finding::new(Severity::Warning, "laws-by-rows", text.to_owned()));
     }
-
-    fn runs(&self) -> &'static str {
-        ACCELERATED_TOW
-    }
-
-    fn identify(
-        &self,
-        campaign: &Campaign,
-        source: &Source,
-        _: &[&'static str],
-        progress: &dyn Fn(&str),
-    ) -> Result<Found, MethodError> {
-        let spec = declared(source)?;
-        progress("reading the runs");
-        let Logs { runs: logs, files, mut findings } = logs::read(
-            source.input.path(),
-            ACCELERATED_TOW,
-            &[Role::Test, Role::DryAir],
-            "time, position or speed, and force",
-            progress,
-        )?;
-        let mut setup = setup_of(campaign, source, &spec, &logs::configurations(&logs))?;
-        let late = |log: &ImportedRun| {
-            let of = ["position", "y/position", "speed"].map(|motion| logs::stamps_standard_s(log, [motion, "force"]));
-            of.into_iter().fold(0.0, f64::max)
-        };
-        let clocks_s = logs.iter().map(late).fold(0.0, f64::max);
-        setup.delay_s.standard_uncertainty = setup.delay_s.standard_uncertainty.hypot(clocks_s);
-        progress("weighting motion and force");
-        let mounted = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
-        let mut reduced = reduce(&mounted, &setup).ok_or_else(|| no_mass(source, &setup))?;
-        if reduced.runs.is_empty() {
-            let first = (!reduced.left_out.is_empty()).then(|| reduced.left_out.remove(0));
-            let none = "no run of the role test: what is fitted has role = \"test\" in its sidecar";
-            return Err(first.map_or_else(|| MethodError::input(source.input.path(), none), MethodError::refused));
-        }
-        findings.extend(
-            reduced
-                .left_out
-                .iter()
-                .map(|error| Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}"))),
+    if let Some(other) = &campaign.identify.covariance {
+        let text = format!(
+            "covariance = {other:?} of [identify] is not used: rows of a run follow each other in time, and their scatter is that of runs, or counts their correlation"
         );
-        findings.extend(driven(&reduced, &setup));
-        findings.extend(few(&reduced));
-        let laws = asked(campaign, source, &reduced.data, &setup.axis)?;
-        let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial(reduced.of_rows.clone()) };
-        if laws.len() > 1 {
-            let text = "several laws are compared as if the rows of a run were independent, so that a law with more terms wins too easily: trust it where its extra coefficients \
-                        are outside their intervals of zero";
-            findings.push(Finding::new(Severity::Warning, "laws-by-rows", text.to_owned()));
-        }
-        if let Some(other) = &campaign.identify.covariance {
-            let text = format!(
-                "covariance = {other:?} of [identify] is not used: rows of a run follow each other in time, and their scatter is that of runs, or counts their correlation"
-            );
-            findings.push(Finding::new(Severity::Note, "covariance-of-the-method", text));
-        }
-        let observations = Observations {
-            data: reduced.data.clone(),
-            n_read: reduced.data.rows,
-            findings: Vec::new(),
-            shared_errors: reduced.errors.clone(),
-            files,
-        };
-        let own = without_rig(source);
-        let asked = Asked { method: ACCELERATED_TOW, laws, scatter, choice: Choice::Selection, has_budget: true };
-        let mut result = identify_laws(campaign, &own, observations, asked, &|model| {
-            progress(&format!("fitting {model}"));
-        })?;
-        for estimate in &mut result.estimates {
-            refer(estimate, campaign, &setup);
-        }
-        findings.append(&mut result.findings);
-        let best = result.recommendation.as_ref().map_or(0, |r| r.index);
-        let added = result.estimates.get(best).and_then(|e| e.coefficients.get(&names(&setup.axis)[3]));
-        let relative = added.and_then(|c| Some((c.standard_uncertainty? / c.value?).abs())).unwrap_or(f64::INFINITY);
-        findings.extend(of_runs(&reduced, &setup, &spec, relative));
-        findings.extend(result.models.get(best).and_then(|model| lag::finding(campaign, &reduced, &setup, model)));
-        let blocks = vec![page::section(&logs, &reduced, &setup, result.models.get(best))];
-        Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
+        findings.push(Finding::new(Severity::Note, "covariance-of-the-method", text));
     }
-
-    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
-        simulate::files(campaign, source).map(Some)
+    let observations = Observations {
+        data: reduced.data.clone(),
+        n_read: reduced.data.rows,
+        findings: Vec::new(),
+        shared_errors: reduced.errors.clone(),
+        files,
+    };
+    let own = without_rig(source);
+    let asked = Asked { method: ACCELERATED_TOW, laws, scatter, choice: Choice::Selection, has_budget: true };
+    let mut result = identify_laws(campaign, &own, observations, asked, &|model| {
+        progress(&format!("fitting {model}"));
+    })?;
+    for estimate in &mut result.estimates {
+        refer(estimate, campaign, &setup);
     }
-
-    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
-        plan::prospect(campaign, source).map(Some)
-    }
-
-    fn check(&self, source: &Source) -> Result<(), RecordError> {
-        check(source, ACCELERATED_TOW, section::accelerated_tow, section::plan)
-    }
+    findings.append(&mut result.findings);
+    let best = result.recommendation.as_ref().map_or(0, |r| r.index);
+    let added = result.estimates.get(best).and_then(|e| e.coefficients.get(&names(&setup.axis)[3]));
+    let relative = added.and_then(|c| Some((c.standard_uncertainty? / c.value?).abs())).unwrap_or(f64::INFINITY);
+    findings.extend(of_runs(&reduced, &setup, &spec, relative));
+    findings.extend(result.models.get(best).and_then(|model| lag::finding(campaign, &reduced, &setup, model)));
+    let blocks = vec![page::section(&logs, &reduced, &setup, result.models.get(best))];
+    Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
 }
 
 /// What the record says of volumes and steps, beside the fit.

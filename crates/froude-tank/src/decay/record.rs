@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use froude_fit::budget::{Kind, Part};
 use froude_records::campaign::{BoundsSpec, Campaign, Identify, Source};
 use froude_records::estimate::{
-    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed, Output,
-    Range as Stated, ReferencePoint, SharedError, Signs, Status, TypeA,
+    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Law, Measured, MethodUsed, Output, Range as Stated,
+    ReferencePoint, SharedError, Status, TypeA,
 };
 use froude_records::finding::{Finding, Severity};
 use froude_records::texts::Texts;
@@ -169,8 +169,6 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
         method: MethodUsed { name: fit.method.name().to_owned(), version: 1, words: fit.method.words().to_owned() },
         frame: Frame::body(),
         point,
-        signs: Signs::default(),
-        attitude: None,
         law: Law {
             name: LAW.to_owned(),
             version: 1,
@@ -182,14 +180,10 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
             ]),
         },
         refers_to: refers_to.into_iter().collect(),
-        data: Vec::new(),
         n_observations: fit.rows.len(),
         clusters: Some(Clusters { by: "run".to_owned(), n: fit.runs.len() }),
         dof: fit.type_a.iter().map(|a| (load.clone(), Some(a.dof[1]).filter(|d| d.is_finite()))).collect(),
-        sigma: IndexMap::new(),
-        run_scatter: IndexMap::new(),
         coefficients: coefficients.collect(),
-        derived: IndexMap::new(),
         type_a: fit.type_a.as_ref().map(|a| TypeA {
             names: fit.names.to_vec(),
             matrix: (0..3).map(|i| (0..3).map(|j| a.covariance[(i, j)]).collect()).collect(),
@@ -197,8 +191,6 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
             kind: a.kind.clone(),
         }),
         errors: if fit.type_a.is_some() { errors(fit, campaign) } else { IndexMap::new() },
-        interval: Interval::default(),
-        undetermined: Vec::new(),
         validity: IndexMap::from([
             ("speed".to_owned(), range(fit.range.speed, if fit.axis.is_rotation() { "rad/s" } else { "m/s" })),
             ("amplitude".to_owned(), range(fit.range.amplitude, fit.axis.position_unit())),
@@ -206,8 +198,8 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
         ]),
         diagnostics: Diagnostics { notes: notes(fit, &budget), ..Diagnostics::default() },
         recommended,
-        not_contradicted: Vec::new(),
         reason: recommended.then(|| fit.method.words().to_owned()),
+        ..Estimate::default()
     }
 }
 

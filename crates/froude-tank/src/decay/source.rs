@@ -10,19 +10,16 @@ use crate::declared::{check, needed};
 use crate::drawn::{self, first_of, over_time, series};
 use crate::logs;
 use crate::long_logs::Reading;
-use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use crate::method::TankMethod;
+use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::runs::{recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
-use froude_records::RecordError;
 use froude_records::block::{Section, TableBuilder};
 use froude_records::campaign::{Campaign, Motion, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::page::{ChartPanel, Mark};
 use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role};
 use froude_records::units::Dimension;
-
-/// Envelope and output error of releases.
-pub struct FreeDecay;
 
 /// Their names.
 const NAMES: [&str; 2] = [DecayMethod::ALL[0].name(), DecayMethod::ALL[1].name()];
@@ -34,91 +31,76 @@ fn named(name: &str) -> Option<DecayMethod> {
     DecayMethod::ALL.into_iter().find(|method| method.name() == name)
 }
 
-impl Method for FreeDecay {
-    fn names(&self) -> &'static [&'static str] {
-        &NAMES
-    }
-
-    fn words(&self, name: &str) -> &'static str {
-        named(name).map_or("", DecayMethod::words)
-    }
-
-    fn needs(&self, _: &str) -> &'static [Need] {
-        const { &[Need::of(&[RELEASE], &[])] }
-    }
-
-    fn runs(&self) -> &'static str {
-        FREE_DECAY
-    }
-
-    fn identify(
-        &self,
-        campaign: &Campaign,
-        source: &Source,
-        asked: &[&'static str],
-        progress: &dyn Fn(&str),
-    ) -> Result<Found, MethodError> {
-        let setup = declared(source)?;
-        progress("reading the releases");
-        let Releases { logs, files, mut findings } = read(source.input.path())?;
-        let runs = logs.iter().map(|log| release(log, setup.axis)).collect::<Result<Vec<_>, _>>()?;
-        let methods: Vec<DecayMethod> = asked.iter().filter_map(|name| named(name)).collect();
-        let (mut out, mut fits) = (Vec::new(), Vec::new());
-        let (mut fitted, mut failed) = (Vec::new(), Vec::new());
-        for &method in &methods {
-            progress(method.words());
-            let fit: Result<DecayFit, _> = match method {
-                DecayMethod::Envelope => envelope(&runs, &setup),
-                DecayMethod::OutputError => output_error(&runs, &setup),
-            };
-            match fit {
-                Ok(fit) => fitted.push((method, fit)),
-                Err(why) => failed.push((method, why)),
-            }
-        }
-        // A method that fails costs itself alone; where all fail, nothing is found.
-        if fitted.is_empty()
-            && let Some((method, why)) = failed.pop()
-        {
-            return Err(MethodError::input(source.input.path(), format!("{}: {why}", method.name())));
-        }
-        findings.extend(failed.into_iter().map(|(method, why)| {
-            let text = format!("{} could not be fitted and is left out: {why}", method.name());
-            Finding::new(Severity::Warning, "not-fitted", text)
-        }));
-        let best = fitted.iter().map(|(method, _)| *method).max_by_key(|method| *method == DecayMethod::OutputError);
-        for (method, fit) in fitted {
-            let mut result = record::result(&fit, campaign, source, best == Some(method))?;
-            result.files.clone_from(&files);
-            findings.append(&mut result.findings);
-            out.push(result.into());
-            fits.push(fit);
-        }
-        findings.extend(fits.first().zip(fits.get(1)).and_then(|(a, b)| a.disagrees_with(b)));
-        // What both state about a release is reported once.
-        let mut said: Vec<Finding> = Vec::new();
-        for finding in findings {
-            if !said.contains(&finding) {
-                said.push(finding);
-            }
-        }
-        let blocks = fits.last().map(|fit| section(fit, &runs)).into_iter().collect();
-        Ok(Found { results: out, blocks, findings: said, ..Found::default() })
-    }
-
-    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
+/// Envelope and output error of releases.
+pub const DECAY: TankMethod = TankMethod {
+    names: &NAMES,
+    words: &[DecayMethod::ALL[0].words(), DecayMethod::ALL[1].words()],
+    needs: &[Need::of(&[RELEASE], &[])],
+    runs: FREE_DECAY,
+    identify: identify,
+    simulate: |campaign, source| {
         let (setup, blocks) = planning(source)?;
-        releases::files(campaign, &blocks, &setup).map(Some)
-    }
-
-    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
+        releases::files(campaign, &blocks, &setup)
+    },
+    plan: |campaign, source| {
         let (setup, blocks) = planning(source)?;
-        plan::prospect(campaign, source, &blocks, &setup).map(Some)
-    }
+        plan::prospect(campaign, source, &blocks, &setup)
+    },
+    check: |source| check(source, "decay", section::decay, section::plan),
+};
 
-    fn check(&self, source: &Source) -> Result<(), RecordError> {
-        check(source, "decay", section::decay, section::plan)
+fn identify(
+    campaign: &Campaign,
+    source: &Source,
+    asked: &[&'static str],
+    progress: &dyn Fn(&str),
+) -> Result<Found, MethodError> {
+    let setup = declared(source)?;
+    progress("reading the releases");
+    let Releases { logs, files, mut findings } = read(source.input.path())?;
+    let runs = logs.iter().map(|log| release(log, setup.axis)).collect::<Result<Vec<_>, _>>()?;
+    let methods: Vec<DecayMethod> = asked.iter().filter_map(|name| named(name)).collect();
+    let (mut out, mut fits) = (Vec::new(), Vec::new());
+    let (mut fitted, mut failed) = (Vec::new(), Vec::new());
+    for &method in &methods {
+        progress(method.words());
+        let fit: Result<DecayFit, _> = match method {
+            DecayMethod::Envelope => envelope(&runs, &setup),
+            DecayMethod::OutputError => output_error(&runs, &setup),
+        };
+        match fit {
+            Ok(fit) => fitted.push((method, fit)),
+            Err(why) => failed.push((method, why)),
+        }
     }
+    // A method that fails costs itself alone; where all fail, nothing is found.
+    if fitted.is_empty()
+        && let Some((method, why)) = failed.pop()
+    {
+        return Err(MethodError::input(source.input.path(), format!("{}: {why}", method.name())));
+    }
+    findings.extend(failed.into_iter().map(|(method, why)| {
+        let text = format!("{} could not be fitted and is left out: {why}", method.name());
+        Finding::new(Severity::Warning, "not-fitted", text)
+    }));
+    let best = fitted.iter().map(|(method, _)| *method).max_by_key(|method| *method == DecayMethod::OutputError);
+    for (method, fit) in fitted {
+        let mut result = record::result(&fit, campaign, source, best == Some(method))?;
+        result.files.clone_from(&files);
+        findings.append(&mut result.findings);
+        out.push(result.into());
+        fits.push(fit);
+    }
+    findings.extend(fits.first().zip(fits.get(1)).and_then(|(a, b)| a.disagrees_with(b)));
+    // What both state about a release is reported once.
+    let mut said: Vec<Finding> = Vec::new();
+    for finding in findings {
+        if !said.contains(&finding) {
+            said.push(finding);
+        }
+    }
+    let blocks = fits.last().map(|fit| section(fit, &runs)).into_iter().collect();
+    Ok(Found { results: out, blocks, findings: said, ..Found::default() })
 }
 
 /// What `[source.decay]` declares.

@@ -2,8 +2,8 @@
 
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{
-    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed,
-    NamedCorrelation, Output, Range, ReferencePoint, SharedError, Signs, Status, TypeA,
+    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Law, Measured, MethodUsed, NamedCorrelation,
+    Output, Range, ReferencePoint, SharedError, Status, TypeA,
 };
 use froude_records::number;
 use froude_records::run::EXCITED_RESPONSE;
@@ -95,8 +95,6 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
         method: MethodUsed { name: EXCITED_RESPONSE.to_owned(), version: 1, words: method_words(at, setup) },
         frame: Frame::body(),
         point: ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() },
-        signs: Signs::default(),
-        attitude: None,
         law: Law {
             name: format!("added_mass_damping at {period}"),
             version: 1,
@@ -112,14 +110,10 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
             ]),
         },
         refers_to: refers_to.into_iter().collect(),
-        data: Vec::new(),
         n_observations: samples,
         clusters: Some(Clusters { by: "run".to_owned(), n: at.used().count() }),
         dof: IndexMap::from([("f_z".to_owned(), dof(0))]),
-        sigma: IndexMap::new(),
-        run_scatter: IndexMap::new(),
         coefficients: [0, 1].map(coefficient).into_iter().collect(),
-        derived: IndexMap::new(),
         type_a: Some(TypeA {
             names: NAMES[..stated].iter().map(|name| (*name).to_owned()).collect(),
             matrix: (0..stated).map(|i| (0..stated).map(|j| type_a(i, j)).collect()).collect(),
@@ -127,14 +121,12 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
             kind: format!("power at {} lines beside the wave's frequency, and scatter of repeated runs", DOF / 2.0),
         }),
         errors: errors.collect(),
-        interval: Interval::default(),
-        undetermined: Vec::new(),
         validity: validity(at, runs),
         diagnostics: Diagnostics { largest_correlation, notes: notes(at, stated), ..Diagnostics::default() },
         recommended: is_recommended,
-        not_contradicted: Vec::new(),
         reason: is_recommended
             .then(|| "the period whose A33 is known best; each period has an estimate of its own".to_owned()),
+        ..Estimate::default()
     }
 }
 

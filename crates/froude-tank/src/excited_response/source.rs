@@ -3,8 +3,7 @@
 use std::borrow::Cow;
 
 use froude_identify::answer::Made;
-use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
-use froude_records::RecordError;
+use froude_identify::method::{Found, MethodError, Need};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::run::{Channel, EXCITED_RESPONSE, ImportedRun, Role};
 use froude_records::units::Dimension;
@@ -13,9 +12,7 @@ use super::setup::{Setup, Shows, WaveRun};
 use super::{findings, fit, page, plan, record, section, simulate};
 use crate::declared::{check, needed};
 use crate::logs::{self, Logs, distinct};
-
-/// Force of the held body over the motion of the free one.
-pub struct ExcitedResponse;
+use crate::method::TankMethod;
 
 const WORDS: &str =
     "added mass and damping of a section in waves, from the force on the held body and the motion of the free one";
@@ -27,73 +24,49 @@ const WHY: &str = "added mass and damping follow from the phase between force an
 /// What the names of its accelerometers begin with.
 const ACCELERATION: &str = "acceleration";
 
-impl Method for ExcitedResponse {
-    fn names(&self) -> &'static [&'static str] {
-        &[EXCITED_RESPONSE]
-    }
+/// Force of the held body over the motion of the free one.
+pub const EXCITED: TankMethod = TankMethod {
+    names: &[EXCITED_RESPONSE],
+    words: &[WORDS],
+    needs: &[Need::of(&["held"], &[REFERENCE, FORCE]), Need::of(&["free"], &[REFERENCE])],
+    runs: EXCITED_RESPONSE,
+    identify: |campaign, source, _, progress| identify(campaign, source, progress),
+    simulate: simulate::files,
+    plan: plan::prospect,
+    check: |source| check(source, EXCITED_RESPONSE, section::excited, section::plan),
+};
 
-    fn words(&self, _: &str) -> &'static str {
-        WORDS
-    }
-
-    fn needs(&self, _: &str) -> &'static [Need] {
-        const { &[Need::of(&["held"], &[REFERENCE, FORCE]), Need::of(&["free"], &[REFERENCE])] }
-    }
-
-    fn runs(&self) -> &'static str {
-        EXCITED_RESPONSE
-    }
-
-    fn identify(
-        &self,
-        campaign: &Campaign,
-        source: &Source,
-        _: &[&'static str],
-        progress: &dyn Fn(&str),
-    ) -> Result<Found, MethodError> {
-        let mut setup = setup_of(source)?;
-        progress("reading the runs");
-        let channels = "time, wavemaker, and force or acceleration";
-        let Logs { runs: logs, files, findings: mut said } =
-            logs::read(source.input.path(), EXCITED_RESPONSE, &[Role::Held, Role::Free], channels, progress)?;
-        // A camera beside accelerometers is compared, and its clock is no part of the result.
-        let late = |log: &ImportedRun| {
-            let is_compared = log.log.channels.keys().any(|name| name.starts_with(ACCELERATION));
-            let used = log.told.iter().filter(|(name, _)| !(is_compared && name.as_str() == POSITION));
-            used.map(|(_, told)| told.time_standard_s).fold(0.0, f64::max)
-        };
-        let clocks_s = logs.iter().map(late).fold(0.0, f64::max);
-        setup.delay_s.standard = setup.delay_s.standard.hypot(clocks_s);
-        let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
-        progress("fitting the waves");
-        let found = fit(&runs, &setup).map_err(MethodError::refused)?;
-        said.extend(findings::findings(&found, &runs, &setup));
-        let best = record::narrowest(&found);
-        let made = |(i, at)| {
-            let context = record::Context { campaign, source, setup: &setup, runs: &runs };
-            let estimate = record::estimate(at, &context, i == best);
-            Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
-        };
-        Ok(Found {
-            results: found.iter().enumerate().map(made).collect(),
-            summary: Some(page::coefficients(&found)),
-            blocks: vec![page::section(&found, &runs)],
-            findings: distinct(said),
-            ..Found::default()
-        })
-    }
-
-    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
-        simulate::files(campaign, source).map(Some)
-    }
-
-    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
-        plan::prospect(campaign, source).map(Some)
-    }
-
-    fn check(&self, source: &Source) -> Result<(), RecordError> {
-        check(source, EXCITED_RESPONSE, section::excited, section::plan)
-    }
+fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Result<Found, MethodError> {
+    let mut setup = setup_of(source)?;
+    progress("reading the runs");
+    let channels = "time, wavemaker, and force or acceleration";
+    let Logs { runs: logs, files, findings: mut said } =
+        logs::read(source.input.path(), EXCITED_RESPONSE, &[Role::Held, Role::Free], channels, progress)?;
+    // A camera beside accelerometers is compared, and its clock is no part of the result.
+    let late = |log: &ImportedRun| {
+        let is_compared = log.log.channels.keys().any(|name| name.starts_with(ACCELERATION));
+        let used = log.told.iter().filter(|(name, _)| !(is_compared && name.as_str() == POSITION));
+        used.map(|(_, told)| told.time_standard_s).fold(0.0, f64::max)
+    };
+    let clocks_s = logs.iter().map(late).fold(0.0, f64::max);
+    setup.delay_s.standard = setup.delay_s.standard.hypot(clocks_s);
+    let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
+    progress("fitting the waves");
+    let found = fit(&runs, &setup).map_err(MethodError::refused)?;
+    said.extend(findings::findings(&found, &runs, &setup));
+    let best = record::narrowest(&found);
+    let made = |(i, at)| {
+        let context = record::Context { campaign, source, setup: &setup, runs: &runs };
+        let estimate = record::estimate(at, &context, i == best);
+        Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
+    };
+    Ok(Found {
+        results: found.iter().enumerate().map(made).collect(),
+        summary: Some(page::coefficients(&found)),
+        blocks: vec![page::section(&found, &runs)],
+        findings: distinct(said),
+        ..Found::default()
+    })
 }
 
 /// Everything that the source declares.

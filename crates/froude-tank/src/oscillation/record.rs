@@ -5,7 +5,7 @@ use froude_hydro::similarity::keulegan_carpenter;
 use froude_hydro::swing::Medium;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{
-    Clusters, Diagnostics, Estimate, Frame, Interval, Law, Measured, MethodUsed, Output, Range, ReferencePoint, Signs,
+    Clusters, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, Output, Range, ReferencePoint,
 };
 use froude_records::number;
 use froude_records::run::FORCED_OSCILLATION;
@@ -89,27 +89,19 @@ pub fn estimate(fit: &OscillationFit, drag: &Drag, context: &Context<'_>, of: Op
         method: MethodUsed { name: FORCED_OSCILLATION.to_owned(), version: 1, words: method_words(fit, setup) },
         frame: Frame::body(),
         point: ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() },
-        signs: Signs::default(),
-        attitude: None,
         law: law(fit, drag, setup),
         refers_to,
-        data: Vec::new(),
         n_observations: fit.samples,
         clusters: Some(Clusters { by: fit.by.to_owned(), n: fit.clusters }),
         dof: IndexMap::from([(LOAD.to_owned(), scatter.dof.first().copied().filter(|d| d.is_finite()))]),
-        sigma: IndexMap::new(),
-        run_scatter: IndexMap::new(),
         coefficients: record::coefficients(fit, &|name| name == DELAY || name.starts_with(BUOYANCY)),
-        derived: IndexMap::new(),
         type_a: Some(record::type_a(fit)),
         errors: record::errors(fit, campaign),
-        interval: Interval::default(),
-        undetermined: Vec::new(),
         validity: validity(wet(), setup, campaign),
         diagnostics: Diagnostics { notes: record::notes(fit, "N"), ..Diagnostics::default() },
         recommended: of.is_some(),
-        not_contradicted: Vec::new(),
         reason,
+        ..Estimate::default()
     }
 }
 

@@ -3,9 +3,8 @@
 use froude_hydro::swing::Medium;
 use froude_identify::answer::Made;
 use froude_identify::dataset::Dataset;
-use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::source::laws;
-use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{Channel, FORCED_OSCILLATION, ImportedRun, Role};
@@ -20,59 +19,29 @@ use super::{findings, fit, page, plan, record, section, simulate};
 use crate::declared::{check, needed, uncertain};
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs::{self, LENGTHS, Lengths};
+use crate::method::TankMethod;
 use crate::motion::Sampled;
 use crate::reference;
 
-/// The joint fit in time.
-pub struct ForcedOscillation;
-
 const WORDS: &str =
     "added mass, drag, buoyancy and delay fitted together in time, to runs of a body that a motor swings";
+const DRY: Need = Need { is_optional: true, ..Need::of(&["dry_air"], &["angle", "force"]) };
 const ROLES: [Role; 2] = [Role::Test, Role::DryAir];
 const CHANNELS: &str = "time, angle and force";
 /// The drag law where none is asked for.
 const DEFAULT_LAW: &str = "linear_quadratic";
 
-impl Method for ForcedOscillation {
-    fn names(&self) -> &'static [&'static str] {
-        &[FORCED_OSCILLATION]
-    }
-
-    fn words(&self, _: &str) -> &'static str {
-        WORDS
-    }
-
-    fn needs(&self, _: &str) -> &'static [Need] {
-        const DRY: Need = Need { is_optional: true, ..Need::of(&["dry_air"], &["angle", "force"]) };
-        const { &[Need::of(&["test"], &["angle", "force"]), DRY] }
-    }
-
-    fn runs(&self) -> &'static str {
-        FORCED_OSCILLATION
-    }
-
-    fn identify(
-        &self,
-        campaign: &Campaign,
-        source: &Source,
-        _: &[&'static str],
-        progress: &dyn Fn(&str),
-    ) -> Result<Found, MethodError> {
-        identified(campaign, source, LENGTHS, progress)
-    }
-
-    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
-        simulate::files(campaign, source).map(Some)
-    }
-
-    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
-        plan::prospect(campaign, source).map(Some)
-    }
-
-    fn check(&self, source: &Source) -> Result<(), RecordError> {
-        check(source, FORCED_OSCILLATION, section::oscillation, section::plan)
-    }
-}
+/// The joint fit in time.
+pub const FORCED: TankMethod = TankMethod {
+    names: &[FORCED_OSCILLATION],
+    words: &[WORDS],
+    needs: &[Need::of(&["test"], &["angle", "force"]), DRY],
+    runs: FORCED_OSCILLATION,
+    identify: |campaign, source, _, progress| identified(campaign, source, LENGTHS, progress),
+    simulate: simulate::files,
+    plan: plan::prospect,
+    check: |source| check(source, FORCED_OSCILLATION, section::oscillation, section::plan),
+};
 
 /// Reads, fits, chooses; logs beyond `lengths` are averaged.
 fn identified(

@@ -3,8 +3,7 @@
 use froude_hydro::swing::Pivot;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{
-    self, Clusters, Diagnostics, Estimate, Frame, Interval, Law, Measured, MethodUsed, Output, Range, ReferencePoint,
-    Signs,
+    self, Clusters, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, Output, Range, ReferencePoint,
 };
 use froude_records::number;
 use froude_records::run::ROTATION;
@@ -77,8 +76,6 @@ pub fn estimate(fit: &RotationFit, context: &Context<'_>) -> Estimate {
         method: MethodUsed { name: ROTATION.to_owned(), version: 1, words: method_words(fit, setup) },
         frame: Frame::body(),
         point: ReferencePoint { words: "the axis that it turned about".to_owned(), stated: false },
-        signs: Signs::default(),
-        attitude: None,
         law: Law {
             name: LAW.to_owned(),
             version: 1,
@@ -93,23 +90,18 @@ pub fn estimate(fit: &RotationFit, context: &Context<'_>) -> Estimate {
             constants: IndexMap::new(),
         },
         refers_to,
-        data: Vec::new(),
         n_observations: fit.samples,
         clusters: Some(Clusters { by: fit.by.to_owned(), n: fit.clusters }),
         dof: IndexMap::from([(LOAD.to_owned(), fit.parts[0].dof.first().copied().filter(|d| d.is_finite()))]),
-        sigma: IndexMap::new(),
-        run_scatter: IndexMap::new(),
         coefficients: record::coefficients(fit, &|name| !LAMBDAS.contains(&name)),
         derived: derived.iter().map(of_derived).collect(),
         type_a: Some(record::type_a(fit)),
         errors: record::errors(fit, campaign),
-        interval: Interval::default(),
-        undetermined: Vec::new(),
         validity: validity(context),
         diagnostics: Diagnostics { notes, ..Diagnostics::default() },
         recommended: true,
-        not_contradicted: Vec::new(),
         reason: Some("the only law of the fluid torque".to_owned()),
+        ..Estimate::default()
     }
 }
 

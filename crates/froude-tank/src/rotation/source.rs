@@ -2,8 +2,7 @@
 
 use froude_fit::budget::Uncertain;
 use froude_identify::answer::Made;
-use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
-use froude_records::RecordError;
+use froude_identify::method::{Found, MethodError, Need};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::run::{Channel, ImportedRun, ROTATION, Role};
 use froude_records::units::Dimension;
@@ -16,92 +15,66 @@ use crate::declared::{check, needed};
 use crate::fluid::density_kg_m3;
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs;
+use crate::method::TankMethod;
 use crate::motion::Sampled;
 
-/// The joint fit in time.
-pub struct Rotation;
-
+const CHANNELS: &[&str] = &["angle", "torque"];
+const DRY: Need = Need { is_optional: true, ..Need::of(&["dry_air"], CHANNELS) };
+const TARE: Need = Need { is_optional: true, ..Need::of(&["tare"], CHANNELS) };
 const WORDS: &str = "added inertia and damping of a body about its own axis, fitted in time to runs in which a motor turns it to and fro";
 
-impl Method for Rotation {
-    fn names(&self) -> &'static [&'static str] {
-        &[ROTATION]
-    }
+/// The joint fit in time.
+pub const TURNED: TankMethod = TankMethod {
+    names: &[ROTATION],
+    words: &[WORDS],
+    needs: &[Need::of(&["test"], CHANNELS), DRY, TARE],
+    runs: ROTATION,
+    identify: |campaign, source, _, progress| identify(campaign, source, progress),
+    simulate: simulate::files,
+    plan: plan::prospect,
+    check: |source| check(source, ROTATION, section::rotation, section::plan),
+};
 
-    fn words(&self, _: &str) -> &'static str {
-        WORDS
+fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Result<Found, MethodError> {
+    let mut setup = setup_of(campaign, source)?;
+    progress("reading the runs");
+    let roles = [Role::Test, Role::DryAir, Role::Tare];
+    let Logs { runs: logs, mut files, mut findings } =
+        logs::read(source.input.path(), ROTATION, &roles, "time, angle and torque", progress)?;
+    one_body(&logs)?;
+    let clocks_s = logs.iter().map(|log| logs::stamps_standard_s(log, ["angle", "torque"])).fold(0.0, f64::max);
+    if let Some(delay) = &mut setup.delay_s {
+        // One that is found needs no word of the clocks; of one that is declared their error is an error too.
+        delay.standard = delay.standard.hypot(clocks_s);
     }
-
-    fn needs(&self, _: &str) -> &'static [Need] {
-        const CHANNELS: &[&str] = &["angle", "torque"];
-        const DRY: Need = Need { is_optional: true, ..Need::of(&["dry_air"], CHANNELS) };
-        const TARE: Need = Need { is_optional: true, ..Need::of(&["tare"], CHANNELS) };
-        const { &[Need::of(&["test"], CHANNELS), DRY, TARE] }
+    let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
+    progress("fitting the angles");
+    let sampled: Vec<Sampled<'_>> = logs.iter().map(Sampled::of).collect();
+    let motions = motions_without(&runs, &setup, &sampled).map_err(MethodError::refused)?;
+    for (log, motion) in logs.iter().zip(&motions) {
+        logs::add_step(&mut files, log, logs::cycles_step(log, motion));
     }
-
-    fn runs(&self) -> &'static str {
-        ROTATION
+    let fastest_hz: Vec<f64> = motions.iter().map(|m| setup.harmonics as f64 / m.angle.period_s()).collect();
+    findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
+    progress("fitting the torques");
+    let fit = fit(&runs, &motions, &setup, &campaign.identify).map_err(MethodError::refused)?;
+    let derived = derived(&fit, &setup);
+    findings.extend(findings::of_runs(&runs, &motions, &setup));
+    findings.extend(findings::of_fit(&fit, &derived, &runs, &motions, &setup));
+    let context =
+        record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions, derived: &derived };
+    let mut estimate = record::estimate(&fit, &context);
+    if let Some(step) = long_logs::step(&logs, &fastest_hz) {
+        estimate.method.words = format!("{step}; {}", estimate.method.words);
     }
-
-    fn identify(
-        &self,
-        campaign: &Campaign,
-        source: &Source,
-        _: &[&'static str],
-        progress: &dyn Fn(&str),
-    ) -> Result<Found, MethodError> {
-        let mut setup = setup_of(campaign, source)?;
-        progress("reading the runs");
-        let roles = [Role::Test, Role::DryAir, Role::Tare];
-        let Logs { runs: logs, mut files, mut findings } =
-            logs::read(source.input.path(), ROTATION, &roles, "time, angle and torque", progress)?;
-        one_body(&logs)?;
-        let clocks_s = logs.iter().map(|log| logs::stamps_standard_s(log, ["angle", "torque"])).fold(0.0, f64::max);
-        if let Some(delay) = &mut setup.delay_s {
-            // One that is found needs no word of the clocks; of one that is declared their error is an error too.
-            delay.standard = delay.standard.hypot(clocks_s);
-        }
-        let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
-        progress("fitting the angles");
-        let sampled: Vec<Sampled<'_>> = logs.iter().map(Sampled::of).collect();
-        let motions = motions_without(&runs, &setup, &sampled).map_err(MethodError::refused)?;
-        for (log, motion) in logs.iter().zip(&motions) {
-            logs::add_step(&mut files, log, logs::cycles_step(log, motion));
-        }
-        let fastest_hz: Vec<f64> = motions.iter().map(|m| setup.harmonics as f64 / m.angle.period_s()).collect();
-        findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
-        progress("fitting the torques");
-        let fit = fit(&runs, &motions, &setup, &campaign.identify).map_err(MethodError::refused)?;
-        let derived = derived(&fit, &setup);
-        findings.extend(findings::of_runs(&runs, &motions, &setup));
-        findings.extend(findings::of_fit(&fit, &derived, &runs, &motions, &setup));
-        let context =
-            record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions, derived: &derived };
-        let mut estimate = record::estimate(&fit, &context);
-        if let Some(step) = long_logs::step(&logs, &fastest_hz) {
-            estimate.method.words = format!("{step}; {}", estimate.method.words);
-        }
-        let made = Made { name: estimate.id.clone(), estimate, files };
-        Ok(Found {
-            results: vec![made.into()],
-            summary: Some(page::results(&fit, &derived)),
-            blocks: vec![page::section(&fit, &runs, &motions, &setup)],
-            findings: distinct(findings),
-            ..Found::default()
-        })
-    }
-
-    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
-        simulate::files(campaign, source).map(Some)
-    }
-
-    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
-        plan::prospect(campaign, source).map(Some)
-    }
-
-    fn check(&self, source: &Source) -> Result<(), RecordError> {
-        check(source, ROTATION, section::rotation, section::plan)
-    }
+    let made = Made { name: estimate.id.clone(), estimate, files };
+    Ok(Found {
+        results: vec![made.into()],
+        summary: Some(page::results(&fit, &derived)),
+        blocks: vec![page::section(&fit, &runs, &motions, &setup)],
+        findings: distinct(findings),
+        ..Found::default()
+    })
 }
 
 /// Runs of one body: λs of two are no numbers of one.

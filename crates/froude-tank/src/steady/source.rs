@@ -1,10 +1,9 @@
 //! Steady tows as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
-use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
-use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::marks::SegmentKind;
@@ -23,9 +22,7 @@ use super::{page, plan, simulate};
 use crate::conditioning::stretches::{in_words, longest_free, rows};
 use crate::error::TankError;
 use crate::logs::{self, Logs};
-
-/// Windows of raw runs as observations.
-pub struct Steady;
+use crate::method::TankMethod;
 
 /// Loads that a log may have, and their dimension.
 const LOADS: [(&str, Dimension); 6] = [
@@ -39,83 +36,57 @@ const LOADS: [(&str, Dimension); 6] = [
 /// A drift of the zero this many of its standard uncertainties is none of chance.
 const DRIFTS: f64 = 4.0;
 
-impl Method for Steady {
-    fn names(&self) -> &'static [&'static str] {
-        &[STEADY]
-    }
+/// Windows of raw runs as observations.
+pub const STEADY_TOW: TankMethod = TankMethod {
+    names: &[STEADY],
+    words: &["steady windows of raw tows, or of a body held in a stream, each an observation"],
+    needs: &[
+        Need::of(&["test"], &[]),
+        Need { is_optional: true, is_observed: false, ..Need::of(&["tare"], &[]) },
+        Need { is_optional: true, is_observed: false, ..Need::of(&["still"], &[]) },
+    ],
+    runs: STEADY,
+    identify: |campaign, source, _, progress| identify(campaign, source, progress),
+    simulate: simulate::files,
+    plan: plan::prospect,
+    check: |source| section::declared(source).map(drop),
+};
 
-    fn words(&self, _: &str) -> &'static str {
-        "steady windows of raw tows, or of a body held in a stream, each an observation"
-    }
-
-    fn needs(&self, _: &str) -> &'static [Need] {
-        const {
-            &[
-                Need::of(&["test"], &[]),
-                Need { is_optional: true, is_observed: false, ..Need::of(&["tare"], &[]) },
-                Need { is_optional: true, is_observed: false, ..Need::of(&["still"], &[]) },
-            ]
+fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Result<Found, MethodError> {
+    let spec = section::declared(source)?;
+    progress("reading the runs");
+    let Logs { runs: logs, mut files, mut findings } = logs::read(
+        source.input.path(),
+        STEADY,
+        &[Role::Test, Role::Tare, Role::Still],
+        "time, speed or position, and loads",
+        progress,
+    )?;
+    progress("looking for steady windows");
+    let reduced = reduce(source, &logs, &spec)?;
+    findings.extend(reduced.findings);
+    let walls = Walls::of(campaign);
+    findings.extend(reduced.rows.iter().filter_map(|row| walls.and_then(|walls| walls.finding(row))));
+    for (run, step) in reduced.steps {
+        if let Some(log) = logs.iter().find(|log| log.log.meta.id == run) {
+            logs::add_step(&mut files, log, step);
         }
     }
-
-    fn runs(&self) -> &'static str {
-        STEADY
+    let table = table(source.input.path(), &reduced.rows);
+    let mut observations = reduce_table(campaign, source, &table, files)?;
+    if !reduced.errors.is_empty() && observations.data.rows != reduced.rows.len() {
+        return Err(MethodError::Undeclared {
+            place: source.place.to_string(),
+            what: "`keep` and runs of the role tare do not go together: leave the logs that are not meant out of the folder".to_owned(),
+        });
     }
-
-    fn identify(
-        &self,
-        campaign: &Campaign,
-        source: &Source,
-        _: &[&'static str],
-        progress: &dyn Fn(&str),
-    ) -> Result<Found, MethodError> {
-        let spec = section::declared(source)?;
-        progress("reading the runs");
-        let Logs { runs: logs, mut files, mut findings } = logs::read(
-            source.input.path(),
-            STEADY,
-            &[Role::Test, Role::Tare, Role::Still],
-            "time, speed or position, and loads",
-            progress,
-        )?;
-        progress("looking for steady windows");
-        let reduced = reduce(source, &logs, &spec)?;
-        findings.extend(reduced.findings);
-        let walls = Walls::of(campaign);
-        findings.extend(reduced.rows.iter().filter_map(|row| walls.and_then(|walls| walls.finding(row))));
-        for (run, step) in reduced.steps {
-            if let Some(log) = logs.iter().find(|log| log.log.meta.id == run) {
-                logs::add_step(&mut files, log, step);
-            }
-        }
-        let table = table(source.input.path(), &reduced.rows);
-        let mut observations = reduce_table(campaign, source, &table, files)?;
-        if !reduced.errors.is_empty() && observations.data.rows != reduced.rows.len() {
-            return Err(MethodError::Undeclared {
-                place: source.place.to_string(),
-                what: "`keep` and runs of the role tare do not go together: leave the logs that are not meant out of the folder".to_owned(),
-            });
-        }
-        observations.shared_errors.extend(reduced.errors);
-        let mut result = identify_observations(campaign, source, observations, STEADY, &|model| {
-            progress(&format!("fitting {model}"));
-        })?;
-        findings.append(&mut result.findings);
-        let blocks = vec![page::section(&logs, &reduced.rows, &spec)];
-        Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
-    }
-
-    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
-        simulate::files(campaign, source).map(Some)
-    }
-
-    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
-        plan::prospect(campaign, source).map(Some)
-    }
-
-    fn check(&self, source: &Source) -> Result<(), RecordError> {
-        section::declared(source).map(drop)
-    }
+    observations.shared_errors.extend(reduced.errors);
+    let mut result = identify_observations(campaign, source, observations, STEADY, &|model| {
+        progress(&format!("fitting {model}"));
+    })?;
+    findings.append(&mut result.findings);
+    let blocks = vec![page::section(&logs, &reduced.rows, &spec)];
+    Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
 }
 
 /// Observations of a folder.

@@ -1,11 +1,10 @@
 //! The weight-driven rig as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
 use froude_fit::budget::Kind;
-use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
-use froude_records::RecordError;
 use froude_records::campaign::{BudgetEntry, Campaign, Shared, Source};
 use froude_records::estimate::ErrorKind;
 use froude_records::finding::{Finding, Severity};
@@ -21,109 +20,85 @@ use crate::conditioning::stretches::{in_words, touching};
 use crate::declared::check;
 use crate::error::TankError;
 use crate::logs::{self, Logs};
+use crate::method::TankMethod;
 use crate::steady::row::{Row, table};
-
-/// The last part of the way of a wagon, each run an observation.
-pub struct WeightTow;
 
 const WHY: &str = "drag is wrong by its size or its sign where one is guessed";
 /// Residuals of the equation of motion this many times the errors of the track are none of the camera.
 const MISFIT: f64 = 3.0;
 
-impl Method for WeightTow {
-    fn names(&self) -> &'static [&'static str] {
-        &[WEIGHT_TOW]
-    }
+/// The last part of the way of a wagon, each run an observation.
+pub const PULLED: TankMethod = TankMethod {
+    names: &[WEIGHT_TOW],
+    words: &[
+        "runs of a wagon that a hanging weight pulls, filmed: the speed at the end of the way, the drag by load cell or by the equation of motion",
+    ],
+    needs: &[Need::of(&["test"], &[])],
+    runs: WEIGHT_TOW,
+    identify: |campaign, source, _, progress| identify(campaign, source, progress),
+    simulate: simulate::files,
+    plan: plan::prospect,
+    check: |source| check(source, WEIGHT_TOW, section::weight_tow, section::plan),
+};
 
-    fn words(&self, _: &str) -> &'static str {
-        "runs of a wagon that a hanging weight pulls, filmed: the speed at the end of the way, the drag by load cell or by the equation of motion"
-    }
-
-    fn needs(&self, _: &str) -> &'static [Need] {
-        const { &[Need::of(&["test"], &[])] }
-    }
-
-    fn runs(&self) -> &'static str {
-        WEIGHT_TOW
-    }
-
-    fn identify(
-        &self,
-        campaign: &Campaign,
-        source: &Source,
-        _: &[&'static str],
-        progress: &dyn Fn(&str),
-    ) -> Result<Found, MethodError> {
-        let spec = simulate::declared(source)?;
-        progress("reading the runs");
-        let Logs { runs: logs, mut files, mut findings } =
-            logs::read(source.input.path(), WEIGHT_TOW, &[Role::Test], "time, mark or position, and loads", progress)?;
-        progress("reading the tracks");
-        let positions = logs.iter().map(|log| position(log, &spec)).collect::<Result<Vec<_>, _>>()?;
-        let (mut rows, mut reduced) = (Vec::new(), Vec::new());
-        let mut first: Option<TankError> = None;
-        for (log, position_m) in logs.iter().zip(&positions) {
-            let run = run(log, position_m)?;
-            match reduce(&run, &spec, None).and_then(|found| without_marks(log, found)) {
-                Ok(found) => {
-                    logs::add_step(&mut files, log, window_step(log, &found));
-                    findings.extend(of_run(run.id, &found, run.weight_n - spec.friction_n.value));
-                    rows.push(Row {
-                        run: run.id.to_owned(),
-                        configuration: run.configuration.to_owned(),
-                        angle_rad: run.angle_rad,
-                        temperature_k: logs::condition(log, "temperature", Dimension::TEMPERATURE)?,
-                        point: found.point.clone(),
-                    });
-                    reduced.push(found);
-                }
-                Err(error) => {
-                    findings.push(Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}")));
-                    first.get_or_insert(error);
-                }
+fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Result<Found, MethodError> {
+    let spec = simulate::declared(source)?;
+    progress("reading the runs");
+    let Logs { runs: logs, mut files, mut findings } =
+        logs::read(source.input.path(), WEIGHT_TOW, &[Role::Test], "time, mark or position, and loads", progress)?;
+    progress("reading the tracks");
+    let positions = logs.iter().map(|log| position(log, &spec)).collect::<Result<Vec<_>, _>>()?;
+    let (mut rows, mut reduced) = (Vec::new(), Vec::new());
+    let mut first: Option<TankError> = None;
+    for (log, position_m) in logs.iter().zip(&positions) {
+        let run = run(log, position_m)?;
+        match reduce(&run, &spec, None).and_then(|found| without_marks(log, found)) {
+            Ok(found) => {
+                logs::add_step(&mut files, log, window_step(log, &found));
+                findings.extend(of_run(run.id, &found, run.weight_n - spec.friction_n.value));
+                rows.push(Row {
+                    run: run.id.to_owned(),
+                    configuration: run.configuration.to_owned(),
+                    angle_rad: run.angle_rad,
+                    temperature_k: logs::condition(log, "temperature", Dimension::TEMPERATURE)?,
+                    point: found.point.clone(),
+                });
+                reduced.push(found);
+            }
+            Err(error) => {
+                findings.push(Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}")));
+                first.get_or_insert(error);
             }
         }
-        if rows.is_empty() {
-            return Err(first.map_or_else(
-                || {
-                    MethodError::input(
-                        source.input.path(),
-                        "no run of the role test: what is fitted has role = \"test\" in its sidecar",
-                    )
-                },
-                MethodError::refused,
-            ));
-        }
-        let own = with_track(source, &reduced);
-        let mut observations = reduce_table(campaign, &own, &table(source.input.path(), &rows), files)?;
-        let errors = shared(&reduced, &observations.data.loads());
-        if !errors.is_empty() && observations.data.rows != rows.len() {
-            return Err(MethodError::Undeclared {
-                place: source.place.to_string(),
-                what: "`keep` and errors that all runs share (scale, moving_mass, friction) do not go together: leave the logs that are not meant out of the folder"
-                    .to_owned(),
-            });
-        }
-        observations.shared_errors.extend(errors);
-        let mut result = identify_observations(campaign, &own, observations, WEIGHT_TOW, &|model| {
-            progress(&format!("fitting {model}"));
-        })?;
-        findings.append(&mut result.findings);
-        let blocks = vec![page::section(&rows, &reduced, &logs, &positions, &spec)];
-        Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
     }
-
-    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
-        simulate::files(campaign, source).map(Some)
+    if rows.is_empty() {
+        return Err(first.map_or_else(
+            || {
+                MethodError::input(
+                    source.input.path(),
+                    "no run of the role test: what is fitted has role = \"test\" in its sidecar",
+                )
+            },
+            MethodError::refused,
+        ));
     }
-
-    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
-        plan::prospect(campaign, source).map(Some)
+    let own = with_track(source, &reduced);
+    let mut observations = reduce_table(campaign, &own, &table(source.input.path(), &rows), files)?;
+    let errors = shared(&reduced, &observations.data.loads());
+    if !errors.is_empty() && observations.data.rows != rows.len() {
+        return Err(MethodError::Undeclared {
+            place: source.place.to_string(),
+            what: "`keep` and errors that all runs share (scale, moving_mass, friction) do not go together: leave the logs that are not meant out of the folder"
+                .to_owned(),
+        });
     }
-
-    fn check(&self, source: &Source) -> Result<(), RecordError> {
-        check(source, WEIGHT_TOW, section::weight_tow, section::plan)
-    }
+    observations.shared_errors.extend(errors);
+    let mut result = identify_observations(campaign, &own, observations, WEIGHT_TOW, &|model| {
+        progress(&format!("fitting {model}"));
+    })?;
+    findings.append(&mut result.findings);
+    let blocks = vec![page::section(&rows, &reduced, &logs, &positions, &spec)];
+    Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
 }
 
 /// A reduced run, where nothing of what it was reduced from is marked.
