@@ -37,6 +37,14 @@ pub struct Swing {
     pub periods: f64,
 }
 
+impl Swing {
+    /// How long it is on the log, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.still_s + self.periods * TAU / self.omega_rad_s
+    }
+}
+
 /// What is read, and how well; the load in its own unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SwungSensor {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use froude_fit::budget::Uncertain;
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
-use froude_records::campaign::Source;
+use froude_records::campaign::{BudgetEntry, Source};
 use froude_records::run::{Declared, declared, declared_value};
 use froude_records::section::{Section, Value, found};
 use froude_records::section_values::{Asks, MOST_RUNS, OF_RUNS, count, plan_of, series};
@@ -13,6 +13,7 @@ use froude_records::units::Dimension;
 use froude_rig::swung::Swing;
 use indexmap::IndexMap;
 
+use crate::error::undeclared;
 use crate::motion::Cycles;
 
 /// N/m.
@@ -30,7 +31,7 @@ pub(crate) fn needed<T>(
     write: &str,
 ) -> Result<T, MethodError> {
     let read = source.section(name)?.map(|s| read(&s)).transpose()?;
-    read.ok_or_else(|| MethodError::Undeclared { place: source.place.to_string(), what: write.to_owned() })
+    read.ok_or_else(|| undeclared(&source.place, write))
 }
 
 /// Reads section and plan of a method, so that an error in them is not passed over.
@@ -57,6 +58,17 @@ pub(crate) fn runs_of<T>(
 /// As a budget takes it.
 pub(crate) fn uncertain(declared: Declared) -> Uncertain {
     Uncertain::new(declared.value, declared.standard_uncertainty)
+}
+
+/// The gain error that an entry of the budget states; `zero` is why it has no part that is absolute.
+pub(crate) fn gain(entry: &BudgetEntry, zero: &str) -> Result<f64, MethodError> {
+    let what = || {
+        format!(
+            "the uncertainty of {} is a gain that all runs share: write it as a percentage ({zero}, and noise shows in the scatter)",
+            entry.quantity
+        )
+    };
+    entry.relative.then_some(entry.standard).ok_or_else(|| undeclared(&entry.place, what()))
 }
 
 /// A declared constant that must be larger than zero.

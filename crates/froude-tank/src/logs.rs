@@ -3,13 +3,14 @@
 //! Nothing about a channel is taken for granted: unit, sign, frame and clock are declared, or the run is refused. What a sidecar declares of the data is done to
 //! them when they are read ([`crate::conditioning`]), so that every method gets channels that it can use.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_identify::dataset::distinct as distinct_texts;
 use froude_identify::method::MethodError;
 use froude_identify::runs::{files, logs_in, recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
-use froude_records::campaign::{BudgetEntry, Shared};
+use froude_records::campaign::{BudgetEntry, Shared, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::clocks::is_own;
 use froude_records::run::step::Step;
@@ -19,6 +20,7 @@ use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
 use crate::conditioning;
+use crate::error::{TankError, undeclared};
 use crate::long_logs::{self, LENGTHS, Lengths, Reading};
 use crate::motion::Motion;
 
@@ -97,17 +99,20 @@ pub(crate) fn read_averaging(
         conditioning::condition(&mut log, method)?;
         let told = log.findings.iter().filter(|f| f.severity > Severity::Note);
         of_logs.extend(told.map(|finding| (path.clone(), finding.clone())));
-        let sidecar = path.with_extension("toml");
-        out.files.push(ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role.name()) });
-        if sidecar.exists() {
-            out.files.push(ReadFile::new(sidecar, "sidecar"));
-        }
+        out.files.extend(files_of(path, role.name(), &log));
         out.runs.push(log);
     }
     out.findings.extend(once(of_logs));
     conditioning::of_one_rig(&out.runs)?;
     out.findings.extend(of_a_calendar(&out.runs));
     Ok(out)
+}
+
+/// A log with its steps, and its sidecar where there is one.
+pub(crate) fn files_of(path: PathBuf, role: &str, log: &ImportedRun) -> impl Iterator<Item = ReadFile> {
+    let sidecar = Some(path.with_extension("toml")).filter(|sidecar| sidecar.exists());
+    let log = ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role) };
+    std::iter::once(log).chain(sidecar.map(|sidecar| ReadFile::new(sidecar, "sidecar")))
 }
 
 /// Findings of logs, without repeats: findings of one code that differ only in numbers are reported for the first log, with the number of other logs.
@@ -170,7 +175,7 @@ pub(crate) fn is_of_all_runs(entry: &BudgetEntry) -> Result<(), MethodError> {
         entry.shared.name(),
         entry.quantity
     );
-    Err(MethodError::Undeclared { place: entry.place.to_string(), what })
+    Err(undeclared(&entry.place, what))
 }
 
 /// The logs of a folder, in the order of their names: those of other programs, and those of `method` that Froude recorded.
@@ -241,20 +246,20 @@ pub(crate) fn stamps_standard_s(log: &ImportedRun, channels: [&str; 2]) -> f64 {
     a.hypot(b)
 }
 
+/// The window of a log that is used; `words` follow its ends.
+pub(crate) fn window_step(log: &ImportedRun, rows: &Range<usize>, words: &str) -> Step {
+    let (from_s, to_s) = (log.log.time_s[rows.start], log.log.time_s[rows.end - 1]);
+    let words = format!("{from_s:.3} s to {to_s:.3} s{words}");
+    Step::new("window", "", words).with("from", from_s, "s").with("to", to_s, "s")
+}
+
 /// The cycles that are used of a run, as a step.
 pub(crate) fn cycles_step(log: &ImportedRun, motion: &Motion) -> Step {
-    let rows = motion.samples();
-    let (from_s, to_s) = (log.log.time_s[rows.start], log.log.time_s[rows.end - 1]);
     let but = if motion.dropped == 0 { String::new() } else { format!(", but {} that a mark touches", motion.dropped) };
     let period_s = motion.angle.period_s();
-    let words = format!(
-        "{from_s:.3} s to {to_s:.3} s: {} whole cycles{but}; angle by harmonics of {period_s:.4} s",
-        motion.whole
-    );
-    let step = Step::new("window", "", words).with("from", from_s, "s").with("to", to_s, "s");
-    step.with("cycles", motion.whole as f64, "1")
-        .with("dropped", motion.dropped as f64, "1")
-        .with("period", period_s, "s")
+    let words = format!(": {} whole cycles{but}; angle by harmonics of {period_s:.4} s", motion.whole);
+    let step = window_step(log, &motion.samples(), &words).with("cycles", motion.whole as f64, "1");
+    step.with("dropped", motion.dropped as f64, "1").with("period", period_s, "s")
 }
 
 /// A channel that is declared in full and has the log's times; `why` says what a guess would cost, `along` what its sign is that of.
@@ -275,7 +280,7 @@ pub(crate) fn channel<'a>(
         "{name} has the clock {clock:?}, which cannot be aligned with that of the log: declare [clocks.{clock}] {}, or write clock = \"log\" where the log's own times are meant",
         "{ offset = \"12 ms\", skew = \"0 ms/s\", standard = \"1 ms\", found = \"by …\" }"
     );
-    Err(MethodError::Undeclared { place, what })
+    Err(undeclared(place, what))
 }
 
 /// The same of a channel whose clock may be one that nobody knows: to be compared with another, and for nothing else.
@@ -295,19 +300,17 @@ pub(crate) fn of_any_clock<'a>(
         )
     })?;
     let told = log.told.get(name);
-    let undeclared = told.map_or_else(|| vec!["unit", "sign", "frame", "clock"], |told| told.undeclared.clone());
-    if undeclared.is_empty() {
+    let unstated = told.map_or_else(|| vec!["unit", "sign", "frame", "clock"], |told| told.undeclared.clone());
+    if unstated.is_empty() {
         return Ok(channel);
     }
     let place = told.map_or_else(|| log.log.path.display().to_string(), |told| told.place.to_string());
-    Err(MethodError::Undeclared {
-        place,
-        what: format!(
-            "{name} states no {}; {why}: write {{ name = \"{name}\", unit = \"…\", sign = 1, frame = \"body\", clock = \"log\" }}, sign being that of \
-             {along}",
-            undeclared.join(", no ")
-        ),
-    })
+    let what = format!(
+        "{name} states no {}; {why}: write {{ name = \"{name}\", unit = \"…\", sign = 1, frame = \"body\", clock = \"log\" }}, sign being that of \
+         {along}",
+        unstated.join(", no ")
+    );
+    Err(undeclared(place, what))
 }
 
 /// A condition that a run was done in; `None` where it declares none.
@@ -331,6 +334,16 @@ pub(crate) fn distinct(findings: Vec<Finding>) -> Vec<Finding> {
         }
     }
     out
+}
+
+/// That nothing is left to fit: why the first run was left out, or that there is none.
+pub(crate) fn no_run(source: &Source, first: Option<TankError>) -> MethodError {
+    let none = "no run of the role test: what is fitted has role = \"test\" in its sidecar";
+    first.map_or_else(|| MethodError::input(source.input.path(), none), MethodError::refused)
+}
+
+pub(crate) fn left_out(why: &TankError) -> Finding {
+    Finding::new(Severity::Warning, "run-left-out", format!("left out: {why}"))
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use froude_identify::method::Prospect;
 use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::campaign::Source;
 use froude_records::number::significant;
+use froude_records::text::counted;
 
 /// A coefficient with the interval to expect.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,4 +72,14 @@ pub(crate) fn prospect(
 /// A time as a person says it.
 pub(crate) fn minutes(seconds: f64) -> String {
     if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.1} min", seconds / 60.0) }
+}
+
+/// What the plan of a joint fit says; `changed` is what is changed between its runs.
+pub(crate) fn of_joint_fit(runs: usize, duration_s: f64, changed: &str) -> String {
+    format!(
+        "{} of {} in all on the log, waits between them and changes of {changed} not counted. The intervals are those of the linearised joint fit at the true coefficients of \
+         [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
+        counted(runs, "run", "runs"),
+        minutes(duration_s)
+    )
 }

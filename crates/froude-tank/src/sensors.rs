@@ -5,6 +5,8 @@ use froude_records::campaign::{Campaign, SensorSpec};
 use froude_rig::steady::Reading;
 use froude_rig::swung::SwungSensor;
 
+use crate::error::undeclared;
+
 /// Channels of one kind: the names of their quantity, and what their twin simulates.
 pub(crate) struct Senses<'a> {
     names: Vec<&'a str>,
@@ -65,12 +67,12 @@ pub(crate) fn seed_and_sensors<'a>(
     let Some(simulate) = &campaign.simulate else { return Ok((0, &[])) };
     if simulate.misalignment_rad.is_some() {
         let what = "misalignment applies to simulated tables only, not to simulated runs: leave it out";
-        return Err(MethodError::Undeclared { place: campaign.path.display().to_string(), what: what.to_owned() });
+        return Err(undeclared(campaign.path.display(), what));
     }
     for sensor in &simulate.sensors {
         let refuse = |what: String| {
             let place = sensor.place.as_ref().map_or_else(|| "[[simulate.sensor]]".to_owned(), ToString::to_string);
-            Err(MethodError::Undeclared { place, what })
+            Err(undeclared(place, what))
         };
         let quantity = sensor.quantity.as_str();
         let Some(sense) = senses.iter().find(|sense| sense.names.contains(&quantity)) else {

@@ -1,10 +1,14 @@
 //! What the twins of runs have in common: draws in the order in which they are asked for, logs and sidecars.
 
 use froude_fit::budget::Uncertain;
-use froude_identify::method::Export;
+use froude_identify::method::{Export, MethodError};
+use froude_records::campaign::{Campaign, Truth};
+use indexmap::IndexMap;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
+
+use crate::error::undeclared;
 
 /// Draws that a seed determines, each after the last.
 pub(crate) struct Draws(Pcg64Mcg);
@@ -90,4 +94,20 @@ impl Sidecar<'_> {
         }
         out
     }
+}
+
+/// The true coefficients of `[simulate]`; `instead` states that a record is not enough.
+pub(crate) fn truths(campaign: &Campaign, instead: String) -> Result<(&str, &IndexMap<String, f64>), MethodError> {
+    let place = || campaign.path.display();
+    match campaign.simulate.as_ref().map(|simulate| &simulate.truth) {
+        Some(Truth::Coefficients { model, values }) => Ok((model.as_str(), values)),
+        Some(_) => Err(undeclared(place(), instead)),
+        None => Err(undeclared(place(), "a twin needs [simulate]: seed, model, and the true coefficients")),
+    }
+}
+
+/// One of them.
+pub(crate) fn true_value(values: &IndexMap<String, f64>, name: &str) -> Result<f64, MethodError> {
+    let missing = || undeclared("[simulate.coefficients]", format!("{name} is missing; the truth needs it"));
+    values.get(name).copied().ok_or_else(missing)
 }

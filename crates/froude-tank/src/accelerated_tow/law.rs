@@ -58,6 +58,7 @@ pub fn with_acceleration(law: &ForceLaw, data: &Dataset, axis: &str) -> Result<F
 }
 
 /// Channels that the laws read, a row each, SI; all vectors have one length.
+#[derive(Default)]
 pub struct Channels {
     /// Runs.
     pub run: Vec<String>,

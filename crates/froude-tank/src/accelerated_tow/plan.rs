@@ -24,6 +24,7 @@ use super::section;
 use super::simulate::senses;
 use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
 use super::source::{declared, no_mass, setup_of};
+use crate::error::undeclared;
 use crate::joint::conclude::part;
 use crate::joint::forecast::inverted;
 use crate::noise::correlated;
@@ -60,12 +61,12 @@ pub fn forecast(
     }
     let x = truth.law.regressors(&reduced.data, &truth.values)?;
     let (n, p) = (x.nrows(), x.ncols());
-    let undetermined = || MethodError::Undeclared {
-        place: source.place.to_string(),
-        what: format!(
+    let undetermined = || {
+        let what = format!(
             "the planned runs do not tell the coefficients of {} apart: plan a second speed, or a law with fewer terms",
             truth.law.name
-        ),
+        );
+        undeclared(&source.place, what)
     };
     let inverse = inverted(&(x.transpose() * &x)).ok_or_else(undetermined)?;
     let sensitivity = &inverse * x.transpose();

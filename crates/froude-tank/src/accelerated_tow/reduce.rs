@@ -12,7 +12,6 @@
 //!
 //! **Units.** SI. **Source.** JCGM 100:2008 (GUM), 5.2.
 
-use froude_fit::budget::Kind;
 use froude_fit::faer::Mat;
 use froude_fit::propagate::effective_dof;
 use froude_fit::serial::{RowErrors, serial};
@@ -114,15 +113,7 @@ pub fn reduce(mounted: &[Mounted<'_>], setup: &Setup) -> Option<Reduced> {
     }
     let masses = (0..setup.bodies.len()).map(|b| mass(setup.bodies[b].mass_kg, &dry, b)).collect::<Option<Vec<_>>>()?;
     let n_runs = wet.len();
-    let mut channels = Channels {
-        run: Vec::new(),
-        configuration: Vec::new(),
-        speed_m_s: Vec::new(),
-        acceleration_m_s2: Vec::new(),
-        load_n: Vec::new(),
-        volume_m3: Vec::new(),
-        density_kg_m3: setup.density_kg_m3,
-    };
+    let mut channels = Channels { density_kg_m3: setup.density_kg_m3, ..Channels::default() };
     let (mut of_run, mut of_body, mut square, mut force, mut slope) = (vec![], vec![], vec![], vec![], vec![]);
     for (r, (id, b, found)) in wet.iter().enumerate() {
         for i in 0..found.middle_s.len() {
@@ -227,16 +218,10 @@ fn of_runs(
     let parts: Vec<Vec<f64>> = (0..n_runs).map(part).collect();
     let BetweenRuns { variance, dof } = between_runs(&parts, &left, left_of)?;
     Some(SharedError {
-        name: "what changes from run to run".to_owned(),
-        key: None,
-        kind: Kind::B,
-        quantity: load.to_owned(),
         shared: "run",
         directions: vec![(load.to_owned(), (0..left.len()).map(|i| parts.iter().map(|c| c[i]).collect()).collect())],
-        covariance: (0..n_runs).map(|r| (0..n_runs).map(|s| if r == s { variance } else { 0.0 }).collect()).collect(),
-        dof,
-        limits: None,
-        is_of_each_row: false,
+        covariance: diagonal(&vec![variance; n_runs]),
+        ..SharedError::of_load("what changes from run to run", load, &[], 0.0, dof)
     })
 }
 
@@ -252,21 +237,17 @@ fn zeros(load: &str, of_run: &[usize], wet: &[(String, usize, Rows)]) -> SharedE
         let by = wet[*r].2.by_zero(*at_s);
         parts.iter().map(|(of, k, _)| if of == r { by[*k] } else { 0.0 }).collect()
     };
-    let square = |i: usize| parts[i].2.powi(2);
+    let dof = wet.iter().map(|(_, _, rows)| rows.zero_dof).fold(f64::INFINITY, f64::min);
     SharedError {
-        name: "zeros of the runs".to_owned(),
-        key: None,
-        kind: Kind::B,
-        quantity: "zero".to_owned(),
         shared: "run",
         directions: vec![(load.to_owned(), of_run.iter().zip(&middles).map(row).collect())],
-        covariance: (0..parts.len())
-            .map(|i| (0..parts.len()).map(|k| if i == k { square(i) } else { 0.0 }).collect())
-            .collect(),
-        dof: wet.iter().map(|(_, _, rows)| rows.zero_dof).fold(f64::INFINITY, f64::min),
-        limits: None,
-        is_of_each_row: false,
+        covariance: diagonal(&parts.iter().map(|(.., standard)| standard.powi(2)).collect::<Vec<f64>>()),
+        ..SharedError::of_load("zeros of the runs", "zero", &[], 0.0, dof)
     }
+}
+
+fn diagonal(of: &[f64]) -> Vec<Vec<f64>> {
+    (0..of.len()).map(|i| (0..of.len()).map(|j| if i == j { of[i] } else { 0.0 }).collect()).collect()
 }
 
 /// What errors move depends on the coefficients, to first order: these of all rows together.

@@ -17,6 +17,7 @@ use super::rows::{TowRun, Way};
 use super::section::{self, AcceleratedPlan};
 use super::source::{declared, no_mass, setup_of};
 use crate::declared::uncertain;
+use crate::error::undeclared;
 use crate::sensors::{Senses, reading, seed_and_sensors};
 use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
 
@@ -116,17 +117,17 @@ impl Truths {
     /// No `[simulate]`, a record instead of coefficients, a coefficient that is not stated.
     pub fn of(campaign: &Campaign, source: &Source, setup: &Setup) -> Result<Self, MethodError> {
         let added = names(&setup.axis)[3].clone();
-        let undeclared = |what: String| MethodError::Undeclared { place: "[simulate]".to_owned(), what };
+        let refuse = |what: String| undeclared("[simulate]", what);
         let mut own = campaign.clone();
         own.sources = vec![source.clone()];
         let Some(Truth::Coefficients { values, .. }) = own.simulate.as_mut().map(|s| &mut s.truth) else {
-            return Err(undeclared(format!(
+            return Err(refuse(format!(
                 "the twin of {ACCELERATED_TOW} needs seed, model, and the true coefficients of drag and {added} in [simulate.coefficients]"
             )));
         };
         let value = values
             .shift_remove(&added)
-            .ok_or_else(|| undeclared(format!("{added} is missing in [simulate.coefficients]; the truth needs it")))?;
+            .ok_or_else(|| refuse(format!("{added} is missing in [simulate.coefficients]; the truth needs it")))?;
         let row = row_of(setup, 0, 0.1, 0.1);
         let (drag, mut values) = truth(&own, &row)?;
         let law = with_acceleration(&drag, &row, &setup.axis)?;

@@ -18,8 +18,9 @@ use super::rows::{Rows, TowRun, Way, root_mean_square};
 use super::section::AcceleratedTowSpec;
 use super::{lag, page, plan, section, simulate};
 use crate::between_runs::FEWEST_RUNS;
-use crate::declared::{check, needed};
-use crate::logs::{self, Logs};
+use crate::declared::{check, gain as gain_of, needed};
+use crate::error::undeclared;
+use crate::logs::{self, Logs, no_run};
 use crate::method::TankMethod;
 use crate::reference;
 
@@ -65,18 +66,11 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
     setup.delay_s.standard_uncertainty = setup.delay_s.standard_uncertainty.hypot(clocks_s);
     progress("weighting motion and force");
     let mounted = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
-    let mut reduced = reduce(&mounted, &setup).ok_or_else(|| no_mass(source, &setup))?;
+    let reduced = reduce(&mounted, &setup).ok_or_else(|| no_mass(source, &setup))?;
     if reduced.runs.is_empty() {
-        let first = (!reduced.left_out.is_empty()).then(|| reduced.left_out.remove(0));
-        let none = "no run of the role test: what is fitted has role = \"test\" in its sidecar";
-        return Err(first.map_or_else(|| MethodError::input(source.input.path(), none), MethodError::refused));
+        return Err(no_run(source, reduced.left_out.into_iter().next()));
     }
-    findings.extend(
-        reduced
-            .left_out
-            .iter()
-            .map(|error| Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}"))),
-    );
+    findings.extend(reduced.left_out.iter().map(logs::left_out));
     findings.extend(driven(&reduced, &setup));
     findings.extend(few(&reduced));
     let laws = asked(campaign, source, &reduced.data, &setup.axis)?;
@@ -166,7 +160,7 @@ pub(super) fn no_mass(source: &Source, setup: &Setup) -> MethodError {
          or log runs of each in air (role = \"dry_air\")",
         names.join(", ")
     );
-    MethodError::Undeclared { place: source.place.to_string(), what }
+    undeclared(&source.place, what)
 }
 
 /// Quantities of the budget that are the rig's, and no channel of the rows.
@@ -209,17 +203,8 @@ pub fn setup_of(
     }
     for entry in source.uncertainty.iter().filter(|entry| OF_RIG.contains(&entry.quantity.as_str())) {
         logs::is_of_all_runs(entry)?;
-        if !entry.relative {
-            return Err(MethodError::Undeclared {
-                place: entry.place.to_string(),
-                what: format!(
-                    "the uncertainty of {} is a gain that all runs share: write it as a percentage (the zero of each run is taken off, and noise shows in the scatter)",
-                    entry.quantity
-                ),
-            });
-        }
         let gain = if entry.quantity == "force" { &mut out.force_relative } else { &mut out.motion_relative };
-        *gain = entry.standard;
+        *gain = gain_of(entry, "the zero of each run is taken off")?;
     }
     Ok(out)
 }

@@ -15,6 +15,8 @@ use froude_records::run::frames::{Pose, Rotation};
 use froude_records::run::step::Step;
 use froude_records::run::{Channel, Frame, ImportedRun, LOG, Meaning, Told};
 
+use crate::error::undeclared;
+
 /// A part of a rotation or of an arm, as part of 1 or of 1 m, that carries nothing: the cosine of 90° is 6e-17.
 const NOTHING: f64 = 1e-9;
 
@@ -42,12 +44,10 @@ pub fn of_cell(run: &mut ImportedRun) -> Result<(), MethodError> {
             } else {
                 missing.join(", no ")
             };
-            return Err(MethodError::Undeclared {
-                place: told.place.to_string(),
-                what: format!(
-                    "the bridge {name} states no {what}; write {{ name = \"{name}\", unit = \"mV\", sign = 1, frame = \"sensor\", clock = \"log\" }}"
-                ),
-            });
+            let what = format!(
+                "the bridge {name} states no {what}; write {{ name = \"{name}\", unit = \"mV\", sign = 1, frame = \"sensor\", clock = \"log\" }}"
+            );
+            return Err(undeclared(&told.place, what));
         }
         time_standard_s = time_standard_s.max(told.time_standard_s);
         place.get_or_insert_with(|| told.place.clone());
@@ -100,13 +100,11 @@ pub fn in_body(run: &mut ImportedRun) -> Result<(), MethodError> {
     for (name, told) in &run.told {
         let Some(frame) = &told.frame else { continue };
         if !LOADS.contains(&name.as_str()) {
-            return Err(MethodError::Undeclared {
-                place: told.place.to_string(),
-                what: format!(
-                    "{name} is along the frame {frame:?}, and only loads ({}) are turned; write frame = \"sensor\" or \"body\"",
-                    LOADS.join(", ")
-                ),
-            });
+            let what = format!(
+                "{name} is along the frame {frame:?}, and only loads ({}) are turned; write frame = \"sensor\" or \"body\"",
+                LOADS.join(", ")
+            );
+            return Err(undeclared(&told.place, what));
         }
         if !frames.contains(frame) {
             frames.push(frame.clone());

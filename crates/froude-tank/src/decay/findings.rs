@@ -13,6 +13,7 @@ use super::pool::{EIGHT_OVER_3_PI, inverse_2};
 use super::run::DecaySetup;
 use super::swings::Swings;
 use crate::decay::reduced::{FEWEST_RUNS, Reduced, all_but};
+use crate::joint::findings::warning;
 
 /// Below this ratio of largest to smallest speed, u and u² are correlated by 0.986 and more.
 const APART: f64 = 2.0;
@@ -35,10 +36,6 @@ const FEWEST_FIRST: usize = 4;
 const FIRST_BEYOND: f64 = 2.6;
 /// A second mode has at least this part of the residuals' power in one line.
 const LINE: f64 = 0.3;
-
-fn warning(code: &str, message: String) -> Finding {
-    Finding::new(Severity::Warning, code, message)
-}
 
 /// What the half cycles show, whichever method.
 pub(super) fn common(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) -> Vec<Finding> {

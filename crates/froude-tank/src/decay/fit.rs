@@ -1,11 +1,12 @@
 //! What either method gives: three coefficients, their scatter, and what the declared numbers do to them.
 
-use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, Uncertain, combine};
+use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Uncertain, combine};
 use froude_fit::faer::Mat;
 use froude_records::campaign::Motion;
 use froude_records::finding::{Finding, Severity};
 
 use super::run::{DecaySetup, Restoring};
+use crate::joint::conclude::part;
 
 /// How the coefficients were got.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -174,25 +175,12 @@ impl DecayFit {
     /// The budget: scatter (where known), dry inertia, and what is declared of the restoring force.
     #[must_use]
     pub fn budget(&self) -> Vec<Part> {
-        let scatter = self.type_a.iter().map(|a| Part {
-            name: a.kind.clone(),
-            shared: a.shared,
-            kind: Kind::A,
-            covariance: a.covariance.clone(),
-            dof: a.dof.to_vec(),
-            shape: Shape::Normal,
-            in_scatter: false,
-            origin: None,
+        let scatter = self.type_a.iter().map(|a| {
+            let dof = a.dof.to_vec();
+            Part { shared: a.shared, dof, ..part(&a.kind, Kind::A, a.covariance.clone(), 0.0) }
         });
-        let declared = |name: &str, by: [f64; 3], u: Uncertain| Part {
-            name: name.to_owned(),
-            shared: "campaign",
-            kind: Kind::B,
-            covariance: Mat::from_fn(3, 3, |i, j| by[i] * by[j] * u.standard * u.standard),
-            dof: vec![u.dof; 3],
-            shape: Shape::Normal,
-            in_scatter: false,
-            origin: None,
+        let declared = |name: &str, by: [f64; 3], u: Uncertain| {
+            part(name, Kind::B, Mat::from_fn(3, 3, |i, j| by[i] * by[j] * u.standard * u.standard), u.dof)
         };
         let restoring = self
             .restoring

@@ -2,11 +2,10 @@
 
 use std::f64::consts::PI;
 
-use froude_fit::budget::{Kind, Part};
 use froude_records::campaign::{BoundsSpec, Campaign, Identify, Source};
 use froude_records::estimate::{
-    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Law, Measured, MethodUsed, Output, Range as Stated,
-    ReferencePoint, SharedError, Status, TypeA,
+    Clusters, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, Output, Range as Stated, ReferencePoint,
+    SharedError, Status, TypeA,
 };
 use froude_records::finding::{Finding, Severity};
 use froude_records::texts::Texts;
@@ -14,6 +13,7 @@ use froude_records::units::{Dimension, Unit};
 use indexmap::IndexMap;
 
 use super::fit::{DecayFit, HalfCycle};
+use crate::joint::record::{by_part, coefficient, shared_error};
 use froude_identify::IdentifyError;
 use froude_identify::dataset::Dataset;
 use froude_identify::law::ForceLaw;
@@ -123,23 +123,8 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
     let [added, linear, quadratic] = &fit.names;
     let units = fit.axis.decay_units();
     let coefficients = (0..3).map(|j| {
-        let combined = fit.combined(j);
-        let value = fit.values[j];
-        let coefficient = Coefficient {
-            label: None,
-            value: Some(value),
-            unit: units[j].to_owned(),
-            status: Status::Free,
-            nuisance: false,
-            standard_uncertainty: combined.map(|c| c.standard),
-            type_a: combined.map(|c| c.type_a),
-            type_b: combined.map(|c| c.type_b),
-            interval_95: combined.map(|c| c.interval(value)),
-            effective_dof: combined.map(|c| c.dof).filter(|d| d.is_finite()),
-            unconstrained: None,
-            range_95: None,
-        };
-        (fit.names[j].clone(), coefficient)
+        let found = coefficient(Some(fit.values[j]), units[j], Status::Free, fit.combined(j));
+        (fit.names[j].clone(), found)
     });
     let [force, speed, acceleration] = if fit.axis.is_rotation() {
         [Dimension::MOMENT, Dimension::ANGULAR_SPEED, Dimension::ANGULAR_ACCELERATION]
@@ -148,7 +133,8 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
     }
     .map(|dimension| Unit::si(dimension).text);
     let formula = format!("-{added}*{velocity}_dot - {linear}*{velocity} - {quadratic}*{velocity}*abs({velocity})");
-    let budget = fit.budget();
+    let named: Vec<(&str, &str)> = fit.names.iter().map(String::as_str).zip(units).collect();
+    let notes = by_part(&fit.budget(), &named, 3);
     let refers_to =
         campaign.fluid.density_kg_m3.map(|value| ("density".to_owned(), Measured { value, unit: "kg/m^3".to_owned() }));
     let range = |[low, high]: [f64; 2], unit: &str| Stated { low, high, unit: unit.to_owned() };
@@ -196,7 +182,7 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
             ("amplitude".to_owned(), range(fit.range.amplitude, fit.axis.position_unit())),
             ("period".to_owned(), range([fit.range.period_s; 2], "s")),
         ]),
-        diagnostics: Diagnostics { notes: notes(fit, &budget), ..Diagnostics::default() },
+        diagnostics: Diagnostics { notes, ..Diagnostics::default() },
         recommended,
         reason: recommended.then(|| fit.method.words().to_owned()),
         ..Estimate::default()
@@ -207,32 +193,10 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
 fn errors(fit: &DecayFit, campaign: &Campaign) -> IndexMap<String, SharedError> {
     let of = |name: &str, declared: froude_fit::budget::Uncertain, by: [f64; 3]| {
         let key = format!("{}/{name} {:e} {:e}", campaign.key, declared.value, declared.standard);
-        let error = SharedError {
-            name: name.to_owned(),
-            quantity: name.to_owned(),
-            kind: ErrorKind::B,
-            covariance: vec![vec![declared.standard * declared.standard]],
-            dof: Some(declared.dof).filter(|d| d.is_finite()),
-            limits: None,
-            sensitivity: by.iter().map(|d| vec![*d]).collect(),
-        };
+        let error = shared_error(name, declared.standard, declared.dof, &by);
         (declared.standard > 0.0).then_some((key, error))
     };
     let restoring =
         fit.restoring.parts().into_iter().map(|(name, u, by)| of(name, u, fit.by_stiffness.map(|d| d * by)));
     [of("dry inertia", fit.inertia, fit.by_inertia)].into_iter().chain(restoring).flatten().collect()
-}
-
-/// The budget of each coefficient, in sentences.
-fn notes(fit: &DecayFit, budget: &[Part]) -> Vec<String> {
-    let units = fit.axis.decay_units();
-    budget
-        .iter()
-        .filter(|part| (0..3).any(|j| part.standard(j) > 0.0))
-        .map(|part| {
-            let each = (0..3).map(|j| format!("{} {:.3e} {}", fit.names[j], part.standard(j), units[j]));
-            let kind = if part.kind == Kind::A { "A" } else { "B" };
-            format!("{} (type {kind}): {}", part.name, each.collect::<Vec<_>>().join(", "))
-        })
-        .collect()
 }

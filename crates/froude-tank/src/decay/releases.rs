@@ -10,6 +10,7 @@ use froude_rig::decay::{DecayRig, DecaySensor, Release};
 use super::record::LAW;
 use super::run::{DecayRun, DecaySetup, Restoring};
 use super::section::DecayPlan;
+use crate::error::undeclared;
 use crate::sensors::{Senses, seed_and_sensors};
 use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
 
@@ -73,8 +74,7 @@ pub fn planned(blocks: &[DecayPlan]) -> Vec<Planned> {
 ///
 /// No `[simulate]`, a record or another law instead of them, one that is not stated.
 pub fn truth_of(campaign: &Campaign, axis: Motion) -> Result<[f64; 3], MethodError> {
-    let undeclared = |place: &str, what: String| MethodError::Undeclared { place: place.to_owned(), what };
-    let place = campaign.path.display().to_string();
+    let place = campaign.path.display();
     let names = axis.decay_names();
     let all = names.join(", ");
     let Some(simulate) = &campaign.simulate else {

@@ -8,12 +8,12 @@ use crate::decay::{DecayFit, DecayRun, DecaySetup, Method as DecayMethod, RunSum
 use crate::decay::{envelope, output_error, plan, record, releases};
 use crate::declared::{check, needed};
 use crate::drawn::{self, first_of, over_time, series};
-use crate::logs;
+use crate::error::undeclared;
+use crate::logs::{self, Logs};
 use crate::long_logs::Reading;
 use crate::method::TankMethod;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::runs::{recorded_in, refuse_others};
-use froude_identify::source::ReadFile;
 use froude_records::block::{Section, TableBuilder};
 use froude_records::campaign::{Campaign, Motion, Source};
 use froude_records::finding::{Finding, Severity};
@@ -57,7 +57,7 @@ fn identify(
 ) -> Result<Found, MethodError> {
     let setup = declared(source)?;
     progress("reading the releases");
-    let Releases { logs, files, mut findings } = read(source.input.path())?;
+    let Logs { runs: logs, files, mut findings } = read(source.input.path())?;
     let runs = logs.iter().map(|log| release(log, setup.axis)).collect::<Result<Vec<_>, _>>()?;
     let methods: Vec<DecayMethod> = asked.iter().filter_map(|name| named(name)).collect();
     let (mut out, mut fits) = (Vec::new(), Vec::new());
@@ -93,14 +93,8 @@ fn identify(
     }
     findings.extend(fits.first().zip(fits.get(1)).and_then(|(a, b)| a.disagrees_with(b)));
     // What both state about a release is reported once.
-    let mut said: Vec<Finding> = Vec::new();
-    for finding in findings {
-        if !said.contains(&finding) {
-            said.push(finding);
-        }
-    }
     let blocks = fits.last().map(|fit| section(fit, &runs)).into_iter().collect();
-    Ok(Found { results: out, blocks, findings: said, ..Found::default() })
+    Ok(Found { results: out, blocks, findings: logs::distinct(findings), ..Found::default() })
 }
 
 /// What `[source.decay]` declares.
@@ -121,7 +115,7 @@ fn planning(source: &Source) -> Result<(DecaySetup, Vec<DecayPlan>), MethodError
     let [needed, found] = if is_angle { ["angle", "displacement"] } else { ["displacement", "angle"] };
     if blocks.iter().any(|block| block.is_angle != is_angle) {
         let what = format!("[[source.plan]] states {found}, but the axis is {}: write {needed}", setup.axis.name());
-        return Err(MethodError::Undeclared { place: source.place.to_string(), what });
+        return Err(undeclared(&source.place, what));
     }
     Ok((setup, blocks))
 }
@@ -170,14 +164,8 @@ fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> Section {
     Section::new("Releases", std::iter::once(table.into()).chain(chart))
 }
 
-struct Releases {
-    logs: Vec<ImportedRun>,
-    files: Vec<ReadFile>,
-    findings: Vec<Finding>,
-}
-
 /// Every log in a folder, in the order of the names, with its sidecar where it has one.
-fn read(folder: &Path) -> Result<Releases, MethodError> {
+fn read(folder: &Path) -> Result<Logs, MethodError> {
     if folder.is_file() {
         let what = "`runs` is a folder with one log a release; put the logs that are meant into a folder of their own";
         return Err(MethodError::input(folder, what));
@@ -188,7 +176,7 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
         let what = "no releases: put one log per release there, as CSV or Parquet with `time [s]` and `position [m]` (or `angle [deg]`)";
         return Err(MethodError::input(folder, what));
     }
-    let mut out = Releases { logs: Vec::new(), files: Vec::new(), findings: Vec::new() };
+    let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };
     let mut mounted: Option<String> = None;
     for path in paths {
         let mut log = logs::imported(&path, Reading::WHOLE, &|_| ())?;
@@ -210,15 +198,11 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
         condition(&mut log, FREE_DECAY)?;
         // Steps that are not even are refused by the methods; that they are is no news.
         out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
-        let sidecar = path.with_extension("toml");
-        out.files.push(ReadFile { steps: log.done.clone(), ..ReadFile::new(path, RELEASE) });
-        if sidecar.exists() {
-            out.files.push(ReadFile::new(sidecar, "sidecar"));
-        }
-        out.logs.push(log);
+        out.files.extend(logs::files_of(path, RELEASE, &log));
+        out.runs.push(log);
     }
-    of_one_rig(&out.logs)?;
-    out.findings.extend(logs::of_a_calendar(&out.logs));
+    of_one_rig(&out.runs)?;
+    out.findings.extend(logs::of_a_calendar(&out.runs));
     Ok(out)
 }
 

@@ -17,13 +17,14 @@
 //! **Source.** Newman (1977), *Marine Hydrodynamics*, 6.17; JCGM 100:2008 (GUM), 5.1.
 
 use faer::{Mat, c64};
-use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, combine};
+use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, combine};
 
 use super::response::{DOF, Response, response};
 use super::setup::{Setup, Shows, WaveRun};
 use super::wave::{ALIKE, Wave, turn};
 use super::window::window;
 use crate::error::TankError;
+use crate::joint::conclude;
 
 /// Names of the two.
 pub const NAMES: [&str; 2] = ["A33", "B33"];
@@ -273,16 +274,8 @@ pub fn budget(scatter: [Part; 2], errors: &[DeclaredError]) -> Vec<Part> {
 }
 
 fn part(name: &str, kind: Kind, covariance: [[f64; 2]; 2], dof: f64) -> Part {
-    Part {
-        name: name.to_owned(),
-        shared: if kind == Kind::A { "run" } else { "campaign" },
-        kind,
-        covariance: Mat::from_fn(2, 2, |i, j| covariance[i][j]),
-        dof: vec![dof; 2],
-        shape: Shape::Normal,
-        in_scatter: false,
-        origin: None,
-    }
+    let shared = if kind == Kind::A { "run" } else { "campaign" };
+    Part { shared, ..conclude::part(name, kind, Mat::from_fn(2, 2, |i, j| covariance[i][j]), dof) }
 }
 
 /// Mean response of some runs, with the variance of each of its components.

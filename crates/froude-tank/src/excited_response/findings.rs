@@ -6,6 +6,7 @@ use froude_signal::clock::MOST_LEFT_RAD;
 use super::camera::camera;
 use super::coefficients::{AtPeriod, NAMES, UNITS, Used};
 use super::setup::{Setup, WaveRun};
+use crate::joint::findings::warning;
 
 /// Strokes that differ by more than this are no repeat of one wave.
 const SAME_STROKE: f64 = 0.02;
@@ -19,10 +20,6 @@ const HARMONIC: f64 = 0.1;
 const EVEN: f64 = 1e-3;
 /// A gain this near to one is one.
 const SAME_GAIN: f64 = 0.02;
-
-fn warning(code: &str, message: String) -> Finding {
-    Finding::new(Severity::Warning, code, message)
-}
 
 /// All of it.
 #[must_use]

@@ -21,7 +21,7 @@ use super::simulate::senses;
 use super::simulate::{Planned, SENSORS, planned, truth};
 use super::source::setup_of;
 use super::wave::LEFT_OUT;
-use crate::error::TankError;
+use crate::error::{TankError, undeclared};
 use crate::plan::{self, Expected};
 use crate::sensors::{reading, seed_and_sensors};
 
@@ -120,7 +120,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let window_s = setup.window_s.ok_or_else(|| {
         let what = "a plan in waves needs the window that the tank allows: write window = { from = \"14 s\", to = \"20 s\" } in [source.excited_response], from where the wave is at the body until its \
                     reflection is back";
-        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
+        undeclared(&source.place, what)
     })?;
     let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     let found = forecast(&planned, &setup, window_s, sensors).map_err(MethodError::refused)?;

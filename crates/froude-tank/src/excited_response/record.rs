@@ -2,8 +2,8 @@
 
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{
-    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Law, Measured, MethodUsed, NamedCorrelation,
-    Output, Range, ReferencePoint, SharedError, Status, TypeA,
+    Clusters, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, NamedCorrelation, Output, Range, ReferencePoint,
+    Status, TypeA,
 };
 use froude_records::number;
 use froude_records::run::EXCITED_RESPONSE;
@@ -12,6 +12,7 @@ use indexmap::IndexMap;
 use super::coefficients::{AtPeriod, NAMES, UNITS};
 use super::response::DOF;
 use super::setup::{Setup, WaveRun};
+use crate::joint::record::{by_part, coefficient, shared_error};
 
 /// What an estimate is made from beside its numbers.
 #[derive(Debug, Clone, Copy)]
@@ -39,25 +40,11 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
     let Context { campaign, source, setup, runs } = *context;
     // Without a declared window B33 is not determined.
     let stated = if at.is_declared { 2 } else { 1 };
-    let coefficient = |j: usize| {
-        let combined = at.combined[j];
+    let of = |j: usize| {
         let is_stated = j < stated;
-        let of = |x: f64| is_stated.then_some(x);
-        let coefficient = Coefficient {
-            label: None,
-            value: of(at.values[j]),
-            unit: UNITS[j].to_owned(),
-            status: if is_stated { Status::Free } else { Status::Undetermined },
-            nuisance: false,
-            standard_uncertainty: of(combined.standard),
-            type_a: of(combined.type_a),
-            type_b: of(combined.type_b),
-            interval_95: is_stated.then(|| combined.interval(at.values[j])),
-            effective_dof: of(combined.dof).filter(|d| d.is_finite()),
-            unconstrained: None,
-            range_95: None,
-        };
-        (NAMES[j].to_owned(), coefficient)
+        let status = if is_stated { Status::Free } else { Status::Undetermined };
+        let (value, combined) = (is_stated.then_some(at.values[j]), is_stated.then_some(at.combined[j]));
+        (NAMES[j].to_owned(), coefficient(value, UNITS[j], status, combined))
     };
     let scatter = || at.parts.iter().filter(|p| p.kind == froude_fit::budget::Kind::A);
     let type_a = |i: usize, j: usize| scatter().map(|p| p.covariance[(i, j)]).sum::<f64>();
@@ -70,16 +57,7 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
     let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
     let errors = at.errors.iter().map(|e| {
         let key = format!("{}/{} {:e}", campaign.key, e.name, e.standard);
-        let shared = SharedError {
-            name: e.name.to_owned(),
-            quantity: e.name.to_owned(),
-            kind: ErrorKind::B,
-            covariance: vec![vec![e.standard * e.standard]],
-            dof: Some(e.dof).filter(|d| d.is_finite()),
-            limits: None,
-            sensitivity: e.sensitivity[..stated].iter().map(|s| vec![*s]).collect(),
-        };
-        (key, shared)
+        (key, shared_error(e.name, e.standard, e.dof, &e.sensitivity[..stated]))
     });
     let samples = at.used().map(|used| used.response.rows.len()).sum();
     let period = format!("{:.3} s", at.period_s);
@@ -113,7 +91,7 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
         n_observations: samples,
         clusters: Some(Clusters { by: "run".to_owned(), n: at.used().count() }),
         dof: IndexMap::from([("f_z".to_owned(), dof(0))]),
-        coefficients: [0, 1].map(coefficient).into_iter().collect(),
+        coefficients: [0, 1].map(of).into_iter().collect(),
         type_a: Some(TypeA {
             names: NAMES[..stated].iter().map(|name| (*name).to_owned()).collect(),
             matrix: (0..stated).map(|i| (0..stated).map(|j| type_a(i, j)).collect()).collect(),
@@ -162,12 +140,8 @@ fn validity(at: &AtPeriod, runs: &[WaveRun<'_>]) -> IndexMap<String, Range> {
 
 /// The budget of each coefficient, in sentences.
 fn notes(at: &AtPeriod, stated: usize) -> Vec<String> {
-    let mut out: Vec<String> = (at.parts.iter().filter(|p| (0..stated).any(|j| p.standard(j) > 0.0)))
-        .map(|part| {
-            let each = (0..stated).map(|j| format!("{} {:.2e} {}", NAMES[j], part.standard(j), UNITS[j]));
-            format!("{} (type {}): {}", part.name, part.kind, each.collect::<Vec<_>>().join(", "))
-        })
-        .collect();
+    let named: Vec<(&str, &str)> = NAMES.into_iter().zip(UNITS).take(stated).collect();
+    let mut out = by_part(&at.parts, &named, 2);
     if !at.is_declared {
         out.push("B33 only with the declared window before reflections".to_owned());
     }

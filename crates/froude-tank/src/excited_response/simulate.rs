@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use froude_identify::method::{Export, MethodError};
-use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
+use froude_records::campaign::{Campaign, SensorSpec, Source};
 use froude_records::run::{EXCITED_RESPONSE, Role};
 use froude_rig::excited_response::{WaveReadings, WaveRig, WaveTrace};
 use froude_rig::steady::Reading;
@@ -15,7 +15,7 @@ use super::section::{self, ExcitedPlan};
 use super::setup::{Setup, Shows, WaveRun};
 use super::source::setup_of;
 use crate::sensors::{Senses, reading, seed_and_sensors};
-use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of, true_value, truths};
 
 /// Speed of the twin's waves for the phase between wavemaker and body: they have come in by so many turns and a part, whose size does not matter.
 const PHASE_RAD: f64 = -0.7;
@@ -97,23 +97,11 @@ pub fn planned(blocks: &[ExcitedPlan], setup: &Setup, [added_kg, damping_n_s_m]:
 ///
 /// No `[simulate]`, a record instead of coefficients, a coefficient that is not stated.
 pub fn truth(campaign: &Campaign) -> Result<[f64; 2], MethodError> {
-    let undeclared = |place: String, what: String| MethodError::Undeclared { place, what };
-    let place = || campaign.path.display().to_string();
-    let Some(simulate) = &campaign.simulate else {
-        return Err(undeclared(place(), "a twin needs [simulate]: seed, model, and the true coefficients".to_owned()));
-    };
-    let Truth::Coefficients { values, .. } = &simulate.truth else {
-        let what = format!(
-            "the twin of {EXCITED_RESPONSE} takes its truth, A33 and B33, from [simulate.coefficients]; a record is not enough"
-        );
-        return Err(undeclared(place(), what));
-    };
-    let need = |name: &str| {
-        let missing =
-            || undeclared("[simulate.coefficients]".to_owned(), format!("{name} is missing; the truth needs it"));
-        values.get(name).copied().ok_or_else(missing)
-    };
-    Ok([need(NAMES[0])?, need(NAMES[1])?])
+    let instead = format!(
+        "the twin of {EXCITED_RESPONSE} takes its truth, A33 and B33, from [simulate.coefficients]; a record is not enough"
+    );
+    let (_, values) = truths(campaign, instead)?;
+    Ok([true_value(values, NAMES[0])?, true_value(values, NAMES[1])?])
 }
 
 /// Quantities of the sensors: wavemaker, force, acceleration.

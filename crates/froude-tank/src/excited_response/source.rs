@@ -10,7 +10,8 @@ use froude_records::units::Dimension;
 
 use super::setup::{Setup, Shows, WaveRun};
 use super::{findings, fit, page, plan, record, section, simulate};
-use crate::declared::{check, needed};
+use crate::declared::{self, check, needed};
+use crate::error::undeclared;
 use crate::logs::{self, Logs, distinct};
 use crate::method::TankMethod;
 
@@ -79,25 +80,19 @@ pub fn setup_of(source: &Source) -> Result<Setup, MethodError> {
     let mut out = needed(source, EXCITED_RESPONSE, section::excited, what)?;
     for entry in &source.uncertainty {
         logs::is_of_all_runs(entry)?;
-        let refuse = |what: String| MethodError::Undeclared { place: entry.place.to_string(), what };
         let gain = match entry.quantity.as_str() {
             "force" | FORCE => &mut out.force_relative,
             ACCELERATION => &mut out.acceleration_relative,
             "position" | POSITION => &mut out.position_relative,
             other => {
-                return Err(refuse(format!(
+                let what = format!(
                     "quantity = {other:?} is none that an excited response has: it has f_z, acceleration and heave; mass, restoring and delay take their standard uncertainties in \
                      [source.excited_response]"
-                )));
+                );
+                return Err(undeclared(&entry.place, what));
             }
         };
-        if !entry.relative {
-            return Err(refuse(format!(
-                "the uncertainty of {} is a gain that all runs share: write it as a percentage (a zero drops out of the harmonics, and noise shows in the scatter)",
-                entry.quantity
-            )));
-        }
-        *gain = entry.standard;
+        *gain = declared::gain(entry, "a zero drops out of the harmonics")?;
     }
     Ok(out)
 }

@@ -1,6 +1,7 @@
 //! The parts of a record that follow from a joint fit alone.
 
 use froude_fit::Status as Found;
+use froude_fit::budget::{Combined, Part};
 use froude_fit::faer::Mat;
 use froude_records::campaign::Campaign;
 use froude_records::estimate::{Coefficient, ErrorKind, SharedError, Status, TypeA};
@@ -8,27 +9,46 @@ use froude_records::number;
 use indexmap::IndexMap;
 
 use super::{DeclaredError, JointFit, Unknown};
+use crate::motion::Cycles;
 
 /// The coefficients; `is_nuisance` says which of them nobody asked for.
 pub(crate) fn coefficients(fit: &JointFit, is_nuisance: &dyn Fn(&str) -> bool) -> IndexMap<String, Coefficient> {
     let one = |u: &Unknown| {
-        let coefficient = Coefficient {
-            label: None,
-            value: u.value,
-            unit: u.unit.clone(),
-            status: status(u.status),
-            nuisance: is_nuisance(&u.name),
-            standard_uncertainty: u.combined.map(|c| c.standard),
-            type_a: u.combined.map(|c| c.type_a),
-            type_b: u.combined.map(|c| c.type_b),
-            interval_95: u.value.zip(u.combined).map(|(value, c)| c.interval(value)),
-            effective_dof: u.combined.map(|c| c.dof).filter(|d| d.is_finite()),
-            unconstrained: None,
-            range_95: None,
-        };
-        (u.name.clone(), coefficient)
+        let nuisance = is_nuisance(&u.name);
+        (u.name.clone(), Coefficient { nuisance, ..coefficient(u.value, &u.unit, status(u.status), u.combined) })
     };
     fit.unknowns.iter().map(one).collect()
+}
+
+/// A coefficient as a record has it.
+pub(crate) fn coefficient(value: Option<f64>, unit: &str, status: Status, combined: Option<Combined>) -> Coefficient {
+    Coefficient {
+        label: None,
+        value,
+        unit: unit.to_owned(),
+        status,
+        nuisance: false,
+        standard_uncertainty: combined.map(|c| c.standard),
+        type_a: combined.map(|c| c.type_a),
+        type_b: combined.map(|c| c.type_b),
+        interval_95: value.zip(combined).map(|(value, c)| c.interval(value)),
+        effective_dof: combined.map(|c| c.dof).filter(|d| d.is_finite()),
+        unconstrained: None,
+        range_95: None,
+    }
+}
+
+/// A declared error of one quantity as a record has it.
+pub(crate) fn shared_error(name: &str, standard: f64, dof: f64, sensitivity: &[f64]) -> SharedError {
+    SharedError {
+        name: name.to_owned(),
+        quantity: name.to_owned(),
+        kind: ErrorKind::B,
+        covariance: vec![vec![standard * standard]],
+        dof: Some(dof).filter(|d| d.is_finite()),
+        limits: None,
+        sensitivity: sensitivity.iter().map(|s| vec![*s]).collect(),
+    }
 }
 
 /// Their scatter.
@@ -65,16 +85,7 @@ fn status(found: Found) -> Status {
 pub(crate) fn errors(fit: &JointFit, campaign: &Campaign) -> IndexMap<String, SharedError> {
     let one = |error: &DeclaredError| {
         let key = format!("{}/{} {:e}", campaign.key, error.name, error.standard);
-        let shared = SharedError {
-            name: error.name.clone(),
-            quantity: error.name.clone(),
-            kind: ErrorKind::B,
-            covariance: vec![vec![error.standard * error.standard]],
-            dof: Some(error.dof).filter(|d| d.is_finite()),
-            limits: None,
-            sensitivity: error.sensitivity.iter().map(|s| vec![*s]).collect(),
-        };
-        (key, shared)
+        (key, shared_error(&error.name, error.standard, error.dof, &error.sensitivity))
     };
     fit.errors.iter().map(one).collect()
 }
@@ -88,10 +99,29 @@ pub(crate) fn notes(fit: &JointFit, unit: &str) -> Vec<String> {
         number::significant(fit.samples as f64 / fit.effective, 2),
         number::significant(fit.sigma, 2)
     )];
-    out.extend(fit.parts.iter().filter(|part| (0..fit.unknowns.len()).any(|j| part.standard(j) > 0.0)).map(|part| {
-        let each =
-            fit.unknowns.iter().enumerate().map(|(j, u)| format!("{} {:.2e} {}", u.name, part.standard(j), u.unit));
-        format!("{} (type {}): {}", part.name, part.kind, each.collect::<Vec<_>>().join(", "))
-    }));
+    let named: Vec<(&str, &str)> = fit.unknowns.iter().map(|u| (u.name.as_str(), u.unit.as_str())).collect();
+    out.extend(by_part(&fit.parts, &named, 2));
     out
+}
+
+/// The standard uncertainties of coefficients, with their units, by error.
+pub(crate) fn by_part(parts: &[Part], named: &[(&str, &str)], digits: usize) -> Vec<String> {
+    let is_there = |part: &&Part| (0..named.len()).any(|j| part.standard(j) > 0.0);
+    let one = |part: &Part| {
+        let each = named.iter().enumerate();
+        let each = each.map(|(j, (name, unit))| format!("{name} {:.digits$e} {unit}", part.standard(j)));
+        format!("{} (type {}): {}", part.name, part.kind, each.collect::<Vec<_>>().join(", "))
+    };
+    parts.iter().filter(is_there).map(one).collect()
+}
+
+/// What a joint fit did; `load` is what was measured, `held` how the axis lies.
+pub(crate) fn words(fit: &JointFit, cycles: Cycles, harmonics: usize, load: &str, held: &str) -> String {
+    let used = cycles.used.map_or_else(|| "all that follow".to_owned(), |n| n.to_string());
+    format!(
+        "cycles of each run: {} of start-up left out, {used} used; angle by {harmonics} harmonics of a fitted frequency; motion taken {} ms before the stamp of the {load}; zero of each run \
+         fitted; {held}",
+        cycles.skip,
+        number::plain(1e3 * fit.delay_s, 4)
+    )
 }

@@ -12,6 +12,7 @@ use super::section;
 use super::setup::Setup;
 use super::simulate::{Planned, configurations, log, planned, sidecar};
 use super::source::{declared, setup_of};
+use crate::error::undeclared;
 use crate::twin::pair;
 use froude_hydro::swing::{Medium, Pivot};
 
@@ -23,9 +24,9 @@ use froude_hydro::swing::{Medium, Pivot};
 pub fn asked(campaign: &Campaign, source: &Source) -> Result<(Setup, Vec<Planned>), MethodError> {
     let blocks = section::plan(source)?;
     let setup = setup_of(campaign, source, &declared(source)?, &configurations(&blocks))?;
-    let undeclared = |what: &str| MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() };
+    let refuse = |what: &str| undeclared(&source.place, what);
     if setup.pivot != Pivot::Stream {
-        return Err(undeclared(
+        return Err(refuse(
             "an upright pivot turns the body's heading, which is not computed; write pivot = \"stream\", a swing across the stream",
         ));
     }
@@ -40,20 +41,20 @@ pub fn asked(campaign: &Campaign, source: &Source) -> Result<(Setup, Vec<Planned
     }
     let mut names = BTreeSet::new();
     if let Some(twice) = runs.iter().find(|run| !names.insert(run.id.clone())) {
-        return Err(undeclared(&format!(
+        return Err(refuse(&format!(
             "plans {} twice: a computation gives the same again, which is no second observation; leave repeats out",
             twice.id
         )));
     }
     let needed = (setup.cycles.skip + setup.cycles.fewest) as f64;
     if setup.cycles.skip == 0 || runs.iter().any(|run| run.swing.periods < needed) {
-        return Err(undeclared(&format!(
+        return Err(refuse(&format!(
             "a computed body starts at once, so that one cycle at least is to be left out, and {needed} periods are needed for cycles = {{ skip = {}, fewest = {} }}; write skip = 1 or more, and as many periods",
             setup.cycles.skip, setup.cycles.fewest
         )));
     }
     if runs.is_empty() {
-        return Err(undeclared("plans no run in water: add a [[source.plan]] with amplitude, frequency and flow"));
+        return Err(refuse("plans no run in water: add a [[source.plan]] with amplitude, frequency and flow"));
     }
     Ok((setup, runs))
 }

@@ -6,7 +6,6 @@ use froude_hydro::similarity::keulegan_carpenter;
 use froude_identify::method::{MethodError, Prospect};
 use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
-use froude_records::text::counted;
 
 use super::forces::Drag;
 use super::forecast::forecast;
@@ -15,7 +14,7 @@ use super::setup::Setup;
 use super::simulate::senses;
 use super::simulate::{Planned, Truths, configurations, planned};
 use super::source::{declared, setup_of};
-use crate::plan::{self, minutes};
+use crate::plan;
 use crate::sensors::seed_and_sensors;
 
 /// What the plan of a source takes and determines.
@@ -32,20 +31,11 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     // Another law than the true one is off by what it lacks, which no linearisation forecasts.
     let drag = Drag::new(truth.law.clone()).map_err(MethodError::refused)?;
     let found = forecast(&planned, &setup, &truth, &drag, sensors, &campaign.identify).map_err(MethodError::refused)?;
-    let duration_s = planned.iter().map(duration_s).sum();
-    let paragraph = format!(
-        "{} of {} in all on the log, waits between them and changes of configuration not counted. The intervals are those of the linearised joint fit at the true coefficients of \
-         [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
-        counted(planned.len(), "run", "runs"),
-        minutes(duration_s)
-    );
+    let duration_s = planned.iter().map(|run| run.swing.duration_s()).sum();
+    let paragraph = plan::of_joint_fit(planned.len(), duration_s, "configuration");
     let law = format!(", with the drag law {} of [simulate]", drag.law.name);
     let tables = [matrix(&planned, &found.cycles, &setup, campaign), plan::intervals(&found.expected, &law)];
     Ok(plan::prospect(source, (planned.len(), duration_s), tables, vec![paragraph]))
-}
-
-fn duration_s(run: &Planned) -> f64 {
-    run.swing.still_s + run.swing.periods * TAU / run.swing.omega_rad_s
 }
 
 fn matrix(planned: &[Planned], cycles: &[usize], setup: &Setup, campaign: &Campaign) -> ResultTable {
@@ -68,6 +58,6 @@ fn matrix(planned: &[Planned], cycles: &[usize], setup: &Setup, campaign: &Campa
         .significant(3),
         t.number("kc", "KC [1]", |(run, speed, _)| kc(run, *speed)).significant(3),
         t.count("cycles", "cycles used", |(.., cycles)| **cycles),
-        t.number("duration_s", "duration [s]", |(run, ..)| duration_s(run)).places(1),
+        t.number("duration_s", "duration [s]", |(run, ..)| run.swing.duration_s()).places(1),
     ])
 }

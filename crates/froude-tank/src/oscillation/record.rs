@@ -7,7 +7,6 @@ use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{
     Clusters, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, Output, Range, ReferencePoint,
 };
-use froude_records::number;
 use froude_records::run::FORCED_OSCILLATION;
 use indexmap::IndexMap;
 
@@ -86,7 +85,11 @@ pub fn estimate(fit: &OscillationFit, drag: &Drag, context: &Context<'_>, of: Op
         id: format!("{}/{FORCED_OSCILLATION} {}", source.name, fit.law),
         source: source.name.clone(),
         kind: source.kind.name().to_owned(),
-        method: MethodUsed { name: FORCED_OSCILLATION.to_owned(), version: 1, words: method_words(fit, setup) },
+        method: MethodUsed {
+            name: FORCED_OSCILLATION.to_owned(),
+            version: 1,
+            words: record::words(fit, setup.cycles, setup.harmonics, "force", setup.pivot.words()),
+        },
         frame: Frame::body(),
         point: ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() },
         law: law(fit, drag, setup),
@@ -103,19 +106,6 @@ pub fn estimate(fit: &OscillationFit, drag: &Drag, context: &Context<'_>, of: Op
         reason,
         ..Estimate::default()
     }
-}
-
-/// What was done to the data, step by step.
-fn method_words(fit: &OscillationFit, setup: &Setup) -> String {
-    let used = setup.cycles.used.map_or_else(|| "all that follow".to_owned(), |n| n.to_string());
-    format!(
-        "cycles of each run: {} of start-up left out, {used} used; angle by {} harmonics of a fitted frequency; motion taken {} ms before the stamp of the force; zero of each run \
-         fitted; {}",
-        setup.cycles.skip,
-        setup.harmonics,
-        number::plain(1e3 * fit.delay_s, 4),
-        setup.pivot.words()
-    )
 }
 
 /// The load as a formula, where the drag law is one; `volume` is the reference volume of the configuration.

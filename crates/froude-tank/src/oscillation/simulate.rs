@@ -6,7 +6,7 @@
 use froude_identify::dataset::{Dataset, distinct};
 use froude_identify::law::ForceLaw;
 use froude_identify::method::{Export, MethodError};
-use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
+use froude_records::campaign::{Campaign, SensorSpec, Source};
 use froude_records::run::{FORCED_OSCILLATION, Role};
 use froude_records::units::Dimension;
 use froude_rig::oscillation::OscillationRig;
@@ -18,7 +18,7 @@ use super::section::{self, OscillationPlan};
 use super::setup::{OscillationRun, Setup};
 use super::source::{declared, drags, setup_of};
 use crate::sensors::{Senses, seed_and_sensors, swung};
-use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of, true_value, truths};
 use froude_hydro::swing::{Medium, Pivot};
 
 /// Natural frequency of the twin's servo, rad/s, and its damping ratio: a joint module that overshoots a little.
@@ -130,30 +130,15 @@ impl Truths {
     ///
     /// No `[simulate]`, a record instead of coefficients, a coefficient that is not stated.
     pub fn of(campaign: &Campaign, source: &Source, setup: &Setup) -> Result<Self, MethodError> {
-        let undeclared = |place: &str, what: String| MethodError::Undeclared { place: place.to_owned(), what };
-        let place = campaign.path.display().to_string();
-        let Some(simulate) = &campaign.simulate else {
-            return Err(undeclared(
-                &place,
-                "a twin needs [simulate]: seed, model, and the true coefficients".to_owned(),
-            ));
-        };
-        let Truth::Coefficients { model, values } = &simulate.truth else {
-            let what = format!(
-                "the twin of {FORCED_OSCILLATION} takes its truth from [simulate.coefficients], drag and {ADDED} together; a record is not enough"
-            );
-            return Err(undeclared(&place, what));
-        };
+        let instead = format!(
+            "the twin of {FORCED_OSCILLATION} takes its truth from [simulate.coefficients], drag and {ADDED} together; a record is not enough"
+        );
+        let (model, values) = truths(campaign, instead)?;
         let mut asking = source.clone();
-        asking.models = vec![model.clone()];
+        asking.models = vec![model.to_owned()];
         asking.model_places.clear();
         let Drag { law, columns, .. } = drags(campaign, &asking, setup)?.remove(0);
-        let need = |name: &str| {
-            values
-                .get(name)
-                .copied()
-                .ok_or_else(|| undeclared("[simulate.coefficients]", format!("{name} is missing; the truth needs it")))
-        };
+        let need = |name: &str| true_value(values, name);
         let drag = law.coefficients.iter().enumerate().map(|(j, c)| {
             // What moves the other load alone is not needed.
             if columns.contains(&j) { need(&c.name) } else { Ok(values.get(&c.name).copied().unwrap_or(0.0)) }

@@ -16,7 +16,8 @@ use super::forces::{Drag, LOAD};
 use super::section::OscillationSpec;
 use super::setup::{Body, OscillationRun, Setup, motions_without};
 use super::{findings, fit, page, plan, record, section, simulate};
-use crate::declared::{check, needed, uncertain};
+use crate::declared::{self, check, needed, uncertain};
+use crate::error::undeclared;
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs::{self, LENGTHS, Lengths};
 use crate::method::TankMethod;
@@ -125,12 +126,11 @@ pub fn setup_of(
     spec: &OscillationSpec,
     configurations: &[String],
 ) -> Result<Setup, MethodError> {
-    let missing = |what: String| MethodError::Undeclared { place: source.place.to_string(), what };
     let body = |name: &String| {
         let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
         let volume = reference::volume_m3(campaign, source, name)?;
         let mass = spec.mass_kg.of(name).ok_or_else(|| {
-            missing(format!("no mass is declared{of}: write it in [source.forced_oscillation] mass, {name} = {{ value = \"1.63 kg\", standard = \"5 g\" }}"))
+            undeclared(&source.place, format!("no mass is declared{of}: write it in [source.forced_oscillation] mass, {name} = {{ value = \"1.63 kg\", standard = \"5 g\" }}"))
         })?;
         Ok(Body {
             name: name.clone(),
@@ -151,7 +151,6 @@ pub fn setup_of(
     };
     for entry in &source.uncertainty {
         logs::is_of_all_runs(entry)?;
-        let part = if entry.relative { entry.standard } else { f64::NAN };
         let gain = match entry.quantity.as_str() {
             "density" => {
                 out.density_kg_m3.standard = if entry.relative { entry.standard * density } else { entry.standard };
@@ -161,26 +160,14 @@ pub fn setup_of(
             "force" | LOAD => &mut out.force_relative,
             "flow" | "speed" => &mut out.flow_relative,
             other => {
-                return Err(MethodError::Undeclared {
-                    place: entry.place.to_string(),
-                    what: format!(
-                        "quantity = {other:?} is none that a forced oscillation has: it has force, angle, flow and density; radius, mass, buoyancy and \
-                         delay take their standard uncertainties in [source.forced_oscillation]"
-                    ),
-                });
+                let what = format!(
+                    "quantity = {other:?} is none that a forced oscillation has: it has force, angle, flow and density; radius, mass, buoyancy and \
+                     delay take their standard uncertainties in [source.forced_oscillation]"
+                );
+                return Err(undeclared(&entry.place, what));
             }
         };
-        if part.is_nan() {
-            return Err(MethodError::Undeclared {
-                place: entry.place.to_string(),
-                what: format!(
-                    "the uncertainty of {} is a gain that all runs share: write it as a percentage (the zero of each run is fitted, and noise shows in \
-                     the scatter)",
-                    entry.quantity
-                ),
-            });
-        }
-        *gain = part;
+        *gain = declared::gain(entry, "the zero of each run is fitted")?;
     }
     Ok(out)
 }

@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 use froude_identify::method::{MethodError, Prospect};
 use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
-use froude_records::text::counted;
 use froude_rig::rotation::Mounted;
 
 use super::findings::one_rate;
@@ -16,7 +15,7 @@ use super::setup::Setup;
 use super::simulate::senses;
 use super::simulate::{Planned, Truths, planned};
 use super::source::setup_of;
-use crate::plan::{self, minutes};
+use crate::plan;
 use crate::sensors::seed_and_sensors;
 
 /// What the plan of a source takes and determines.
@@ -30,13 +29,8 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let planned = planned(&blocks);
     let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     let found = forecast(&planned, &setup, &truth, sensors, &campaign.identify).map_err(MethodError::refused)?;
-    let duration_s = planned.iter().map(duration_s).sum();
-    let mut paragraphs = vec![format!(
-        "{} of {} in all on the log, waits between them and changes of what is mounted not counted. The intervals are those of the linearised joint fit at the true coefficients of \
-         [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
-        counted(planned.len(), "run", "runs"),
-        minutes(duration_s)
-    )];
+    let duration_s = planned.iter().map(|run| run.swing.duration_s()).sum();
+    let mut paragraphs = vec![plan::of_joint_fit(planned.len(), duration_s, "what is mounted")];
     let pairs = [(0, 1), (0, 2), (1, 2)].into_iter().filter_map(|(i, j)| {
         let r = found.correlation(LAMBDAS[i], LAMBDAS[j])?;
         Some(format!("{} with {} {r:.2}", LAMBDAS[i], LAMBDAS[j]))
@@ -54,10 +48,6 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     Ok(plan::prospect(source, (planned.len(), duration_s), tables, paragraphs))
 }
 
-fn duration_s(run: &Planned) -> f64 {
-    run.swing.still_s + run.swing.periods * TAU / run.swing.omega_rad_s
-}
-
 fn matrix(planned: &[Planned], found: &Forecast, setup: &Setup) -> ResultTable {
     let rows: Vec<_> = planned.iter().map(|run| (run, &run.swing)).zip(&found.cycles).collect();
     let t = TableBuilder::new("matrix", "Run matrix.", &rows);
@@ -71,7 +61,7 @@ fn matrix(planned: &[Planned], found: &Forecast, setup: &Setup) -> ResultTable {
             .significant(3),
         t.number("tip_kc", "KC of the tip [1]", |((_, turn), _)| tip_kc(setup, turn.amplitude_rad)).significant(3),
         t.count("cycles", "cycles used", |(_, cycles)| **cycles),
-        t.number("duration_s", "duration [s]", |((run, _), _)| duration_s(run)).places(1),
+        t.number("duration_s", "duration [s]", |((run, _), _)| run.swing.duration_s()).places(1),
     ])
 }
 

@@ -5,7 +5,6 @@ use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{
     self, Clusters, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, Output, Range, ReferencePoint,
 };
-use froude_records::number;
 use froude_records::run::ROTATION;
 use froude_records::units::{Dimension, Unit};
 use froude_rig::rotation::Mounted;
@@ -69,11 +68,16 @@ pub fn estimate(fit: &RotationFit, context: &Context<'_>) -> Estimate {
         };
         (d.name.to_owned(), number)
     };
+    let axis = match setup.axis {
+        Pivot::Upright => "the axis is upright",
+        Pivot::Stream => "the axis lies level, and the restoring moment is taken off",
+    };
+    let words = record::words(fit, setup.cycles, setup.harmonics, "torque", axis);
     Estimate {
         id: format!("{}/{ROTATION}", source.name),
         source: source.name.clone(),
         kind: source.kind.name().to_owned(),
-        method: MethodUsed { name: ROTATION.to_owned(), version: 1, words: method_words(fit, setup) },
+        method: MethodUsed { name: ROTATION.to_owned(), version: 1, words },
         frame: Frame::body(),
         point: ReferencePoint { words: "the axis that it turned about".to_owned(), stated: false },
         law: Law {
@@ -103,22 +107,6 @@ pub fn estimate(fit: &RotationFit, context: &Context<'_>) -> Estimate {
         reason: Some("the only law of the fluid torque".to_owned()),
         ..Estimate::default()
     }
-}
-
-/// What was done to the data, step by step.
-fn method_words(fit: &RotationFit, setup: &Setup) -> String {
-    let used = setup.cycles.used.map_or_else(|| "all that follow".to_owned(), |n| n.to_string());
-    let axis = match setup.axis {
-        Pivot::Upright => "the axis is upright",
-        Pivot::Stream => "the axis lies level, and the restoring moment is taken off",
-    };
-    format!(
-        "cycles of each run: {} of start-up left out, {used} used; angle by {} harmonics of a fitted frequency; motion taken {} ms before the stamp of the torque; zero of each run \
-         fitted; {axis}",
-        setup.cycles.skip,
-        setup.harmonics,
-        number::plain(1e3 * fit.delay_s, 4)
-    )
 }
 
 /// Where the coefficients are supported: amplitudes, rates, periods, and the number of oscillation of the tip.

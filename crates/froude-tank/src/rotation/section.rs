@@ -70,18 +70,15 @@ pub(super) fn rotation(s: &Section<'_>) -> Result<Setup, RecordError> {
             _ => Ok(number.map(uncertain)),
         }
     };
+    let inertia_kg_m2 = inertia("inertia")?;
     Ok(Setup {
         axis,
-        inertia_kg_m2: inertia("inertia")?,
         tare_inertia_kg_m2: inertia("tare_inertia")?,
         restoring_n_m: restoring_n_m.map(uncertain),
         delay_s: declared(s, "delay", Dimension::TIME)?.map(uncertain),
-        angle_relative: 0.0,
-        torque_relative: 0.0,
         cycles: cycles(s)?,
         harmonics: count(s, "harmonics", 20)?.unwrap_or(3),
-        density_kg_m3: None,
-        link: None,
+        ..Setup::new(inertia_kg_m2)
     })
 }
 

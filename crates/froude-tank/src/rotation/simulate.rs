@@ -14,9 +14,10 @@ use super::fit::{INERTIA, LAMBDAS, RESTORING, RESTORING_IN_AIR, TARES, no_inerti
 use super::section::{self, RotationPlan};
 use super::setup::{RotationRun, Setup};
 use super::source::setup_of;
+use crate::error::undeclared;
 use crate::joint::DELAY;
 use crate::sensors::{Senses, seed_and_sensors, swung};
-use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of, true_value};
 
 /// Natural frequency of the twin's servo, rad/s, and its damping ratio: a joint module that overshoots a little.
 const SERVO: (f64, f64) = (30.0, 0.6);
@@ -119,8 +120,7 @@ impl Truths {
     ///
     /// No `[simulate]`, a record instead of coefficients, a coefficient that is not stated.
     pub fn of(campaign: &Campaign, blocks: &[RotationPlan], setup: &Setup) -> Result<Self, MethodError> {
-        let undeclared = |place: String, what: String| MethodError::Undeclared { place, what };
-        let place = campaign.path.display().to_string();
+        let place = campaign.path.display();
         let values = match campaign.simulate.as_ref().map(|s| &s.truth) {
             Some(Truth::Coefficients { model, values }) if model == ROTATION => values,
             Some(_) => {
@@ -138,12 +138,9 @@ impl Truths {
         let known = [LAMBDAS.as_slice(), &TARES, &[INERTIA, RESTORING, RESTORING_IN_AIR, DELAY]].concat();
         if let Some(other) = values.keys().find(|name| !known.contains(&name.as_str())) {
             let what = format!("{other} is none that a rotation has; it has {}", known.join(", "));
-            return Err(undeclared("[simulate.coefficients]".to_owned(), what));
+            return Err(undeclared("[simulate.coefficients]", what));
         }
-        let need = |name: &str| {
-            let what = || format!("{name} is missing; the truth needs it");
-            values.get(name).copied().ok_or_else(|| undeclared("[simulate.coefficients]".to_owned(), what()))
-        };
+        let need = |name: &str| true_value(values, name);
         let plans = |role: Role| blocks.iter().any(|block| block.role == role);
         let three = |names: [&str; 3]| -> Result<Lambdas, MethodError> {
             Ok([need(names[0])?, need(names[1])?, need(names[2])?])

@@ -11,7 +11,8 @@ use super::derive::derived;
 use super::setup::{RotationRun, Setup, motions_without};
 use super::simulate::mounted;
 use super::{findings, fit, page, plan, record, section, simulate};
-use crate::declared::{check, needed};
+use crate::declared::{self, check, needed};
+use crate::error::undeclared;
 use crate::fluid::density_kg_m3;
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs;
@@ -104,14 +105,12 @@ fn one_body(logs: &[ImportedRun]) -> Result<(), MethodError> {
 pub fn setup_of(campaign: &Campaign, source: &Source) -> Result<Setup, MethodError> {
     let what = "nothing is declared of the body that turns: write [source.rotation] with axis and inertia";
     let mut out = needed(source, ROTATION, section::rotation, what)?;
-    let density = density_kg_m3(&campaign.fluid)
-        .map_err(|what| MethodError::Undeclared { place: source.place.to_string(), what })?;
+    let density = density_kg_m3(&campaign.fluid).map_err(|what| undeclared(&source.place, what))?;
     out.density_kg_m3 = density.map(|value| Uncertain::new(value, 0.0));
     out.link = campaign.body.as_ref().and_then(|b| b.link);
     for entry in &source.uncertainty {
         logs::is_of_all_runs(entry)?;
-        let refuse = |what: String| Err(MethodError::Undeclared { place: entry.place.to_string(), what });
-        let part = match entry.quantity.as_str() {
+        let gain = match entry.quantity.as_str() {
             "density" => {
                 if let Some(density) = &mut out.density_kg_m3 {
                     density.standard = if entry.relative { entry.standard * density.value } else { entry.standard };
@@ -121,20 +120,14 @@ pub fn setup_of(campaign: &Campaign, source: &Source) -> Result<Setup, MethodErr
             "angle" => &mut out.angle_relative,
             "torque" => &mut out.torque_relative,
             other => {
-                return refuse(format!(
+                let what = format!(
                     "quantity = {other:?} is none that a rotation has: it has torque, angle and density; inertia, restoring moment and delay take their standard \
                      uncertainties in [source.rotation]"
-                ));
+                );
+                return Err(undeclared(&entry.place, what));
             }
         };
-        if !entry.relative {
-            return refuse(format!(
-                "the uncertainty of {} is a gain that all runs share: write it as a percentage (the zero of each run is fitted, and noise shows in the \
-                 scatter)",
-                entry.quantity
-            ));
-        }
-        *part = entry.standard;
+        *gain = declared::gain(entry, "the zero of each run is fitted")?;
     }
     Ok(out)
 }

@@ -20,6 +20,7 @@ use super::section::{self, SteadySpec};
 use super::simulate::senses;
 use super::simulate::{Plan, Simulated, loads_at, plan_of, simulated};
 use super::window::window;
+use crate::error::undeclared;
 use crate::joint::conclude::part;
 use crate::joint::forecast::inverted;
 use crate::plan;
@@ -116,12 +117,12 @@ pub(crate) fn linearised(
         let design = Mat::from_fn(n, q, |i, j| x[(r * n + i, own[j])]);
         let weighed = Mat::from_fn(n, q, |i, j| weight(i) * design[(i, j)]);
         let gram = design.transpose() * &weighed;
-        let undetermined = || MethodError::Undeclared {
-            place: String::new(),
-            what: format!(
+        let undetermined = || {
+            let what = format!(
                 "the planned runs do not tell the coefficients of {response} apart in {}: plan more speeds, angles or configurations, or another law",
                 plan.law.name
-            ),
+            );
+            undeclared("", what)
         };
         let inverse = inverted(&gram).ok_or_else(undetermined)?;
         let spread = Mat::from_fn(n, q, |i, j| variances[i] * weight(i) * design[(i, j)]);

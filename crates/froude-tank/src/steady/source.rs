@@ -20,7 +20,7 @@ use super::walls::Walls;
 use super::window::{Motion, Told};
 use super::{page, plan, simulate};
 use crate::conditioning::stretches::{in_words, longest_free, rows};
-use crate::error::TankError;
+use crate::error::{TankError, undeclared};
 use crate::logs::{self, Logs};
 use crate::method::TankMethod;
 
@@ -75,10 +75,9 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
     let table = table(source.input.path(), &reduced.rows);
     let mut observations = reduce_table(campaign, source, &table, files)?;
     if !reduced.errors.is_empty() && observations.data.rows != reduced.rows.len() {
-        return Err(MethodError::Undeclared {
-            place: source.place.to_string(),
-            what: "`keep` and runs of the role tare do not go together: leave the logs that are not meant out of the folder".to_owned(),
-        });
+        let what =
+            "`keep` and runs of the role tare do not go together: leave the logs that are not meant out of the folder";
+        return Err(undeclared(&source.place, what));
     }
     observations.shared_errors.extend(reduced.errors);
     let mut result = identify_observations(campaign, source, observations, STEADY, &|model| {
@@ -132,21 +131,13 @@ fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Re
                 }
             }
             Err(error) => {
-                findings.push(Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}")));
+                findings.push(logs::left_out(&error));
                 first.get_or_insert(error);
             }
         }
     }
     if rows.is_empty() {
-        return Err(first.map_or_else(
-            || {
-                MethodError::input(
-                    source.input.path(),
-                    "no run of the role test: what is fitted has role = \"test\" in its sidecar",
-                )
-            },
-            MethodError::refused,
-        ));
+        return Err(logs::no_run(source, first));
     }
     let mut errors = Vec::new();
     if !tares.is_empty() {
@@ -162,22 +153,13 @@ fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Re
 
 /// The window of a run as a step.
 fn window_step(log: &ImportedRun, point: &Point) -> Step {
-    let time_s = &log.log.time_s;
     let named = log.declared.segments.iter().any(|segment| segment.kind == SegmentKind::Steady);
-    let steady = &point.window.steady;
-    let (from_s, to_s) = (time_s[steady.start], time_s[steady.end - 1]);
     let by = if named { "as it is named in [[segments]]" } else { "by the rule of [source.steady]" };
-    let words = format!(
-        "{from_s:.3} s to {to_s:.3} s, {by}; mean tapered at both ends, the zero between the parts at rest taken off"
-    );
-    let step = Step::new("window", "", words).with("from", from_s, "s").with("to", to_s, "s");
+    let words = format!(", {by}; mean tapered at both ends, the zero between the parts at rest taken off");
     let rest = |rows: &std::ops::Range<usize>| rows.len() as f64 * log.steps.median_s;
-    let step = step.with("at_rest_before", rest(&point.window.before), "s").with(
-        "at_rest_after",
-        rest(&point.window.after),
-        "s",
-    );
-    step.with("speed", point.speed_m_s, "m/s")
+    let step = logs::window_step(log, &point.window.steady, &words);
+    let step = step.with("at_rest_before", rest(&point.window.before), "s");
+    step.with("at_rest_after", rest(&point.window.after), "s").with("speed", point.speed_m_s, "m/s")
 }
 
 /// Whether a window that a person has named is steady by the rule.

@@ -15,6 +15,7 @@ use super::reduce::WeightRun;
 use super::section::{self, Lens, WeightTowSpec};
 use super::track::metres;
 use crate::declared::{needed, uncertain};
+use crate::error::undeclared;
 use crate::sensors::{Senses, reading, seed_and_sensors};
 use crate::steady::simulate::{Plan, loads_at};
 use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
@@ -121,13 +122,11 @@ pub fn weights_of(
         let pull = weight_n[row] - spec.friction_n.value;
         let over = |u: f64| drag_n(&plan, row, u, angle[row]) - pull;
         if pull <= 0.0 || over(FASTEST_M_S) < 0.0 {
-            return Err(MethodError::Undeclared {
-                place: source.place.to_string(),
-                what: format!(
-                    "a weight of {} N has no terminal speed against friction of {} N and the drag of [simulate]; plan another weight",
-                    weight_n[row], spec.friction_n.value
-                ),
-            });
+            let what = format!(
+                "a weight of {} N has no terminal speed against friction of {} N and the drag of [simulate]; plan another weight",
+                weight_n[row], spec.friction_n.value
+            );
+            return Err(undeclared(&source.place, what));
         }
         let (mut low, mut high) = (0.0, FASTEST_M_S);
         for _ in 0..80 {

@@ -1,6 +1,5 @@
 //! The weight-driven rig as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
-use froude_fit::budget::Kind;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
@@ -18,7 +17,7 @@ use super::track::metres;
 use super::{page, plan, section, simulate};
 use crate::conditioning::stretches::{in_words, touching};
 use crate::declared::check;
-use crate::error::TankError;
+use crate::error::{TankError, undeclared};
 use crate::logs::{self, Logs};
 use crate::method::TankMethod;
 use crate::steady::row::{Row, table};
@@ -66,31 +65,20 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
                 reduced.push(found);
             }
             Err(error) => {
-                findings.push(Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}")));
+                findings.push(logs::left_out(&error));
                 first.get_or_insert(error);
             }
         }
     }
     if rows.is_empty() {
-        return Err(first.map_or_else(
-            || {
-                MethodError::input(
-                    source.input.path(),
-                    "no run of the role test: what is fitted has role = \"test\" in its sidecar",
-                )
-            },
-            MethodError::refused,
-        ));
+        return Err(logs::no_run(source, first));
     }
     let own = with_track(source, &reduced);
     let mut observations = reduce_table(campaign, &own, &table(source.input.path(), &rows), files)?;
     let errors = shared(&reduced, &observations.data.loads());
     if !errors.is_empty() && observations.data.rows != rows.len() {
-        return Err(MethodError::Undeclared {
-            place: source.place.to_string(),
-            what: "`keep` and errors that all runs share (scale, moving_mass, friction) do not go together: leave the logs that are not meant out of the folder"
-                .to_owned(),
-        });
+        let what = "`keep` and errors that all runs share (scale, moving_mass, friction) do not go together: leave the logs that are not meant out of the folder";
+        return Err(undeclared(&source.place, what));
     }
     observations.shared_errors.extend(errors);
     let mut result = identify_observations(campaign, &own, observations, WEIGHT_TOW, &|model| {
@@ -120,15 +108,9 @@ fn without_marks(log: &ImportedRun, found: Reduced) -> Result<Reduced, TankError
 
 /// The last part of the way as a step.
 fn window_step(log: &ImportedRun, found: &Reduced) -> Step {
-    let rows = &found.track.window;
-    let (from_s, to_s) = (log.log.time_s[rows.start], log.log.time_s[rows.end - 1]);
     let by = if found.balance.is_some() { "the equation of motion over all that moves" } else { "shown steady" };
-    let words = format!("{from_s:.3} s to {to_s:.3} s, the last part of the way; {by}");
-    Step::new("window", "", words).with("from", from_s, "s").with("to", to_s, "s").with(
-        "speed",
-        found.track.speed_m_s,
-        "m/s",
-    )
+    let step = logs::window_step(log, &found.track.window, &format!(", the last part of the way; {by}"));
+    step.with("speed", found.track.speed_m_s, "m/s")
 }
 
 /// The positions of a log, m: of its mark by scale and lens, or as they stand.
@@ -243,18 +225,8 @@ pub fn shared(reduced: &[Reduced], loads: &[&str]) -> Vec<SharedError> {
         };
         let directions: Vec<(String, Vec<Vec<f64>>)> = loads.iter().map(of_load).collect();
         let is_there = directions.iter().any(|(_, rows)| rows.iter().any(|row| row[0] != 0.0));
-        is_there.then(|| SharedError {
-            name: (*name).to_owned(),
-            key: None,
-            kind: Kind::B,
-            quantity: (*name).to_owned(),
-            shared: "campaign",
-            directions,
-            covariance: vec![vec![1.0]],
-            dof: f64::INFINITY,
-            limits: None,
-            is_of_each_row: false,
-        })
+        // In standard uncertainties.
+        is_there.then(|| SharedError { directions, ..SharedError::of_load(name, name, &[], 1.0, f64::INFINITY) })
     };
     ERRORS.iter().enumerate().filter_map(one).collect()
 }
