@@ -45,16 +45,12 @@ pub(crate) fn of_blanks(table: &Table, data: &mut Dataset) -> Result<(), RecordE
         let of_axis = MAKE.iter().any(|(load, motions)| motions.contains(&name.as_str()) && has_load(load));
         let has_none = !loads.iter().any(|load| has_load(load));
         if of_axis || has_none {
-            return Err(RecordError::EmptyCell {
-                place: table.place_of_row(*row),
-                column: data.header(name).to_owned(),
-                advice: if has_none {
-                    "fill it in or delete the row".to_owned()
-                } else {
-                    "fill it in; only a load that was not measured, and the motion along its axis, may be left empty"
-                        .to_owned()
-                },
-            });
+            let advice = if has_none {
+                "fill it in or delete the row"
+            } else {
+                "fill it in; only a load that was not measured, and the motion along its axis, may be left empty"
+            };
+            return Err(RecordError::empty_cell(table.place_of_row(*row), data.header(name), advice));
         }
         if loads.contains(&name.as_str()) {
             data.observed.entry(name.clone()).or_insert_with(|| vec![true; table.n_rows])[*row] = false;

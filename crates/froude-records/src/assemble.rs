@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use crate::error::{Place, RecordError};
+use crate::error::{Place, RecordError, briefly, decimal_comma};
 use crate::nearest::suggestion;
-use crate::raw_column::{Raw, check_dimension, fill_or_delete, in_light_of, unit_of_column};
+use crate::raw_column::{FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, TWICE, check_dimension, in_light_of, unit_of_column};
 use crate::sidecar::{Mapping, Sidecar};
 use crate::table::{Column, ColumnData, Table, is_text_column, known_dimension, usual_unit};
 use crate::units::{Unit, is_plausible, parse_unit};
@@ -58,41 +58,34 @@ pub(crate) fn plan<'s>(
     header_place: &Place,
 ) -> Result<Vec<Want<'s>>, RecordError> {
     if let Some((j, long)) = header.iter().enumerate().find(|(_, h)| h.len() > LONGEST_TEXT) {
-        return Err(RecordError::Syntax {
-            place: header_place.clone(),
-            problem: format!(
+        return Err(RecordError::syntax(
+            header_place.clone(),
+            format!(
                 "the header of column {} ({:?}) has {} bytes; at most {LONGEST_TEXT} are read",
                 j + 1,
                 beginning(long),
                 long.len()
             ),
-        });
+        ));
     }
     if sidecar.is_none() && !header.is_empty() && header.iter().all(|h| fast_float2::parse::<f64, _>(h.trim()).is_ok())
     {
-        return Err(RecordError::Syntax {
-            place: header_place.clone(),
-            problem: "there are numbers where the columns should be named; write a line of headers above them, as `speed [m/s],f_x [N]`"
-                .to_owned(),
-        });
+        return Err(RecordError::syntax(
+            header_place.clone(),
+            "there are numbers where the columns should be named; write a line of headers above them, as `speed [m/s],f_x [N]`",
+        ));
     }
     if let Some(twice) = first_twice(header.iter().map(String::as_str)) {
-        return Err(RecordError::DuplicateColumn { place: header_place.clone(), column: twice.to_owned() });
+        return Err(RecordError::column(header_place.clone(), twice, TWICE));
     }
     let wants = match sidecar {
         Some(sidecar) => {
             let known: BTreeSet<&str> = header.iter().map(String::as_str).collect();
             for (written, mapping) in &sidecar.columns {
                 if !known.contains(written.as_str()) {
-                    return Err(RecordError::UnknownColumn {
-                        place: mapping.place.clone(),
-                        column: written.clone(),
-                        advice: format!(
-                            "in {}: {}",
-                            path.display(),
-                            suggestion(written, header.iter().map(String::as_str))
-                        ),
-                    });
+                    let near = suggestion(written, header.iter().map(String::as_str));
+                    let advice = format!("in {}: {near}", path.display());
+                    return Err(RecordError::unknown_column(mapping.place.clone(), written, advice));
                 }
             }
             header.iter().map(|h| sidecar.columns.get(h).map_or(Want::LeftOut, Want::Mapped)).collect()
@@ -100,7 +93,7 @@ pub(crate) fn plan<'s>(
         None => header.iter().map(|h| want(path, h, header_place)).collect::<Result<Vec<_>, _>>()?,
     };
     if let Some(twice) = first_twice(wants.iter().filter_map(name_of)) {
-        return Err(RecordError::DuplicateColumn { place: header_place.clone(), column: twice.to_owned() });
+        return Err(RecordError::column(header_place.clone(), twice, TWICE));
     }
     Ok(wants)
 }
@@ -144,12 +137,7 @@ impl<'a> Room<'a> {
 
     #[cold]
     fn refusal(&self, bytes: u64) -> RecordError {
-        RecordError::TooLarge {
-            path: self.path.to_owned(),
-            bytes,
-            limit: self.most,
-            what: "the cells of a table, unpacked",
-        }
+        RecordError::too_large(self.path, bytes, self.most, "the cells of a table, unpacked")
     }
 
     /// A number more.
@@ -170,14 +158,14 @@ impl<'a> Room<'a> {
     /// A text that is too long, no room, or no memory.
     pub fn text(&mut self, texts: &mut Vec<String>, text: &str, place: &dyn Fn() -> Place) -> Result<(), RecordError> {
         if text.len() > LONGEST_TEXT {
-            return Err(RecordError::Syntax {
-                place: place(),
-                problem: format!(
+            return Err(RecordError::syntax(
+                place(),
+                format!(
                     "a cell ({:?}) has {} bytes of text; at most {LONGEST_TEXT} are read",
                     beginning(text),
                     text.len()
                 ),
-            });
+            ));
         }
         self.take((size_of::<String>() + text.len()) as u64)?;
         memory::push(texts, text.to_owned()).map_err(|e| RecordError::memory(self.path, e))
@@ -194,17 +182,15 @@ fn name_of<'a>(want: &'a Want<'_>) -> Option<&'a str> {
 
 /// A header read as `name [unit]`.
 fn want(path: &Path, header: &str, place: &Place) -> Result<Want<'static>, RecordError> {
-    let (name, unit) = split_header(header).map_err(|problem| RecordError::Syntax {
-        place: place.clone(),
-        problem: format!("header `{header}`: {problem}"),
-    })?;
+    let (name, unit) = split_header(header)
+        .map_err(|problem| RecordError::syntax(place.clone(), format!("header `{header}`: {problem}")))?;
     let Some(unit) = unit else {
         if known_dimension(name).is_some() && !may_be_text(name) {
             return Err(missing_unit(path, name, &[], place));
         }
         return Ok(Want::Text { name: name.to_owned() });
     };
-    let bad = |problem: String| RecordError::BadUnit { place: place.clone(), column: header.to_owned(), problem };
+    let bad = |problem: String| RecordError::column(place.clone(), header, format!(": {problem}"));
     if is_text_column(name) {
         return Err(bad(format!("{name} is text and has no unit; write `{name}`")));
     }
@@ -221,14 +207,12 @@ fn may_be_text(name: &str) -> bool {
 /// A column of numbers without a unit, or with one in round parentheses.
 fn missing_unit(path: &Path, name: &str, headers: &[String], place: &Place) -> RecordError {
     if let Some(problem) = header::advice(path, name, headers) {
-        return RecordError::BadUnit { place: place.clone(), column: name.to_owned(), problem };
+        return RecordError::column(place.clone(), name, format!(": {problem}"));
     }
     let unit = usual_unit(name).unwrap_or_else(|| "unit".to_owned());
-    RecordError::MissingUnit {
-        place: place.clone(),
-        column: name.to_owned(),
-        advice: format!("write `{name} [{unit}]`, or map it with a sidecar {}", sidecar_name(path)),
-    }
+    let sidecar = sidecar_name(path);
+    let problem = format!(" has no unit; write `{name} [{unit}]`, or map it with a sidecar {sidecar}");
+    RecordError::column(place.clone(), name, problem)
 }
 
 /// The name that a sidecar of this table has.
@@ -266,10 +250,10 @@ impl Want<'_> {
 
     /// What to do about an empty cell: a column that a table can do without may also be left out.
     pub fn advice(&self, path: &Path, sidecar: Option<&Sidecar>) -> String {
-        let Some(name) = name_of(self) else { return fill_or_delete() };
+        let Some(name) = name_of(self) else { return FILL_OR_DELETE.to_owned() };
         let base = name.strip_suffix("_dot").unwrap_or(name);
         if is_of_axis(base) || matches!(base, "speed" | "angle") || is_text_column(name) || name == "n_links" {
-            return fill_or_delete();
+            return FILL_OR_DELETE.to_owned();
         }
         let leave_out = match sidecar {
             Some(sidecar) => format!("take its line out of {}", sidecar.path.display()),
@@ -300,12 +284,16 @@ pub(crate) fn number(
 ) -> Result<f64, RecordError> {
     let clip = || cell.chars().take(40).collect::<String>();
     if cell.is_empty() {
-        return Err(RecordError::EmptyCell { place: place(), column: header.to_owned(), advice: advice() });
+        return Err(RecordError::empty_cell(place(), header, &advice()));
     }
     match fast_float2::parse::<f64, _>(cell) {
         Ok(x) if x.is_finite() => Ok(x),
-        Ok(_) => Err(RecordError::NotFinite { place: place(), column: header.to_owned(), found: clip() }),
-        Err(_) => Err(RecordError::NotANumber { place: place(), column: header.to_owned(), found: clip() }),
+        Ok(_) => Err(RecordError::not_finite(place(), header, &clip())),
+        Err(_) => {
+            let found = clip();
+            let problem = format!(": `{found}` is not a number{}", decimal_comma(&found));
+            Err(RecordError::column(place(), header, problem))
+        }
     }
 }
 
@@ -364,11 +352,8 @@ pub(crate) fn column(
         (Want::Number { name, unit }, Raw::Numbers(values)) => {
             let si: Vec<f64> = values.iter().map(|v| unit.to_si(*v)).collect();
             if let Some(row) = si.iter().position(|v| !is_plausible(*v)) {
-                return Err(RecordError::NotFinite {
-                    place: table.place_of_row(row),
-                    column: format!("{name} [{unit}]"),
-                    found: crate::error::briefly(si[row]),
-                });
+                let header = format!("{name} [{unit}]");
+                return Err(RecordError::not_finite(table.place_of_row(row), &header, &briefly(si[row])));
             }
             Column {
                 name: name.clone(),
@@ -376,12 +361,7 @@ pub(crate) fn column(
             }
         }
         (Want::Number { name, unit }, Raw::Texts(_)) => {
-            return Err(RecordError::ColumnKind {
-                place: header_place.clone(),
-                column: format!("{name} [{unit}]"),
-                found: "text",
-                expected: "numbers",
-            });
+            return Err(RecordError::column(header_place.clone(), &format!("{name} [{unit}]"), TEXT_FOR_NUMBERS));
         }
         (Want::Text { name }, raw) => {
             let cells = match raw {
@@ -393,11 +373,7 @@ pub(crate) fn column(
             };
             if may_be_text(name) {
                 if let Some(row) = cells.iter().position(String::is_empty) {
-                    return Err(RecordError::EmptyCell {
-                        place: table.place_of_row(row),
-                        column: name.clone(),
-                        advice: fill_or_delete(),
-                    });
+                    return Err(RecordError::empty_cell(table.place_of_row(row), name, FILL_OR_DELETE));
                 }
             } else if cells.iter().all(|cell| fast_float2::parse::<f64, _>(cell).is_ok()) {
                 return Err(missing_unit(&table.path, name, headers, header_place));

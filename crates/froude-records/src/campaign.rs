@@ -24,7 +24,7 @@ pub use crate::campaign_file::{parse_campaign, read_campaign};
 pub use crate::keep::{Comparison, Keep, KeepClause, KeepValue};
 
 /// A whole campaign.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Campaign {
     /// The file.
     pub path: PathBuf,
@@ -557,13 +557,14 @@ impl Campaign {
     pub fn of_table(table: &Path, sidecar: Option<PathBuf>) -> Self {
         let name = table.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         let source = Source { sidecar, ..Source::bare(name.clone(), Input::Table(table.to_owned())) };
-        Self { path: table.to_owned(), name, ..Self::bare(vec![source]) }
+        Self { path: table.to_owned(), name, sources: vec![source], ..Self::default() }
     }
 
     /// The campaign that named runs stand for: one source, called as the runs call theirs.
     #[must_use]
     pub fn of_runs(paths: Vec<PathBuf>, campaign: Option<PathBuf>) -> Self {
-        Self::bare(vec![Source::bare(String::new(), Input::Runs { paths, campaign })])
+        let source = Source::bare(String::new(), Input::Runs { paths, campaign });
+        Self { sources: vec![source], ..Self::default() }
     }
 
     /// The campaign that a mesh or a body file stands for: one source, called as the body is.
@@ -571,7 +572,7 @@ impl Campaign {
     pub fn of_mesh(path: &Path, added_mass: Vec<GivenOption>) -> Self {
         let bare = Source::bare(String::new(), Input::Mesh(path.to_owned()));
         let source = Source { kind: SourceKind::Potential, added_mass, ..bare };
-        Self { path: path.to_owned(), ..Self::bare(vec![source]) }
+        Self { path: path.to_owned(), sources: vec![source], ..Self::default() }
     }
 
     /// The campaign that records stand for, which are set side by side.
@@ -580,23 +581,7 @@ impl Campaign {
         let name = |path: &PathBuf| path.display().to_string();
         let of = |path: &PathBuf| Source::bare(name(path), Input::Record { path: path.clone(), select: None });
         let names: Vec<String> = paths.iter().map(name).collect();
-        Self { name: names.join(", "), ..Self::bare(paths.iter().map(of).collect()) }
-    }
-
-    fn bare(sources: Vec<Source>) -> Self {
-        Self {
-            path: PathBuf::new(),
-            key: String::new(),
-            name: String::new(),
-            cite: Vec::new(),
-            fluid: Fluid::default(),
-            body: None,
-            tank: None,
-            sources,
-            identify: Identify::default(),
-            simulate: None,
-            document: None,
-        }
+        Self { name: names.join(", "), sources: paths.iter().map(of).collect(), ..Self::default() }
     }
 
     /// The whole file, for sections that belong to whoever reads them: `[rig]` and `[carriage]`.

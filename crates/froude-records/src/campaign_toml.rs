@@ -47,10 +47,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
     let campaign = Campaign {
         path: path.to_owned(),
         key: short_key(text.as_bytes()),
-        name: root
-            .text("name")?
-            .ok_or_else(|| root.missing("name", "write name = \"what this campaign is\""))?
-            .to_owned(),
+        name: root.need_text("name", "write name = \"what this campaign is\"")?.to_owned(),
         cite: root.texts("cite")?,
         fluid: root.section("fluid")?.map(|s| fluid(&s)).transpose()?.unwrap_or_default(),
         body: root.section("body")?.map(|s| body(&s)).transpose()?,
@@ -65,11 +62,8 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
     let mut names = BTreeSet::new();
     for a in &campaign.sources {
         if !names.insert(&a.name) {
-            return Err(RecordError::Value {
-                place: a.place.clone(),
-                key: "name".to_owned(),
-                problem: format!("{:?} is the name of two sources; give each its own", a.name),
-            });
+            let problem = format!("{:?} is the name of two sources; give each its own", a.name);
+            return Err(RecordError::value(a.place.clone(), "name", problem));
         }
     }
     Ok(campaign)
@@ -97,11 +91,8 @@ fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
         for (configuration, _, value) in table.entries() {
             let volume = table.as_quantity_of(configuration, value, Dimension::VOLUME)?;
             if volume <= 0.0 {
-                return Err(table.wrong(
-                    configuration,
-                    value,
-                    format!("is {}; it must be larger than zero", found(value)),
-                ));
+                let problem = format!("is {}; it must be larger than zero", found(value));
+                return Err(table.wrong(configuration, value, problem));
             }
             volumes.insert(configuration.to_owned(), volume);
         }
@@ -152,8 +143,7 @@ const SOURCE_KEYS: [&str; 8] = ["name", "kind", "role", "select", "method", "add
 fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Source, RecordError> {
     let of_tank = TANK_METHODS.map(|(name, _)| name);
     s.only(&[&SOURCE_KEYS[..], &INPUTS, &OF_TABLES, &of_tank].concat())?;
-    let name =
-        s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"circulation tank\", for example"))?.to_owned();
+    let name = s.need_text("name", "write name = \"circulation tank\", for example")?.to_owned();
     let kinds = [SourceKind::Tank, SourceKind::Towing, SourceKind::Cfd, SourceKind::Potential, SourceKind::Published];
     let kind = one_of(s, "kind", &SourceKind::NAMES, &kinds)?.ok_or_else(|| {
         s.missing("kind", "write kind = \"tank\", \"towing\", \"cfd\", \"potential\" or \"published\"")
@@ -172,23 +162,14 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
     let Some(input) = given.pop().filter(|_| given.is_empty()) else {
         let named: Vec<&str> = INPUTS.into_iter().filter(|key| s.get(key).is_some()).collect();
         let named = if named.is_empty() { "none".to_owned() } else { named.join(" and ") };
-        return Err(RecordError::Value {
-            place: s.place(),
-            key: name,
-            problem: format!("names {named}; a source needs exactly one of table, runs, cases, mesh, record"),
-        });
+        let problem = format!("names {named}; a source needs exactly one of table, runs, cases, mesh, record");
+        return Err(RecordError::value(s.place(), name, problem));
     };
-    if let (Some(value), false) = (s.get("select"), matches!(input, Input::Record { .. })) {
-        return Err(s.wrong("select", value, "picks an estimate of a record, but the source names no record"));
-    }
+    let is_record = matches!(input, Input::Record { .. });
+    s.refuse("select", !is_record, "picks an estimate of a record, but the source names no record")?;
     let is_validation = one_of(s, "role", &["fit", "validation"], &[false, true])?.unwrap_or_default();
-    if let (Some(value), false) = (s.get("role").filter(|_| is_validation), matches!(input, Input::Table(_))) {
-        return Err(s.wrong(
-            "role",
-            value,
-            "holds fits against the rows of a table, but the source names none: write table = \"tomorrow.csv\"",
-        ));
-    }
+    let problem = "holds fits against the rows of a table, but the source names none: write table = \"tomorrow.csv\"";
+    s.refuse("role", is_validation && !matches!(input, Input::Table(_)), problem)?;
     let keep = s
         .get("keep")
         .map(|v| parse_keep(s.as_text("keep", v)?).map_err(|e| s.wrong("keep", v, format!("cannot be read: {e}"))))
@@ -197,9 +178,8 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
         .section("tare")?
         .map(|t| -> Result<Tare, RecordError> {
             t.only(&["record", "select", "removed"])?;
-            let record = t.text("record")?.ok_or_else(|| t.missing("record", "name the estimate.json of the tare"))?;
             Ok(Tare {
-                record: s.source.relative(record),
+                record: s.source.relative(t.need_text("record", "name the estimate.json of the tare")?),
                 select: t.text("select")?.map(str::to_owned),
                 is_removed: t.flag("removed")?.unwrap_or(false),
             })
@@ -207,9 +187,8 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
         .transpose()?;
     let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
     let (methods, method_places): (Vec<String>, Vec<_>) = s.placed_texts("method")?.into_iter().unzip();
-    if let (Some(value), false) = (s.get("method"), matches!(input, Input::Runs { .. } | Input::Table(_))) {
-        return Err(s.wrong("method", value, "says how runs are reduced, but the source names no runs"));
-    }
+    let has_runs = matches!(input, Input::Runs { .. } | Input::Table(_));
+    s.refuse("method", !has_runs, "says how runs are reduced, but the source names no runs")?;
     let is_method = |name: &str| methods.iter().any(|method| method == name);
     let is_decay = methods.iter().any(|method| method.starts_with("decay"));
     let has_own = |key: &str| TANK_METHODS.iter().any(|(name, own)| is_method(name) && own.contains(&key));
@@ -219,25 +198,16 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
     if let (Some((key, value)), Some(instead)) = (of_table, why_no_rows(&input)) {
         return Err(s.wrong(key, value, format!("belongs to the rows of a table; {instead}")));
     }
-    if let (Some(value), false) = (s.get("added_mass"), matches!(input, Input::Mesh(_))) {
-        let problem =
-            "says what is asked of a mesh, but the source names none: write mesh = \"hull.stl\", or a body file";
-        return Err(s.wrong("added_mass", value, problem));
-    }
-    if let (Some(value), false) = (s.get("cfd"), matches!(input, Input::Cases(_)) || is_method(FORCED_OSCILLATION)) {
-        let problem = "says how a flow is computed, but the source names no cases: write cases = \"cases\", the folder for them, or method = \"forced_oscillation\"";
-        return Err(s.wrong("cfd", value, problem));
-    }
-    if let (Some(value), false) = (s.get("decay"), is_decay) {
-        let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
-        return Err(s.wrong("decay", value, problem));
-    }
+    let problem = "says what is asked of a mesh, but the source names none: write mesh = \"hull.stl\", or a body file";
+    s.refuse("added_mass", !matches!(input, Input::Mesh(_)), problem)?;
+    let problem = "says how a flow is computed, but the source names no cases: write cases = \"cases\", the folder for them, or method = \"forced_oscillation\"";
+    s.refuse("cfd", !matches!(input, Input::Cases(_)) && !is_method(FORCED_OSCILLATION), problem)?;
+    let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
+    s.refuse("decay", !is_decay, problem)?;
     for method in of_tank {
-        if let (Some(value), false) = (s.get(method), is_method(method)) {
-            let problem =
-                format!("describes runs of {method}, but that is no method of the source: write method = {method:?}");
-            return Err(s.wrong(method, value, problem));
-        }
+        let problem =
+            format!("describes runs of {method}, but that is no method of the source: write method = {method:?}");
+        s.refuse(method, !is_method(method), problem)?;
     }
     of_tank.into_iter().chain(["decay", "cfd"]).try_for_each(|name| s.section(name).map(drop))?;
     let blocks = s.sections("plan")?;
@@ -312,12 +282,8 @@ fn added_mass(s: &Section<'_>) -> Result<Vec<GivenOption>, RecordError> {
 
 fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
     s.only(&["quantity", "standard", "shared", "dof", "name", "kind"])?;
-    let quantity = s
-        .text("quantity")?
-        .ok_or_else(|| s.missing("quantity", "name the uncertain column: f_x, speed, angle, density, …"))?;
-    let value = s.get("standard").ok_or_else(|| {
-        s.missing("standard", "write the standard uncertainty with its unit: \"0.01 N\" or \"0.5 %\"")
-    })?;
+    let quantity = s.need_text("quantity", "name the uncertain column: f_x, speed, angle, density, …")?;
+    let value = s.need("standard", "write the standard uncertainty with its unit: \"0.01 N\" or \"0.5 %\"")?;
     let standard = s.quantity_like("standard", value, known_dimension(quantity).map(|d| (quantity, d)))?;
     let relative = standard.unit.text.trim() == "%";
     let dimension = standard.unit.dimension;
@@ -325,11 +291,8 @@ fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
         && !relative
         && expected != dimension
     {
-        return Err(s.wrong(
-            "standard",
-            value,
-            format!("is {}, but {quantity} is {}", found(value), expected.describe()),
-        ));
+        let problem = format!("is {}, but {quantity} is {}", found(value), expected.describe());
+        return Err(s.wrong("standard", value, problem));
     }
     let si = standard.unit.difference_to_si(standard.value);
     if si < 0.0 {
@@ -354,18 +317,16 @@ fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
 
 /// A plain number larger than zero.
 fn positive_number(s: &Section<'_>, key: &'static str) -> Result<Option<f64>, RecordError> {
-    match (s.number(key)?, s.get(key)) {
-        (Some(x), Some(value)) if x <= 0.0 => Err(s.wrong(key, value, format!("is {x}; it must be larger than zero"))),
-        (x, _) => Ok(x),
-    }
+    let Some(x) = s.number(key)? else { return Ok(None) };
+    s.refuse(key, x <= 0.0, format!("is {x}; it must be larger than zero"))?;
+    Ok(Some(x))
 }
 
 fn plan_block(s: &Section<'_>, input: &Input) -> Result<PlanBlock, RecordError> {
     let is_computed = matches!(input, Input::Cases(_));
     // A computation that is repeated says nothing new.
     s.only(&["configurations", "speed", "angle", if is_computed { "pitch" } else { "repeats" }])?;
-    let speed =
-        s.get("speed").ok_or_else(|| s.missing("speed", "write \"0.1 m/s\", a list, or { start, stop, step }"))?;
+    let speed = s.need("speed", "write \"0.1 m/s\", a list, or { start, stop, step }")?;
     let out = PlanBlock {
         configurations: configurations(s)?,
         speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
@@ -495,11 +456,8 @@ fn known(
         let is_fixed = fixed.contains_key(&one.coefficient);
         if is_twice || is_fixed {
             let what = if is_twice { "known twice" } else { "in `fixed` too" };
-            return Err(RecordError::Value {
-                place: section.place(),
-                key: "coefficient".to_owned(),
-                problem: format!("is {}, which is {what}; a coefficient is held at one value", one.coefficient),
-            });
+            let problem = format!("is {}, which is {what}; a coefficient is held at one value", one.coefficient);
+            return Err(RecordError::value(section.place(), "coefficient", problem));
         }
         out.push(one);
     }
@@ -519,15 +477,13 @@ fn prior(s: &Section<'_>, stated_units: &mut Vec<StatedUnit>) -> Result<PriorSpe
         "volume",
         "model_form",
     ])?;
-    let coefficient =
-        s.text("coefficient")?.ok_or_else(|| s.missing("coefficient", "name the coefficient"))?.to_owned();
+    let coefficient = s.need_text("coefficient", "name the coefficient")?.to_owned();
     let model = s.text("model")?.map(str::to_owned);
     if let Some(record) = s.text("record")? {
-        if let Some((key, value)) = ["value", "standard_uncertainty"].iter().find_map(|k| Some((*k, s.get(k)?))) {
-            return Err(s.wrong(key, value, "and record are given; a value is written, or taken from a record"));
+        for key in ["value", "standard_uncertainty"] {
+            s.refuse(key, true, "and record are given; a value is written, or taken from a record")?;
         }
-        let entry =
-            s.text("entry")?.ok_or_else(|| s.missing("entry", "name the coefficient of the record, \"A66\" say"))?;
+        let entry = s.need_text("entry", "name the coefficient of the record, \"A66\" say")?;
         let record = PriorRecord {
             path: s.source.relative(record),
             select: s.text("select")?.map(str::to_owned),
@@ -540,12 +496,11 @@ fn prior(s: &Section<'_>, stated_units: &mut Vec<StatedUnit>) -> Result<PriorSpe
         let (value, standard_uncertainty) = (f64::NAN, f64::NAN);
         return Ok(PriorSpec { coefficient, value, standard_uncertainty, dof: None, model, record: Some(record) });
     }
-    if let Some((key, value)) = ["select", "entry", "volume", "model_form"].iter().find_map(|k| Some((*k, s.get(k)?))) {
-        return Err(s.wrong(key, value, "belongs to a value of a record: write record = \"estimate.json\" beside it"));
+    for key in ["select", "entry", "volume", "model_form"] {
+        s.refuse(key, true, "belongs to a value of a record: write record = \"estimate.json\" beside it")?;
     }
     let mut need = |key: &'static str, percent_of: Option<f64>| -> Result<f64, RecordError> {
-        let value =
-            s.get(key).ok_or_else(|| s.missing(key, "coefficient, value and standard_uncertainty are needed"))?;
+        let value = s.need(key, "coefficient, value and standard_uncertainty are needed")?;
         let (si, unit) = coefficient_value(s, key, value)?;
         match (unit, percent_of) {
             (Some(unit), Some(whole)) if unit.text.trim() == "%" => return Ok(si * whole.abs()),
@@ -563,18 +518,15 @@ fn prior(s: &Section<'_>, stated_units: &mut Vec<StatedUnit>) -> Result<PriorSpe
     let standard_uncertainty = need("standard_uncertainty", Some(value))?;
     let out = PriorSpec { coefficient, value, standard_uncertainty, dof: None, model, record: None };
     if out.standard_uncertainty <= 0.0 {
-        return Err(RecordError::Value {
-            place: s.place(),
-            key: "standard_uncertainty".to_owned(),
-            problem: "must be larger than zero; hold a value without uncertainty with `fixed`".to_owned(),
-        });
+        let problem = "must be larger than zero; hold a value without uncertainty with `fixed`";
+        return Err(RecordError::value(s.place(), "standard_uncertainty", problem));
     }
     Ok(out)
 }
 
 fn range_block(s: &Section<'_>) -> Result<RangeBlock, RecordError> {
     s.only(&["column", "low", "high"])?;
-    let column = s.text("column")?.ok_or_else(|| s.missing("column", "name the column of the range"))?.to_owned();
+    let column = s.need_text("column", "name the column of the range")?.to_owned();
     let end = |key: &'static str, open: f64| -> Result<f64, RecordError> {
         s.get(key).map_or(Ok(open), |v| match known_dimension(&column) {
             Some(dimension) => s.as_written(key, v, &column, dimension).map(|q| q.value_si),
@@ -583,17 +535,13 @@ fn range_block(s: &Section<'_>) -> Result<RangeBlock, RecordError> {
     };
     let out = RangeBlock { low: end("low", f64::NEG_INFINITY)?, high: end("high", f64::INFINITY)?, column };
     if out.low >= out.high {
-        return Err(RecordError::Value {
-            place: s.place(),
-            key: "low".to_owned(),
-            problem: "is not below high".to_owned(),
-        });
+        return Err(RecordError::value(s.place(), "low", "is not below high"));
     }
     Ok(out)
 }
 
 fn user_model(s: &Section<'_>) -> Result<UserModel, RecordError> {
-    let name = s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"sway\", for example"))?.to_owned();
+    let name = s.need_text("name", "write name = \"sway\", for example")?.to_owned();
     let mut formulas = IndexMap::new();
     for (load, _, value) in s.others() {
         formulas.insert(load.to_owned(), s.as_text(load, value)?.to_owned());
@@ -622,10 +570,8 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
         })
         .transpose()?;
     let ((Some(truth), None) | (None, Some(truth))) = (record, written) else {
-        return Err(s.missing(
-            "record",
-            "a twin needs exactly one truth: record (with select), or model and [simulate.coefficients]",
-        ));
+        let problem = "a twin needs exactly one truth: record (with select), or model and [simulate.coefficients]";
+        return Err(s.missing("record", problem));
     };
     Ok(Simulate {
         seed: s
@@ -639,10 +585,7 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
 
 fn sensor(s: &Section<'_>) -> Result<SensorSpec, RecordError> {
     s.only(&["quantity", "noise", "resolution", "drift", "bias", "correlation"])?;
-    let quantity = s
-        .text("quantity")?
-        .ok_or_else(|| s.missing("quantity", "name the measured column: f_x, f_y, speed, angle"))?
-        .to_owned();
+    let quantity = s.need_text("quantity", "name the measured column: f_x, f_y, speed, angle")?.to_owned();
     let dimension = known_dimension(&quantity);
     let part = |key: &'static str| -> Result<Option<f64>, RecordError> {
         s.get(key)

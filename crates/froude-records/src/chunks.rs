@@ -126,7 +126,7 @@ fn chunk(
     let text = std::str::from_utf8(&memory.text[..lines.bytes]).map_err(|error| {
         let before = memchr::memchr_iter(b'\n', &memory.text[..error.valid_up_to()]).count();
         let problem = "the text is not UTF-8; save the file as UTF-8".to_owned();
-        RecordError::Syntax { place: Place::line(path, first + before), problem }
+        RecordError::syntax(Place::line(path, first + before), problem)
     })?;
     let (raws, lines) = head.rows(&mut Records::new(path, text, first), None)?;
     head.table(raws, lines)

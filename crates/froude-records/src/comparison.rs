@@ -10,25 +10,21 @@ use crate::number::{fixed, p_equation};
 
 /// Estimates side by side.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct Comparison {
     /// Whether the estimates whose loads are predicted agree, pair by pair; without loads all that share a coefficient.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub verdicts: Vec<Verdict>,
     /// Coefficient by coefficient, pair by pair; same model and same name only.
-    #[serde(default)]
     pub coefficients: Vec<CoefficientComparison>,
     /// Whole coefficient vectors with their covariances, pair by pair.
-    #[serde(default)]
     pub joint: Vec<JointComparison>,
     /// Predicted loads over the common range: the first source beside each of the others.
-    #[serde(default)]
     pub loads: Vec<LoadComparison>,
     /// Computed numbers beside measured ones: the comparison error E = S − D and what its uncertainty is made of.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub validation: Vec<Validation>,
     /// Which coverage factor the expanded uncertainties of the loads have, a sentence per source.
-    #[serde(default)]
     pub coverage: Vec<String>,
     /// What was found on the way: contradictions, missing ranges. It stands among the findings of the record.
     #[serde(skip)]

@@ -25,6 +25,7 @@ use crate::memory;
 use crate::raw_column::Raw;
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
+use crate::text::counted;
 use crate::units::Unit;
 use crate::write::Prepared;
 
@@ -93,10 +94,8 @@ impl<'a, 's> Head<'a, 's> {
         let path = records.path;
         let mut cells = Vec::new();
         let Some(line) = records.next(&mut cells)? else {
-            return Err(RecordError::Syntax {
-                place: Place::whole(path),
-                problem: "the file is empty; its first line names the columns as `name [unit]`".to_owned(),
-            });
+            let problem = "the file is empty; its first line names the columns as `name [unit]`";
+            return Err(RecordError::syntax(Place::whole(path), problem));
         };
         let place = Place::line(path, line);
         let header: Vec<String> = cells.iter().map(|c| unguarded(c.trim()).to_owned()).collect();
@@ -104,10 +103,8 @@ impl<'a, 's> Head<'a, 's> {
             && let Some(separator) = [';', '\t'].into_iter().find(|c| only.contains(*c))
         {
             let name = if separator == ';' { "`;`" } else { "tabs" };
-            return Err(RecordError::Syntax {
-                place,
-                problem: format!("the cells are separated by {name}; separate them by commas"),
-            });
+            let problem = format!("the cells are separated by {name}; separate them by commas");
+            return Err(RecordError::syntax(place, problem));
         }
         let wants = plan(path, &header, sidecar, &place)?;
         Ok(Self { path, sidecar, place, header, wants })
@@ -130,11 +127,9 @@ impl<'a, 's> Head<'a, 's> {
         let mut room = Room::new(path);
         while let Some(line) = records.next(&mut cells)? {
             if cells.len() != self.header.len() {
-                return Err(RecordError::RaggedRow {
-                    place: Place::line(path, line),
-                    found: cells.len(),
-                    expected: self.header.len(),
-                });
+                let (found, expected) = (counted(cells.len(), "cell", "cells"), self.header.len());
+                let problem = format!("the row has {found}, the header has {expected}");
+                return Err(RecordError::syntax(Place::line(path, line), problem));
             }
             for (j, (cell, raw)) in cells.iter().zip(&mut raws).enumerate() {
                 match (raw, &self.wants[j], &mut blank) {
@@ -182,7 +177,7 @@ impl<'p, 'a> Records<'p, 'a> {
     }
 
     fn refuse<T>(&self, line: usize, problem: &str) -> Result<T, RecordError> {
-        Err(RecordError::Syntax { place: Place::line(self.path, line), problem: problem.to_owned() })
+        Err(RecordError::syntax(Place::line(self.path, line), problem))
     }
 
     /// The next row's cells and line; `None` at the end.

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use crate::memory::{Exhausted, reserve};
-use crate::text::counted;
+use crate::units::LARGEST_SI;
 
 /// Where in a file something stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -131,45 +131,6 @@ pub enum RecordError {
         /// What kind of file it was read as.
         what: &'static str,
     },
-    /// A file that Froude did not write, where it would write one of its own.
-    #[error(
-        "{} {}, and would be replaced; move it away, or name another folder",
-        .path.display(),
-        if *.is_changed { "was changed after Froude wrote it" } else { "was not written by Froude" }
-    )]
-    NotOurs {
-        /// The file.
-        path: PathBuf,
-        /// Froude wrote it, and somebody changed it.
-        is_changed: bool,
-    },
-    /// The folder of the results holds what a person wrote.
-    #[error(
-        "{} {}, and the folder {} is replaced as a whole; move the file out of it, or name another folder with --out",
-        .path.display(),
-        if *.is_changed { "was changed after Froude wrote it" } else { "was not written by Froude" },
-        .out.display()
-    )]
-    NotOurResults {
-        /// The folder.
-        out: PathBuf,
-        /// The first such file.
-        path: PathBuf,
-        /// Froude wrote it, and somebody changed it.
-        is_changed: bool,
-    },
-    /// Results would replace a file that is read.
-    #[error(
-        "{} holds {}, which is read: results there would replace it. Name another folder with --out",
-        .out.display(),
-        .record.display()
-    )]
-    ReplacesInput {
-        /// The folder of the results.
-        out: PathBuf,
-        /// The file.
-        record: PathBuf,
-    },
     /// A folder or file of the output could not be made.
     #[error("{}: cannot be written: {reason}; choose another place with --out", .path.display())]
     Output {
@@ -186,13 +147,7 @@ pub enum RecordError {
         /// How much it needs.
         source: Exhausted,
     },
-    /// The name of the file does not say what it is.
-    #[error("{}: tables are read from .csv and .parquet files", path.display())]
-    Extension {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The text is not what its format asks for.
+    /// What stands at a place is not what its format asks for.
     #[error("{place}: {problem}")]
     Syntax {
         /// Where.
@@ -220,14 +175,6 @@ pub enum RecordError {
         /// The line of the checksum.
         place: Place,
     },
-    /// A log or a sidecar is not of the run whose name it has.
-    #[error("{place} {problem}")]
-    NotItsRun {
-        /// The file.
-        place: Place,
-        /// What it is instead and what to do, as the rest of a sentence.
-        problem: String,
-    },
     /// The record was written for a later version of the format.
     #[error("{place}: this is {found}; this program reads up to {known}: use a newer Froude")]
     NewerSchema {
@@ -237,40 +184,6 @@ pub enum RecordError {
         found: String,
         /// The newest version that is understood.
         known: String,
-    },
-    /// The schema is missing or of another kind.
-    #[error("{place}: `schema` is {found}; expected {known}")]
-    Schema {
-        /// Where.
-        place: Place,
-        /// What is in the file.
-        found: String,
-        /// What belongs there.
-        known: String,
-    },
-    /// A key that the format does not have.
-    #[error("{place}: unknown key `{key}` in {section}; {advice}")]
-    UnknownKey {
-        /// Where.
-        place: Place,
-        /// The key.
-        key: String,
-        /// The section that it stands in.
-        section: String,
-        /// The nearest known key, or all of them.
-        advice: String,
-    },
-    /// A key that the format needs.
-    #[error("{place}: {section} has no `{key}`; {advice}")]
-    MissingKey {
-        /// Where the section begins.
-        place: Place,
-        /// The section.
-        section: String,
-        /// The key.
-        key: String,
-        /// What to write.
-        advice: String,
     },
     /// A value that the key cannot take.
     #[error("{place}: `{key}` {problem}")]
@@ -282,128 +195,11 @@ pub enum RecordError {
         /// What is wrong, as the rest of a sentence about the key.
         problem: String,
     },
-    /// A column of numbers without a unit.
-    #[error("{place}: column `{column}` has no unit; {advice}")]
-    MissingUnit {
-        /// Where.
-        place: Place,
-        /// Its header.
-        column: String,
-        /// What to write.
-        advice: String,
-    },
-    /// A unit that cannot be read.
-    #[error("{place}: column `{column}`: {problem}")]
-    BadUnit {
-        /// Where.
-        place: Place,
-        /// Its header.
-        column: String,
-        /// What is wrong.
-        problem: String,
-    },
-    /// A column whose unit measures something else.
-    #[error("{place}: column `{column}`: wrong unit: expected {expected}, found {found}")]
-    WrongDimension {
-        /// Where.
-        place: Place,
-        /// Its header.
-        column: String,
-        /// In words, with the SI unit.
-        expected: String,
-        /// In words, with the SI unit.
-        found: String,
-    },
-    /// A column that the table does not have.
-    #[error("{place}: there is no column `{column}`; {advice}")]
-    UnknownColumn {
-        /// Where it was asked for, or the table.
-        place: Place,
-        /// The name.
-        column: String,
-        /// The nearest name, or all of them.
-        advice: String,
-    },
-    /// A column of text where numbers are needed, or the reverse.
-    #[error("{place}: column `{column}` holds {found}; expected {expected}")]
-    ColumnKind {
-        /// The table.
-        place: Place,
-        /// The name.
-        column: String,
-        /// `text` or `numbers`.
-        found: &'static str,
-        /// `numbers` or `text`.
-        expected: &'static str,
-    },
-    /// Two columns of one name.
-    #[error("{place}: column `{column}` appears twice; rename or delete one")]
-    DuplicateColumn {
-        /// Where.
-        place: Place,
-        /// The name.
-        column: String,
-    },
-    /// A cell without content.
-    #[error("{place}: column `{column}`: the cell is empty; {advice}")]
-    EmptyCell {
-        /// Where.
-        place: Place,
-        /// The header.
-        column: String,
-        /// What to do: a column that a table can do without may also be left out.
-        advice: String,
-    },
-    /// A cell that is not a number.
-    #[error("{place}: column `{column}`: `{found}` is not a number{}", decimal_comma(found))]
-    NotANumber {
-        /// Where.
-        place: Place,
-        /// The header.
-        column: String,
-        /// What stands there.
-        found: String,
-    },
-    /// A cell with NaN or an infinity.
-    #[error("{place}: column `{column}`: `{found}` is {}; correct it or delete the row", not_plausible(.found))]
-    NotFinite {
-        /// Where.
-        place: Place,
-        /// The header.
-        column: String,
-        /// What stands there.
-        found: String,
-    },
-    /// A row with too few or too many cells.
-    #[error("{place}: the row has {}, the header has {expected}", counted(*found, "cell", "cells"))]
-    RaggedRow {
-        /// Where.
-        place: Place,
-        /// Cells in the row.
-        found: usize,
-        /// Cells in the header.
-        expected: usize,
-    },
     /// A table without observations.
     #[error("{}: the table has no rows; at least one observation is needed", path.display())]
     NoRows {
         /// The file.
         path: PathBuf,
-    },
-    /// `n_links` contradicts `configuration`.
-    #[error(
-        "{place}: `configuration` {configuration} has {expected} {}, but `n_links` is {found}; correct one of them",
-        if *expected == 1.0 { "link" } else { "links" }
-    )]
-    LinksContradictConfiguration {
-        /// Where.
-        place: Place,
-        /// As written.
-        configuration: String,
-        /// Links by its name.
-        expected: f64,
-        /// Links by the column.
-        found: f64,
     },
     /// A number that JSON cannot hold.
     #[error("cannot write {}: {item} is {value}, not a finite number; nothing was changed", path.display())]
@@ -415,24 +211,9 @@ pub enum RecordError {
         /// Its value.
         value: String,
     },
-    /// A column of a run that cannot be recorded as it is named.
-    #[error("channel `{channel}` {problem}")]
-    Channel {
-        /// Its name.
-        channel: String,
-        /// What is wrong, as the rest of a sentence about it.
-        problem: String,
-    },
-    /// What is known about a run does not make sense.
-    #[error("run {run:?}: `{key}` {problem}")]
-    Meta {
-        /// Its id.
-        run: String,
-        /// The key.
-        key: String,
-        /// What is wrong, as the rest of a sentence about the key.
-        problem: String,
-    },
+    /// What is asked for cannot be done, in words.
+    #[error("{0}")]
+    Refused(String),
     /// A run is there already: no recording is ever overwritten.
     #[error("cannot record {}: a run of this name is there already; give the new run another id, or move the old one", path.display())]
     RunExists {
@@ -451,24 +232,6 @@ pub enum RecordError {
         reason: String,
         /// Ticks that lie in the file whole.
         ticks: u64,
-    },
-    /// Ticks were not handed to the recorder in order.
-    #[error("cannot record tick {tick} of {}: {problem}", path.display())]
-    Tick {
-        /// The file.
-        path: PathBuf,
-        /// The tick.
-        tick: u64,
-        /// What is wrong with it.
-        problem: String,
-    },
-    /// Two estimates of one id.
-    #[error("{place}: the id `{id}` appears twice; every estimate needs its own")]
-    DuplicateId {
-        /// Where the second one stands.
-        place: Place,
-        /// The id.
-        id: String,
     },
 }
 
@@ -489,6 +252,57 @@ impl RecordError {
 }
 
 impl RecordError {
+    /// Whose a file is that would be replaced, and is not what Froude wrote; `problem` follows on it.
+    pub(crate) fn not_ours(path: &Path, is_changed: bool, problem: impl fmt::Display) -> Self {
+        let whose = if is_changed { "was changed after Froude wrote it" } else { "was not written by Froude" };
+        Self::Refused(format!("{} {whose}, {problem}", path.display()))
+    }
+
+    /// What stands at a place is not what its format asks for.
+    pub fn syntax(place: Place, problem: impl Into<String>) -> Self {
+        Self::Syntax { place, problem: problem.into() }
+    }
+
+    /// A key cannot take its value; `problem` is the rest of a sentence about the key.
+    pub fn value(place: Place, key: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self::Value { place, key: key.into(), problem: problem.into() }
+    }
+
+    /// A column of a table cannot be as it is; `problem` follows on its name: ` has …`, or `: the unit …`.
+    pub(crate) fn column(place: Place, column: &str, problem: impl fmt::Display) -> Self {
+        Self::syntax(place, format!("column `{column}`{problem}"))
+    }
+
+    /// A column that a table does not have.
+    pub(crate) fn unknown_column(place: Place, column: &str, advice: impl fmt::Display) -> Self {
+        Self::syntax(place, format!("there is no column `{column}`; {advice}"))
+    }
+
+    /// A column whose unit measures something else.
+    pub(crate) fn wrong_dimension(place: Place, column: &str, expected: &str, found: &str) -> Self {
+        Self::column(place, column, format!(": wrong unit: expected {expected}, found {found}"))
+    }
+
+    /// A cell without content; `advice` is what to do: a column that a table can do without may also be left out.
+    #[must_use]
+    pub fn empty_cell(place: Place, column: &str, advice: &str) -> Self {
+        Self::column(place, column, format!(": the cell is empty; {advice}"))
+    }
+
+    /// A cell with NaN, an infinity, or a number beyond what is taken for a measurement.
+    pub(crate) fn not_finite(place: Place, column: &str, found: &str) -> Self {
+        let what = match found.parse::<f64>() {
+            Ok(x) if x.is_finite() => format!("beyond {LARGEST_SI:e} in SI, as no quantity of a test is"),
+            _ => "not a finite number".to_owned(),
+        };
+        Self::column(place, column, format!(": `{found}` is {what}; correct it or delete the row"))
+    }
+
+    /// A file that is larger than its kind should ever be.
+    pub(crate) fn too_large(path: &Path, bytes: u64, limit: u64, what: &'static str) -> Self {
+        Self::TooLarge { path: path.to_owned(), bytes, limit, what }
+    }
+
     /// The file that the memory was asked for.
     pub(crate) fn memory(path: &Path, source: Exhausted) -> Self {
         Self::Memory { path: path.to_owned(), source }
@@ -519,15 +333,14 @@ pub(crate) fn read_bytes(path: &Path, limit: u64, what: &'static str) -> Result<
     let file = crate::read::open(path)?;
     let bytes = file.metadata().map_err(failed)?.len();
     if bytes > limit {
-        return Err(RecordError::TooLarge { path: path.to_owned(), bytes, limit, what });
+        return Err(RecordError::too_large(path, bytes, limit, what));
     }
     let mut content = Vec::new();
     reserve(&mut content, bytes as usize + 1).map_err(|e| RecordError::memory(path, e))?;
     // A growing file, or one of /proc, has no honest length: stop one byte past the limit.
     file.take(limit + 1).read_to_end(&mut content).map_err(failed)?;
     if content.len() as u64 > limit {
-        let bytes = content.len() as u64;
-        return Err(RecordError::TooLarge { path: path.to_owned(), bytes, limit, what });
+        return Err(RecordError::too_large(path, content.len() as u64, limit, what));
     }
     Ok(content)
 }
@@ -537,10 +350,7 @@ pub(crate) fn utf8<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, RecordEr
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     std::str::from_utf8(bytes).map_err(|error| {
         let line = 1 + memchr::memchr_iter(b'\n', &bytes[..error.valid_up_to()]).count();
-        RecordError::Syntax {
-            place: Place::line(path, line),
-            problem: "the text is not UTF-8; save the file as UTF-8".to_owned(),
-        }
+        RecordError::syntax(Place::line(path, line), "the text is not UTF-8; save the file as UTF-8")
     })
 }
 
@@ -549,16 +359,8 @@ pub(crate) fn briefly(number: f64) -> String {
     if number.is_finite() && number.abs() >= 1e15 { format!("{number:e}") } else { number.to_string() }
 }
 
-/// What is wrong with a number that is NaN, infinite, or beyond what is taken for a measurement.
-fn not_plausible(found: &str) -> String {
-    match found.parse::<f64>() {
-        Ok(x) if x.is_finite() => format!("beyond {:e} in SI, as no quantity of a test is", crate::units::LARGEST_SI),
-        _ => "not a finite number".to_owned(),
-    }
-}
-
 /// What to do about a number that is written with a decimal comma.
-fn decimal_comma(found: &str) -> &'static str {
+pub(crate) fn decimal_comma(found: &str) -> &'static str {
     let mut parts = found.trim().splitn(2, ',');
     let digits = |p: Option<&str>| {
         p.is_some_and(|p| !p.is_empty() && p.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit()))

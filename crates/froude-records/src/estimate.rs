@@ -42,7 +42,6 @@ pub struct EstimateFile {
     /// One entry per source and model or method.
     pub estimates: Vec<Estimate>,
     /// Estimates side by side, where there was more than one source.
-    #[serde(default)]
     pub comparison: Option<Comparison>,
     /// What the lints found.
     #[serde(default)]
@@ -134,16 +133,12 @@ pub struct Coefficient {
     #[serde(default, skip_serializing_if = "is_false")]
     pub nuisance: bool,
     /// Combined standard uncertainty; null when none is stated or none exists.
-    #[serde(default)]
     pub standard_uncertainty: Option<f64>,
     /// Its part from the scatter of the data (GUM type A).
-    #[serde(default)]
     pub type_a: Option<f64>,
     /// Its part from the declared budget (GUM type B).
-    #[serde(default)]
     pub type_b: Option<f64>,
     /// 95 % interval if the law is true, cut by the bounds.
-    #[serde(default)]
     pub interval_95: Option<[f64; 2]>,
     /// Envelope of its 95 % intervals over all laws of the source that contain it and that the data do not contradict; absent if no laws were compared, this law is contradicted, the value is held, or one of the intervals is missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -188,7 +183,6 @@ pub struct Output {
     #[serde(default)]
     pub unit: String,
     /// `-D_x_II*v_x*abs(v_x)`; null for a built-in law.
-    #[serde(default)]
     pub formula: Option<String>,
 }
 
@@ -227,7 +221,6 @@ pub struct SharedError {
     /// Covariance C of the error, q × q.
     pub covariance: Vec<Vec<f64>>,
     /// Degrees of freedom of it; null when infinite.
-    #[serde(default)]
     pub dof: Option<f64>,
     /// Limits of an error of one component that is uniform between them; null where it is normal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -331,15 +324,13 @@ pub struct Attitude {
 
 /// The method that made an estimate.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct MethodUsed {
     /// `table`, `fsm`, `mcd`, `free_decay_envelope`, …; empty where an old record did not say it.
-    #[serde(default)]
     pub name: String,
     /// Version of the method.
-    #[serde(default)]
     pub version: u32,
     /// How the numbers were made, in words.
-    #[serde(default)]
     pub words: String,
 }
 
@@ -362,10 +353,8 @@ pub struct Derived {
     /// SI unit text.
     pub unit: String,
     /// Combined standard uncertainty.
-    #[serde(default)]
     pub standard_uncertainty: Option<f64>,
     /// 95 % interval.
-    #[serde(default)]
     pub interval_95: Option<[f64; 2]>,
 }
 
@@ -388,39 +377,29 @@ impl Default for Interval {
 
 /// Numbers that tell how far the fit can be trusted.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Diagnostics {
     /// Condition number of the column-scaled design.
-    #[serde(default)]
     pub condition_number: Option<f64>,
     /// Largest absolute correlation between two coefficients, and their names.
-    #[serde(default)]
     pub largest_correlation: Option<NamedCorrelation>,
     /// Largest leverage of one observation.
-    #[serde(default)]
     pub largest_leverage: Option<f64>,
     /// ‖residual‖ / ‖measured‖ by load component.
-    #[serde(default)]
     pub relative_residual: IndexMap<String, f64>,
     /// Durbin–Watson statistic by load component, in run order.
-    #[serde(default)]
     pub durbin_watson: IndexMap<String, f64>,
     /// Akaike's corrected criterion (sum over components).
-    #[serde(default)]
     pub aicc: Option<f64>,
     /// Root mean square error of leave-one-configuration-out prediction, by component, N or N m.
-    #[serde(default)]
     pub cross_validation_rmse: IndexMap<String, f64>,
     /// Why cross-validation could not be scored, where it could not.
-    #[serde(default)]
     pub cross_validation_note: Option<String>,
     /// p-value of the lack-of-fit test against repeats, by component.
-    #[serde(default)]
     pub lack_of_fit_p: IndexMap<String, f64>,
     /// Largest power f·v delivered to the body in the fitted range, W (≤ 0 is dissipative).
-    #[serde(default)]
     pub largest_power_w: Option<f64>,
     /// Further sentences.
-    #[serde(default)]
     pub notes: Vec<String>,
 }
 
@@ -458,7 +437,6 @@ pub struct Estimate {
     #[serde(default)]
     pub signs: Signs,
     /// How the body was held; null where nobody declared it.
-    #[serde(default)]
     pub attitude: Option<Attitude>,
     /// The law.
     pub law: Law,
@@ -489,7 +467,6 @@ pub struct Estimate {
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub derived: IndexMap<String, Derived>,
     /// Their covariance from scatter alone; null where none is stated.
-    #[serde(default)]
     pub type_a: Option<TypeA>,
     /// All other errors, by key. An error of another estimate with the same key is the same error.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]

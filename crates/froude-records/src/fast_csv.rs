@@ -128,7 +128,7 @@ impl Reader {
     }
 
     fn refusal(&self, problem: String) -> RecordError {
-        RecordError::Syntax { place: Place::line(&self.path, self.next_line), problem }
+        RecordError::syntax(Place::line(&self.path, self.next_line), problem)
     }
 }
 

@@ -1,7 +1,6 @@
 //! Fingerprints of the files that numbers come from.
 
-use std::fmt::Write as _;
-use std::io::Read;
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
@@ -32,7 +31,7 @@ pub fn sha256_of_file(path: &Path) -> Result<String, RecordError> {
 ///
 /// As [`sha256_of_file`].
 pub fn fingerprint_of_file(path: &Path) -> Result<Fingerprint, RecordError> {
-    let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
+    let failed = |e: io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
     let mut file = crate::read::open(path)?;
     fingerprint_of(&mut file).map_err(failed)
 }
@@ -53,27 +52,43 @@ pub fn short_key(bytes: &[u8]) -> String {
 }
 
 /// Of everything that can be read from here on.
-pub(crate) fn fingerprint_of(input: &mut impl Read) -> std::io::Result<Fingerprint> {
-    let mut hash = Sha256::new();
-    let mut bytes = 0;
-    let mut buffer = vec![0; 1 << 16];
-    loop {
-        let n = match input.read(&mut buffer) {
-            Ok(0) => break,
-            Ok(n) => n,
-            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => continue,
-            Err(e) => return Err(e),
-        };
-        hash.update(&buffer[..n]);
-        bytes += n as u64;
+pub(crate) fn fingerprint_of(input: &mut impl Read) -> io::Result<Fingerprint> {
+    let mut sealed = Sealed::new(io::sink());
+    io::copy(input, &mut sealed)?;
+    Ok(sealed.fingerprint())
+}
+
+/// Something that is being written, and its fingerprint so far.
+pub(crate) struct Sealed<W> {
+    to: W,
+    sum: Sha256,
+    bytes: u64,
+}
+
+impl<W: Write> Sealed<W> {
+    pub(crate) fn new(to: W) -> Self {
+        Self { to, sum: Sha256::new(), bytes: 0 }
     }
-    Ok(Fingerprint { bytes, sha256: hexadecimal(&hash.finalize()) })
+
+    /// Of all that was written.
+    pub(crate) fn fingerprint(self) -> Fingerprint {
+        Fingerprint { bytes: self.bytes, sha256: hexadecimal(&self.sum.finalize()) }
+    }
+}
+
+impl<W: Write> Write for Sealed<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let n = self.to.write(bytes)?;
+        self.sum.update(&bytes[..n]);
+        self.bytes += n as u64;
+        Ok(n)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.to.flush()
+    }
 }
 
 pub(crate) fn hexadecimal(digest: &[u8]) -> String {
-    digest.iter().fold(String::with_capacity(2 * digest.len()), |mut text, byte| {
-        // Writing into a String cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

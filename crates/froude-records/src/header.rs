@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use crate::run::sidecar::key_word;
 use crate::table::{is_text_column, known_dimension};
 use crate::units::{Dimension, parse_unit};
 
@@ -132,11 +133,7 @@ fn sidecar(path: &Path) -> String {
 
 /// The line of a column in a sidecar; `None` for one that Froude has no use for.
 fn line(header: &str, round: Option<&Round<'_>>) -> Option<String> {
-    let key = if header.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-') {
-        header.to_owned()
-    } else {
-        format!("\"{}\"", header.replace('\\', "\\\\").replace('"', "\\\""))
-    };
+    let key = key_word(header);
     match round {
         Some(Round { name, unit, is_resistance, .. }) => {
             let sign = if *is_resistance { ", sign = -1" } else { "" };

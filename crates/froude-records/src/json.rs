@@ -68,6 +68,11 @@ pub fn parse_estimates(path: &Path, text: &str) -> Result<EstimateFile, RecordEr
     Ok(file)
 }
 
+/// A line of the record, or the whole of it where the line is not known.
+fn place_of(path: &Path, line: Option<usize>) -> Place {
+    line.map_or_else(|| Place::whole(path), |line| Place::line(path, line))
+}
+
 /// A unit that is rejected, with its line where the text shows it.
 fn bad_unit(path: &Path, text: &str, bad: &BadUnit) -> RecordError {
     let BadUnit { estimate, path: keys, unit, problem } = bad;
@@ -77,30 +82,8 @@ fn bad_unit(path: &Path, text: &str, bad: &BadUnit) -> RecordError {
     let written = serde_json::Value::from(unit.as_str()).to_string();
     let line = text.lines().enumerate().skip(from - 1).find(|(_, line)| line.contains(&written)).map(|(at, _)| at + 1);
     let whose = estimate.as_ref().map_or_else(String::new, |id| format!("estimate {id}: "));
-    RecordError::Syntax {
-        place: line.map_or_else(|| Place::whole(path), |line| Place::line(path, line)),
-        problem: format!("{whose}the unit of {} is rejected: {problem}", keys.join(".")),
-    }
-}
-
-impl EstimateFile {
-    /// Reads `estimate.json`; see [`read_estimates`].
-    ///
-    /// # Errors
-    ///
-    /// As [`read_estimates`].
-    pub fn read(path: &Path) -> Result<Self, RecordError> {
-        read_estimates(path)
-    }
-
-    /// Writes `estimate.json`; see [`write_estimates`].
-    ///
-    /// # Errors
-    ///
-    /// As [`write_estimates`].
-    pub fn write(&self, path: &Path) -> Result<(), RecordError> {
-        write_estimates(path, self)
-    }
+    let problem = format!("{whose}the unit of {} is rejected: {problem}", keys.join("."));
+    RecordError::syntax(place_of(path, line), problem)
 }
 
 impl DataFile {
@@ -152,8 +135,7 @@ fn check_sum(path: &Path, text: &str, said: &serde_json::Value) -> Result<(), Re
     if said.as_str() == Some(checksum::of_json(&content).as_str()) {
         return Ok(());
     }
-    let line = line_of(text, checksum::KEY, None, 0);
-    Err(RecordError::Checksum { place: line.map_or_else(|| Place::whole(path), |line| Place::line(path, line)) })
+    Err(RecordError::Checksum { place: place_of(path, line_of(text, checksum::KEY, None, 0)) })
 }
 
 /// Any JSON value whose objects have no key twice.
@@ -224,17 +206,15 @@ fn syntax(path: &Path, text: &str, error: &serde_json::Error) -> RecordError {
     let written = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
     let has_nan = error.is_syntax() && ["NaN", "nan", "Infinity", "inf"].iter().any(|w| written.contains(w));
     let hint = if has_nan { "; JSON has no NaN and no Infinity: an undetermined number is null" } else { "" };
-    RecordError::Syntax {
-        place: if line == 0 { Place::whole(path) } else { Place::line(path, line) },
-        problem: format!("not an estimate record: {words}{hint}"),
-    }
+    let place = place_of(path, Some(line).filter(|line| *line > 0));
+    RecordError::syntax(place, format!("not an estimate record: {words}{hint}"))
 }
 
 fn check_schema(path: &Path, text: &str, found: Option<&serde_json::Value>) -> Result<(), RecordError> {
-    let place = line_of(text, "schema", None, 0).map_or_else(|| Place::whole(path), |line| Place::line(path, line));
+    let place = place_of(path, line_of(text, "schema", None, 0));
     let known = ESTIMATE_SCHEMA.to_owned();
     let Some(found) = found else {
-        return Err(RecordError::Schema { place: Place::whole(path), found: "missing".to_owned(), known });
+        return Err(RecordError::value(Place::whole(path), "schema", format!("is missing; expected {known}")));
     };
     if [ESTIMATE_SCHEMA, v1::SCHEMA].map(Some).contains(&found.as_str()) {
         return Ok(());
@@ -244,7 +224,10 @@ fn check_schema(path: &Path, text: &str, found: Option<&serde_json::Value>) -> R
         (Some(version), Some(found)) if version > NEWEST => {
             Err(RecordError::NewerSchema { place, found: found.to_owned(), known })
         }
-        _ => Err(RecordError::Schema { place, found: found.to_string().chars().take(80).collect(), known }),
+        _ => {
+            let found: String = found.to_string().chars().take(80).collect();
+            Err(RecordError::value(place, "schema", format!("is {found}; expected {known}")))
+        }
     }
 }
 
@@ -261,26 +244,26 @@ fn line_of(text: &str, key: &str, value: Option<&str>, nth: usize) -> Option<usi
         .map(|(at, _)| 1 + memchr::memchr_iter(b'\n', &text.as_bytes()[..at]).count())
 }
 
+fn id_twice(place: Place, id: &str) -> RecordError {
+    RecordError::syntax(place, format!("the id `{id}` appears twice; every estimate needs its own"))
+}
+
 /// What the types cannot say.
 fn check(path: &Path, text: &str, file: &EstimateFile) -> Result<(), RecordError> {
     let mut ids = BTreeSet::new();
     let mut recommended = BTreeSet::new();
     for estimate in &file.estimates {
-        let line = |nth| line_of(text, "id", Some(&estimate.id), nth);
-        let place = |nth| line(nth).map_or_else(|| Place::whole(path), |line| Place::line(path, line));
+        let place = |nth| place_of(path, line_of(text, "id", Some(&estimate.id), nth));
         if !ids.insert(estimate.id.as_str()) {
-            return Err(RecordError::DuplicateId { place: place(1), id: estimate.id.clone() });
+            return Err(id_twice(place(1), &estimate.id));
         }
-        let refuse = |problem: String| {
-            Err(RecordError::Syntax { place: place(0), problem: format!("estimate {}: {problem}", estimate.id) })
-        };
+        let refuse =
+            |problem: String| Err(RecordError::syntax(place(0), format!("estimate {}: {problem}", estimate.id)));
         let names = [("id", &estimate.id), ("source", &estimate.source), ("law", &estimate.law.name)].into_iter();
         let texts = estimate.coefficients.iter().flat_map(|(name, c)| [("name", name), ("unit", &c.unit)]);
         if let Some((what, long)) = names.chain(texts).find(|(_, text)| text.len() > LONGEST_NAME) {
-            return Err(RecordError::Syntax {
-                place: Place::whole(path),
-                problem: format!("a {what} has {} bytes; at most {LONGEST_NAME} are read", long.len()),
-            });
+            let problem = format!("a {what} has {} bytes; at most {LONGEST_NAME} are read", long.len());
+            return Err(RecordError::syntax(Place::whole(path), problem));
         }
         if estimate.recommended && !recommended.insert(estimate.source.as_str()) {
             return refuse(format!("it is the second of source {:?} to be recommended; one is", estimate.source));
@@ -354,14 +337,9 @@ pub fn write_estimates(path: &Path, file: &EstimateFile) -> Result<(), RecordErr
     let mut ids = BTreeSet::new();
     for estimate in &file.estimates {
         if !ids.insert(estimate.id.as_str()) {
-            return Err(RecordError::DuplicateId { place: Place::whole(path), id: estimate.id.clone() });
+            return Err(id_twice(Place::whole(path), &estimate.id));
         }
-        let mut bad = None;
-        numbers(estimate, &mut |item, value| {
-            if !value.is_finite() && bad.is_none() {
-                bad = Some((item(), value));
-            }
-        });
+        let bad = numbers(estimate).into_iter().find(|(_, value)| !value.is_finite());
         if let Some((item, value)) = bad {
             return Err(RecordError::NonFinite {
                 path: path.to_owned(),
@@ -378,7 +356,8 @@ pub fn write_estimates(path: &Path, file: &EstimateFile) -> Result<(), RecordErr
 
 /// Every number of an estimate with its path. The patterns name all fields, so that a new
 /// one cannot be forgotten here.
-fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
+fn numbers(estimate: &Estimate) -> Vec<(String, f64)> {
+    let mut out = Vec::new();
     let Estimate {
         id: _,
         source: _,
@@ -408,56 +387,50 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
         reason: _,
         not_contradicted: _,
     } = estimate;
+    let mut put = |path: String, number: Option<f64>| out.extend(number.map(|number| (path, number)));
     for (section, measured) in [("law.constants", constants), ("refers_to", refers_to), ("sigma", sigma)] {
         for (name, m) in measured {
-            see(&|| format!("{section}.{name}"), m.value);
+            put(format!("{section}.{name}"), Some(m.value));
         }
     }
     for (name, RunScatter { constant, part, dof }) in run_scatter {
-        if let Some(dof) = dof {
-            see(&|| format!("run_scatter.{name}.dof"), *dof);
-        }
-        see(&|| format!("run_scatter.{name}.constant"), constant.value);
-        see(&|| format!("run_scatter.{name}.part"), *part);
+        put(format!("run_scatter.{name}.dof"), *dof);
+        put(format!("run_scatter.{name}.constant"), Some(constant.value));
+        put(format!("run_scatter.{name}.part"), Some(*part));
     }
-    see(&|| "interval.level".to_owned(), *level);
+    put("interval.level".to_owned(), Some(*level));
     for (name, dof) in dof {
-        if let Some(dof) = dof {
-            see(&|| format!("dof.{name}"), *dof);
-        }
+        put(format!("dof.{name}"), *dof);
     }
     for (name, coefficient) in coefficients {
-        numbers_of_coefficient(name, coefficient, see);
+        numbers_of_coefficient(coefficient, &mut |key, number| put(format!("coefficients.{name}.{key}"), number));
     }
     for (name, Derived { formula: _, value, unit: _, standard_uncertainty, interval_95 }) in derived {
         for number in value.iter().chain(standard_uncertainty).chain(interval_95.iter().flatten()) {
-            see(&|| format!("derived.{name}"), *number);
+            put(format!("derived.{name}"), Some(*number));
         }
     }
     if let Some(TypeA { names: _, matrix, dof, kind: _ }) = type_a {
-        for number in matrix.iter().flatten() {
-            see(&|| "type_a.matrix".to_owned(), *number);
-        }
-        for number in dof.iter().flatten() {
-            see(&|| "type_a.dof".to_owned(), *number);
-        }
+        matrix.iter().flatten().for_each(|number| put("type_a.matrix".to_owned(), Some(*number)));
+        dof.iter().for_each(|number| put("type_a.dof".to_owned(), *number));
     }
     for (key, error) in errors {
         let SharedError { name: _, quantity: _, kind: _, covariance, dof, limits, sensitivity } = error;
         let matrices = covariance.iter().chain(sensitivity).flatten();
         for number in matrices.chain(dof).chain(limits.iter().flatten()) {
-            see(&|| format!("errors.{key}"), *number);
+            put(format!("errors.{key}"), Some(*number));
         }
     }
     for (name, range) in validity {
-        see(&|| format!("validity.{name}"), range.low);
-        see(&|| format!("validity.{name}"), range.high);
+        put(format!("validity.{name}"), Some(range.low));
+        put(format!("validity.{name}"), Some(range.high));
     }
-    numbers_of_diagnostics(diagnostics, see);
+    numbers_of_diagnostics(diagnostics, &mut |key, number| put(format!("diagnostics.{key}"), number));
+    out
 }
 
-/// Every number of a coefficient with its path.
-fn numbers_of_coefficient(name: &str, coefficient: &Coefficient, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
+/// Every number of a coefficient with its key.
+fn numbers_of_coefficient(coefficient: &Coefficient, put: &mut dyn FnMut(&str, Option<f64>)) {
     let Coefficient {
         label: _,
         value,
@@ -481,19 +454,15 @@ fn numbers_of_coefficient(name: &str, coefficient: &Coefficient, see: &mut dyn F
         ("effective_dof", effective_dof),
     ];
     for (key, number) in named {
-        if let Some(number) = number {
-            see(&|| format!("coefficients.{name}.{key}"), *number);
-        }
+        put(key, *number);
     }
     for (key, ends) in [("interval_95", interval_95), ("range_95", range_95)] {
-        for end in ends.iter().flatten() {
-            see(&|| format!("coefficients.{name}.{key}"), *end);
-        }
+        ends.iter().flatten().for_each(|end| put(key, Some(*end)));
     }
 }
 
-/// Every number of the diagnostics with its path.
-fn numbers_of_diagnostics(diagnostics: &Diagnostics, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
+/// Every number of the diagnostics with its key.
+fn numbers_of_diagnostics(diagnostics: &Diagnostics, put: &mut dyn FnMut(&str, Option<f64>)) {
     let Diagnostics {
         condition_number,
         largest_correlation,
@@ -514,13 +483,12 @@ fn numbers_of_diagnostics(diagnostics: &Diagnostics, see: &mut dyn FnMut(&dyn Fn
         ("largest_power_w", largest_power_w),
     ];
     for (key, number) in single {
-        if let Some(number) = number {
-            see(&|| format!("diagnostics.{key}"), *number);
-        }
+        put(key, *number);
     }
-    if let Some(NamedCorrelation { first: _, second: _, value }) = largest_correlation {
-        see(&|| "diagnostics.largest_correlation".to_owned(), *value);
-    }
+    put(
+        "largest_correlation",
+        largest_correlation.as_ref().map(|NamedCorrelation { first: _, second: _, value }| *value),
+    );
     let many = [
         ("relative_residual", relative_residual),
         ("durbin_watson", durbin_watson),
@@ -529,7 +497,7 @@ fn numbers_of_diagnostics(diagnostics: &Diagnostics, see: &mut dyn FnMut(&dyn Fn
     ];
     for (key, by_name) in many {
         for (name, number) in by_name {
-            see(&|| format!("diagnostics.{key}.{name}"), *number);
+            put(&format!("{key}.{name}"), Some(*number));
         }
     }
 }

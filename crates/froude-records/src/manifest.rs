@@ -108,7 +108,7 @@ pub fn first_alien(folder: &Path) -> Result<Option<Alien>, RecordError> {
 ///
 /// # Errors
 ///
-/// [`RecordError::NotOurs`]; a list of results that is none.
+/// [`RecordError::Refused`]; a list of results that is none.
 pub fn may_replace(path: &Path) -> Result<(), RecordError> {
     let (folder, name) = split(path);
     single(&folder, &name, path).map(drop)
@@ -119,7 +119,7 @@ pub fn may_replace(path: &Path) -> Result<(), RecordError> {
 ///
 /// # Errors
 ///
-/// [`RecordError::NotOurs`]; a disk that is full. What stood there is untouched.
+/// [`RecordError::Refused`]; a disk that is full. What stood there is untouched.
 pub fn take_own_place(file: Prepared) -> Result<(), RecordError> {
     let (folder, name) = split(file.path());
     let (mut manifest, before) = single(&folder, &name, file.path())?;
@@ -143,7 +143,10 @@ fn single(folder: &Path, name: &str, path: &Path) -> Result<(Manifest, Option<St
     let found = if path.is_file() { Some(sha256_of_file(path)?) } else { None };
     match found {
         Some(found) if listed.any(|own| *own == found) => Ok((manifest, Some(found))),
-        _ => Err(RecordError::NotOurs { path: path.to_owned(), is_changed }),
+        _ => {
+            let problem = "and would be replaced; move it away, or name another folder";
+            Err(RecordError::not_ours(path, is_changed, problem))
+        }
     }
 }
 
@@ -155,9 +158,8 @@ fn split(path: &Path) -> (PathBuf, String) {
 fn read(path: &Path) -> Result<Manifest, RecordError> {
     let bytes = read_bytes(path, LARGEST_BYTES, "a list of results")?;
     let text = utf8(path, &bytes)?;
-    let bad = |line: usize, problem: String| RecordError::Syntax {
-        place: Place::line(path, line),
-        problem: format!("{problem}; move the folder away, or name another one"),
+    let bad = |line: usize, problem: String| {
+        RecordError::syntax(Place::line(path, line), format!("{problem}; move the folder away, or name another one"))
     };
     let manifest: Manifest =
         serde_json::from_str(text).map_err(|e| bad(e.line(), format!("not a list of results: {e}")))?;
@@ -230,7 +232,8 @@ mod tests {
         let said = put(&ours, "4").unwrap_err().to_string();
         assert!(said.contains("a.csv was changed after Froude wrote it, and would be replaced"), "{said}");
         std::fs::write(&theirs, "mine").unwrap();
-        assert!(matches!(may_replace(&theirs), Err(RecordError::NotOurs { is_changed: false, .. })));
+        let said = may_replace(&theirs).unwrap_err().to_string();
+        assert!(said.contains("b.csv was not written by Froude, and would be replaced"), "{said}");
         assert_eq!(std::fs::read_to_string(&theirs).unwrap(), "mine");
         // A folder of results takes no account of them: they are not replaced as a whole.
         assert!(first_alien(folder.path()).unwrap().is_some());

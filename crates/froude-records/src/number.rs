@@ -19,6 +19,7 @@
 //! minus sign is U+2212, as in print.
 
 use crate::estimate::{Coefficient, Status};
+use crate::units::SUPERSCRIPTS;
 
 /// What stands for a number that does not exist.
 pub const MISSING: &str = "—";
@@ -78,23 +79,8 @@ fn with_minus(text: &str) -> String {
 
 /// ` × 10ⁿ` in superscript digits.
 fn power_of_ten(exponent: i32) -> String {
-    let mut out = String::from(" × 10");
-    for c in exponent.to_string().chars() {
-        out.push(match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4' => '⁴',
-            '5' => '⁵',
-            '6' => '⁶',
-            '7' => '⁷',
-            '8' => '⁸',
-            '9' => '⁹',
-            _ => '⁰',
-        });
-    }
-    out
+    let superscript = |c: char| c.to_digit(10).map_or('⁻', |digit| SUPERSCRIPTS[digit as usize]);
+    format!(" × 10{}", exponent.to_string().chars().map(superscript).collect::<String>())
 }
 
 /// A number with a count of significant digits, `1 ≤ digits ≤ 15`.
@@ -228,16 +214,10 @@ fn lonely(value: f64, uncertainty: f64) -> String {
 pub fn interval(ends: [f64; 2]) -> String {
     let [low, high] = ends;
     if !low.is_finite() || !high.is_finite() {
-        let text = |x: f64| {
-            if x.is_finite() {
-                plain(x, 4)
-            } else if x == f64::INFINITY {
-                "∞".to_owned()
-            } else if x == f64::NEG_INFINITY {
-                "−∞".to_owned()
-            } else {
-                MISSING.to_owned()
-            }
+        let text = |x: f64| match x {
+            f64::INFINITY => "∞".to_owned(),
+            f64::NEG_INFINITY => "−∞".to_owned(),
+            x => plain(x, 4),
         };
         return format!("[{}, {}]", text(low), text(high));
     }

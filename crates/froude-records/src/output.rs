@@ -24,7 +24,7 @@ pub fn inside(campaign: &Path, path: &Path, place: &Place, key: &str, verb: &str
         "is {:?}, which leads out of the campaign's folder; {verb} writes below it only: name a folder there",
         rest.display().to_string()
     );
-    Err(RecordError::Value { place: place.clone(), key: key.to_owned(), problem })
+    Err(RecordError::value(place.clone(), key, problem))
 }
 
 /// Whether a path stays below a folder when links are followed; what does not exist yet is made there.

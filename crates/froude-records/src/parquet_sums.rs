@@ -13,13 +13,6 @@ use crate::raw_column::Raw;
 pub(crate) const KEY: &str = "froude.sha256";
 
 /// Sum of a column as it stands in the file: its header, and its numbers or texts before units and signs are applied.
-pub(crate) fn of_column(header: &str, cells: &Raw) -> String {
-    let mut sum = Sum::new(header);
-    sum.add(cells);
-    sum.finish()
-}
-
-/// The same, taken in piece by piece.
 pub(crate) struct Sum(Sha256);
 
 impl Sum {

@@ -7,7 +7,6 @@
 //! Checksums of pages are verified where a file has them. They leave out the pages' headers and the footer with names, types and
 //! counts; what we write ourselves has a checksum of each column as it is read, and nothing outside it.
 
-use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Arc;
@@ -27,6 +26,7 @@ use crate::assemble::{CHUNK_ROWS, Room, Want, assemble, plan};
 use crate::error::{Place, RecordError};
 use crate::parquet_sums::{self, Sum};
 use crate::raw_column::Raw;
+use crate::read;
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
 use crate::write::Prepared;
@@ -35,7 +35,7 @@ use crate::write::Prepared;
 const MOST_ROWS: i64 = 50_000_000;
 
 /// Most bytes of pages, unpacked.
-const LARGEST_BYTES: i64 = 2 << 30;
+const LARGEST_BYTES: u64 = 2 << 30;
 
 /// Largest file.
 const LARGEST_FILE: u64 = 2 << 30;
@@ -53,11 +53,7 @@ const BYTES_BESIDE: i64 = 1 << 20;
 ///
 /// See [`RecordError`]; a file that is cut off is [`RecordError::Damaged`].
 pub fn read_parquet(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    parse_parquet(path, open(path)?, sidecar)
-}
-
-fn open(path: &Path) -> Result<File, RecordError> {
-    crate::read::open(path)
+    parse_parquet(path, read::open(path)?, sidecar)
 }
 
 /// The same from anything that holds a Parquet file; `path` is for messages.
@@ -70,7 +66,7 @@ pub fn parse_parquet<R: ChunkReader + 'static>(
     source: R,
     sidecar: Option<&Sidecar>,
 ) -> Result<Table, RecordError> {
-    caught(path, || read(path, source, sidecar))
+    caught(path, || read_whole(path, source, sidecar))
 }
 
 /// A damaged file can make the decoder panic: that is a damaged file, not our end.
@@ -80,11 +76,14 @@ fn caught<T>(path: &Path, read: impl FnOnce() -> Result<T, RecordError>) -> Resu
     })
 }
 
-fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
+fn read_whole<R: ChunkReader + 'static>(
+    path: &Path,
+    source: R,
+    sidecar: Option<&Sidecar>,
+) -> Result<Table, RecordError> {
     let length = source.len();
     if length > LARGEST_FILE {
-        let what = "a Parquet table";
-        return Err(RecordError::TooLarge { path: path.to_owned(), bytes: length, limit: LARGEST_FILE, what });
+        return Err(RecordError::too_large(path, length, LARGEST_FILE, "a Parquet table"));
     }
     let opened = Opened::new(path, source, sidecar)?;
     check_memory(path, opened.reader.metadata())?;
@@ -106,7 +105,7 @@ fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidec
 
 /// Rows of a Parquet table, as its footer counts them.
 pub(crate) fn n_rows(path: &Path) -> Result<usize, RecordError> {
-    let file = open(path)?;
+    let file = read::open(path)?;
     let reader = caught(path, || reader(path, file))?;
     Ok(usize::try_from(reader.metadata().file_metadata().num_rows()).unwrap_or(0))
 }
@@ -117,7 +116,7 @@ pub(crate) fn for_each_chunk<E: From<RecordError>>(
     sidecar: Option<&Sidecar>,
     each: &mut dyn FnMut(Table) -> Result<(), E>,
 ) -> Result<(), E> {
-    let file = open(path)?;
+    let file = read::open(path)?;
     let length = file.len();
     let opened = caught(path, || Opened::new(path, file, sidecar))?;
     let rows = u64::try_from(opened.reader.metadata().file_metadata().num_rows()).unwrap_or(0);
@@ -175,12 +174,8 @@ impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
     /// Its columns without cells.
     fn empty(&self) -> Result<Vec<Raw>, RecordError> {
         let of = |(field, name): (&Arc<Type>, &String)| {
-            raw_of(field).ok_or_else(|| RecordError::ColumnKind {
-                place: Place::whole(self.path),
-                column: name.clone(),
-                found: "neither numbers nor text",
-                expected: "numbers or text",
-            })
+            let problem = " holds neither numbers nor text; expected numbers or text";
+            raw_of(field).ok_or_else(|| RecordError::column(Place::whole(self.path), name, problem))
         };
         self.fields().iter().zip(&self.header).map(of).collect()
     }
@@ -376,9 +371,8 @@ impl Cells<'_> {
             }
             (ColumnReader::Int64ColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, room, |x| *x as f64),
             (ColumnReader::ByteArrayColumnReader(c), Raw::Texts(out)) => self.each(c, |row, cell| {
-                let text = std::str::from_utf8(cell.map_or(&[], ByteArray::data)).map_err(|_| RecordError::Syntax {
-                    place: self.place(row),
-                    problem: format!("column `{}`: the text is not UTF-8", self.column),
+                let text = std::str::from_utf8(cell.map_or(&[], ByteArray::data)).map_err(|_| {
+                    RecordError::syntax(self.place(row), format!("column `{}`: the text is not UTF-8", self.column))
                 })?;
                 room.text(out, text, &|| self.place(row))
             }),
@@ -395,19 +389,11 @@ impl Cells<'_> {
     ) -> Result<(), RecordError> {
         self.each(column, |row, cell| {
             let Some(cell) = cell else {
-                return Err(RecordError::EmptyCell {
-                    place: self.place(row),
-                    column: self.column.to_owned(),
-                    advice: (self.advice)(),
-                });
+                return Err(RecordError::empty_cell(self.place(row), self.column, &(self.advice)()));
             };
             let value = number(cell);
             if !value.is_finite() {
-                return Err(RecordError::NotFinite {
-                    place: self.place(row),
-                    column: self.column.to_owned(),
-                    found: value.to_string(),
-                });
+                return Err(RecordError::not_finite(self.place(row), self.column, &value.to_string()));
             }
             room.number(out, value)
         })
@@ -447,13 +433,13 @@ impl Cells<'_> {
 /// Sizes that the footer claims, checked against the file, before anything is allocated for them.
 fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(), RecordError> {
     let rows = metadata.file_metadata().num_rows();
-    let damaged =
-        || RecordError::Damaged { path: path.to_owned(), reason: "its footer names bytes beyond its end".to_owned() };
+    let damaged = |reason: String| Err(RecordError::Damaged { path: path.to_owned(), reason });
+    let beyond = || damaged("its footer names bytes beyond its end".to_owned());
     let mut counted = 0_i64;
     for group in metadata.row_groups() {
         counted = counted.saturating_add(group.num_rows());
         if group.num_rows() < 0 {
-            return Err(damaged());
+            return beyond();
         }
         for chunk in group.columns() {
             let start =
@@ -464,27 +450,18 @@ fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(
                 || chunk.uncompressed_size() < 0
                 || end.is_none_or(|end| end > length)
             {
-                return Err(damaged());
+                return beyond();
             }
             let is_number = chunk.column_type() != Physical::BYTE_ARRAY;
             let most = group.num_rows().saturating_mul(BYTES_A_ROW).saturating_add(BYTES_BESIDE);
-            if is_number && chunk.uncompressed_size() > most {
-                return Err(RecordError::Damaged {
-                    path: path.to_owned(),
-                    reason: format!(
-                        "its footer gives {} bytes to {} numbers",
-                        chunk.uncompressed_size(),
-                        group.num_rows()
-                    ),
-                });
+            let (bytes, numbers) = (chunk.uncompressed_size(), group.num_rows());
+            if is_number && bytes > most {
+                return damaged(format!("its footer gives {bytes} bytes to {numbers} numbers"));
             }
         }
     }
     if rows < 0 || counted != rows {
-        return Err(RecordError::Damaged {
-            path: path.to_owned(),
-            reason: format!("its footer counts {rows} rows, its row groups {counted}"),
-        });
+        return damaged(format!("its footer counts {rows} rows, its row groups {counted}"));
     }
     Ok(())
 }
@@ -493,20 +470,13 @@ fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(
 fn check_memory(path: &Path, metadata: &ParquetMetaData) -> Result<(), RecordError> {
     let rows = metadata.file_metadata().num_rows();
     if rows > MOST_ROWS {
-        return Err(RecordError::Syntax {
-            place: Place::whole(path),
-            problem: format!("the table has {rows} rows; at most {MOST_ROWS} are read into memory"),
-        });
+        let problem = format!("the table has {rows} rows; at most {MOST_ROWS} are read into memory");
+        return Err(RecordError::syntax(Place::whole(path), problem));
     }
     let chunks = metadata.row_groups().iter().flat_map(RowGroupMetaData::columns);
-    let bytes = chunks.map(ColumnChunkMetaData::uncompressed_size).fold(0, i64::saturating_add);
+    let bytes = chunks.map(ColumnChunkMetaData::uncompressed_size).fold(0, i64::saturating_add).unsigned_abs();
     if bytes > LARGEST_BYTES {
-        return Err(RecordError::TooLarge {
-            path: path.to_owned(),
-            bytes: bytes.unsigned_abs(),
-            limit: LARGEST_BYTES.unsigned_abs(),
-            what: "the pages of a table, unpacked",
-        });
+        return Err(RecordError::too_large(path, bytes, LARGEST_BYTES, "the pages of a table, unpacked"));
     }
     Ok(())
 }
@@ -591,7 +561,9 @@ fn write_columns(table: &Table, file: impl std::io::Write + Send) -> Result<(), 
             }
         };
         target.close()?;
-        sums.push(parquet_sums::of_column(column.header().trim(), &cells));
+        let mut sum = Sum::new(column.header().trim());
+        sum.add(&cells);
+        sums.push(sum.finish());
     }
     group.close()?;
     writer.append_key_value_metadata(KeyValue::new(parquet_sums::KEY.to_owned(), sums.join(" ")));

@@ -79,12 +79,8 @@ impl Found {
             Some(_) => Unit::one(),
             None => parse_unit(&self.estimate.coefficients.get(&self.entry)?.unit).ok()?,
         };
-        Some(StatedUnit {
-            coefficient: of.coefficient.clone(),
-            model: of.model.clone(),
-            unit,
-            place: from.place.clone(),
-        })
+        let (coefficient, model) = (of.coefficient.clone(), of.model.clone());
+        Some(StatedUnit { coefficient, model, unit, place: from.place.clone() })
     }
 
     /// Covariance with another entry; none of another estimate.
@@ -97,14 +93,10 @@ impl Found {
 }
 
 fn value(prior: &PriorSpec, from: &PriorRecord, density_kg_m3: Option<f64>) -> Result<Found, RecordError> {
-    let wrong =
-        |key: &str, problem: String| RecordError::Value { place: from.place.clone(), key: key.to_owned(), problem };
+    let wrong = |key: &str, problem: String| RecordError::value(from.place.clone(), key, problem);
     if !from.path.exists() {
-        return Err(RecordError::MissingFile {
-            place: from.place.clone(),
-            key: "record".to_owned(),
-            path: from.path.clone(),
-        });
+        let (place, path) = (from.place.clone(), from.path.clone());
+        return Err(RecordError::MissingFile { place, key: "record".to_owned(), path });
     }
     let file = read_estimates(&from.path)?;
     let named = |e: &&Estimate| from.select.as_ref().is_none_or(|id| *id == e.id);
@@ -122,15 +114,10 @@ fn value(prior: &PriorSpec, from: &PriorRecord, density_kg_m3: Option<f64>) -> R
         }
     };
     let estimate = estimate.ok_or_else(|| {
-        let there: Vec<String> = file
-            .estimates
-            .iter()
-            .map(|e| format!("{} with {}", e.id, e.coefficients.keys().cloned().collect::<Vec<_>>().join(", ")))
-            .collect();
-        wrong(
-            "entry",
-            format!("is {:?}, which {} has not; it has {}", from.entry, from.path.display(), there.join("; ")),
-        )
+        let names = |e: &Estimate| e.coefficients.keys().cloned().collect::<Vec<_>>().join(", ");
+        let there: Vec<String> = file.estimates.iter().map(|e| format!("{} with {}", e.id, names(e))).collect();
+        let (path, there) = (from.path.display(), there.join("; "));
+        wrong("entry", format!("is {:?}, which {path} has not; it has {there}", from.entry))
     })?;
     let Some((entry, found)) = estimate.coefficients.get(&from.entry).and_then(|c| Some((c, c.value?))) else {
         return Err(wrong("entry", format!("is {:?}, which {} does not determine", from.entry, estimate.id)));
@@ -169,19 +156,11 @@ fn value(prior: &PriorSpec, from: &PriorRecord, density_kg_m3: Option<f64>) -> R
     }
     let value = found / per;
     let standard = (entry.standard_uncertainty.unwrap_or(0.0) / per).hypot(from.model_form * value);
-    if standard > 0.0 {
-        let estimate = estimate.clone();
-        return Ok(Found {
-            value,
-            standard,
-            dof: entry.effective_dof,
-            per,
-            path: from.path.clone(),
-            entry: from.entry.clone(),
-            estimate,
-        });
+    if standard <= 0.0 {
+        let problem =
+            format!("{} has no uncertainty in {}; write model_form = \"5 %\", for example", from.entry, estimate.id);
+        return Err(wrong("model_form", problem));
     }
-    let problem =
-        format!("{} has no uncertainty in {}; write model_form = \"5 %\", for example", from.entry, estimate.id);
-    Err(wrong("model_form", problem))
+    let (path, estimate) = (from.path.clone(), estimate.clone());
+    Ok(Found { value, standard, dof: entry.effective_dof, per, path, entry: from.entry.clone(), estimate })
 }

@@ -26,17 +26,18 @@ pub(crate) fn unit_of_column(name: &str, unit: Unit) -> Unit {
 /// A known name with another dimension is an error.
 pub(crate) fn check_dimension(place: &Place, header: &str, name: &str, unit: &Unit) -> Result<(), RecordError> {
     match expected(name) {
-        Some((dimension, words)) if dimension != unit.dimension => Err(RecordError::WrongDimension {
-            place: place.clone(),
-            column: header.to_owned(),
-            expected: words,
-            found: unit.dimension.describe(),
-        }),
+        Some((dimension, words)) if dimension != unit.dimension => {
+            Err(RecordError::wrong_dimension(place.clone(), header, &words, &unit.dimension.describe()))
+        }
         _ => Ok(()),
     }
 }
 
 /// What to do about an empty cell of a column that is needed.
-pub(crate) fn fill_or_delete() -> String {
-    "fill it in or delete the row".to_owned()
-}
+pub(crate) const FILL_OR_DELETE: &str = "fill it in or delete the row";
+
+/// What is wrong with the second column of a name.
+pub(crate) const TWICE: &str = " appears twice; rename or delete one";
+
+/// What is wrong with a column of text where numbers are needed.
+pub(crate) const TEXT_FOR_NUMBERS: &str = " holds text; expected numbers";

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::RecordError;
 use crate::folder::UnfinishedFolder;
-use crate::manifest::{first_alien, write_manifest};
+use crate::manifest::{Alien, first_alien, write_manifest};
 
 /// Says before a long computation whether its results can be written; nothing is left of the trial.
 ///
@@ -29,8 +29,9 @@ pub fn can_be_written(out: &Path) -> Result<(), RecordError> {
 fn only_own(out: &Path) -> Result<(), RecordError> {
     let alien = if out.is_dir() { first_alien(out)? } else { None };
     match alien {
-        Some(alien) => {
-            Err(RecordError::NotOurResults { out: out.to_owned(), path: alien.path, is_changed: alien.is_changed })
+        Some(Alien { path, is_changed }) => {
+            let advice = "is replaced as a whole; move the file out of it, or name another folder with --out";
+            Err(RecordError::not_ours(&path, is_changed, format!("and the folder {} {advice}", out.display())))
         }
         None => Ok(()),
     }
@@ -40,13 +41,17 @@ fn only_own(out: &Path) -> Result<(), RecordError> {
 ///
 /// # Errors
 ///
-/// [`RecordError::ReplacesInput`].
+/// [`RecordError::Refused`].
 pub fn spares<'a>(out: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> Result<(), RecordError> {
     let Ok(out) = std::fs::canonicalize(out) else { return Ok(()) };
     let is_replaced = |path: &&Path| std::fs::canonicalize(path).is_ok_and(|path| path.starts_with(&out));
     match inputs.into_iter().find(is_replaced) {
         None => Ok(()),
-        Some(record) => Err(RecordError::ReplacesInput { out, record: record.to_owned() }),
+        Some(input) => {
+            let (out, input) = (out.display(), input.display());
+            let advice = "which is read: results there would replace it. Name another folder with --out";
+            Err(RecordError::Refused(format!("{out} holds {input}, {advice}")))
+        }
     }
 }
 

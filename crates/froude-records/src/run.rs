@@ -69,7 +69,7 @@ pub use crate::run::pair::{Pair, check_names, check_pair};
 pub use channel::{BOARD, Frame, LOG, Meaning};
 pub use declarations::{Declarations, Stated, Told};
 pub use extremes::{Extremes, Oscillating, Stay};
-pub use import::{AXIS_NAMES, Averaged, ImportedRun, TimeSteps, import_run, is_servo_log, run_of_means, run_of_table};
+pub use import::{Averaged, ImportedRun, TimeSteps, import_run, is_servo_log, run_of_means, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 pub use meta::{

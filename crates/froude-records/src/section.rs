@@ -51,9 +51,8 @@ impl Source<'_> {
 ///
 /// [`RecordError::Syntax`] with its place.
 pub fn parse(source: Source<'_>) -> Result<Spanned<DeTable<'_>>, RecordError> {
-    DeTable::parse(source.text).map_err(|e| RecordError::Syntax {
-        place: source.place(e.span().map_or(0, |s| s.start)),
-        problem: format!("not TOML: {}", e.message().trim()),
+    DeTable::parse(source.text).map_err(|e| {
+        RecordError::syntax(source.place(e.span().map_or(0, |s| s.start)), format!("not TOML: {}", e.message().trim()))
     })
 }
 
@@ -116,32 +115,53 @@ impl<'a> Section<'a> {
 
     /// The message about a value: what was found, and what was expected.
     pub fn wrong(&self, key: &str, value: &Value<'_>, problem: impl Into<String>) -> RecordError {
-        RecordError::Value {
-            place: self.source.place(value.span().start),
-            key: key.to_owned(),
-            problem: problem.into(),
-        }
+        RecordError::value(self.source.place(value.span().start), key, problem)
     }
 
     /// A key that is needed and not there; where an unknown key looks like it, that one is reported.
     pub fn missing(&self, key: &str, advice: &str) -> RecordError {
-        self.misspelt(key).unwrap_or_else(|| RecordError::MissingKey {
-            place: self.place(),
-            section: self.label(),
-            key: key.to_owned(),
-            advice: advice.to_owned(),
-        })
+        let problem = || format!("{} has no `{key}`; {advice}", self.label());
+        self.misspelt(key).unwrap_or_else(|| RecordError::syntax(self.place(), problem()))
+    }
+
+    /// A value that must be there; `advice` is what to write where it is not.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Syntax`] where it is missing.
+    pub fn need(&self, key: &'static str, advice: &str) -> Result<&'a Value<'a>, RecordError> {
+        self.get(key).ok_or_else(|| self.missing(key, advice))
+    }
+
+    /// A text that must be there; `advice` is what to write where it is not.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where it is something else, [`RecordError::Syntax`] where it is missing.
+    pub fn need_text(&self, key: &'static str, advice: &str) -> Result<&'a str, RecordError> {
+        self.as_text(key, self.need(key, advice)?)
+    }
+
+    /// Refuses what is written under a key, if it is there and wrong.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place.
+    pub fn refuse(&self, key: &'static str, is_wrong: bool, problem: impl Into<String>) -> Result<(), RecordError> {
+        match self.get(key) {
+            Some(value) if is_wrong => Err(self.wrong(key, value, problem)),
+            _ => Ok(()),
+        }
     }
 
     /// The unknown key that was probably meant to be `key`.
     fn misspelt(&self, key: &str) -> Option<RecordError> {
         let (written, offset, _) = self.others().into_iter().find(|(k, ..)| nearest(k, [key]).is_some())?;
-        Some(RecordError::UnknownKey {
-            place: self.source.place(offset),
-            key: written.to_owned(),
-            section: self.label(),
-            advice: suggestion(written, [key]),
-        })
+        Some(self.unknown(written, offset, &suggestion(written, [key])))
+    }
+
+    fn unknown(&self, key: &str, offset: usize, advice: &str) -> RecordError {
+        RecordError::syntax(self.source.place(offset), format!("unknown key `{key}` in {}; {advice}", self.label()))
     }
 
     /// Declares every key of the section, and refuses others before anything is read: a misspelt key that the section
@@ -149,7 +169,7 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// [`RecordError::UnknownKey`] with the nearest known key.
+    /// [`RecordError::Syntax`] with the nearest known key.
     pub fn only(&self, known: &[&'static str]) -> Result<(), RecordError> {
         self.asked.borrow_mut().extend(known);
         self.finish()
@@ -171,11 +191,10 @@ impl<'a> Section<'a> {
     /// [`RecordError::Value`] with its place where it is something else.
     pub fn as_text(&self, key: &str, value: &'a Value<'a>) -> Result<&'a str, RecordError> {
         match value.get_ref().as_str() {
-            Some(text) if text.len() > LONGEST_TEXT => Err(self.wrong(
-                key,
-                value,
-                format!("has {} bytes of text; at most {LONGEST_TEXT} are read", text.len()),
-            )),
+            Some(text) if text.len() > LONGEST_TEXT => {
+                let problem = format!("has {} bytes of text; at most {LONGEST_TEXT} are read", text.len());
+                Err(self.wrong(key, value, problem))
+            }
             Some(text) => Ok(text),
             None => Err(self.wrong(key, value, format!("is {}; expected a text in quotes", found(value)))),
         }
@@ -187,13 +206,9 @@ impl<'a> Section<'a> {
     ///
     /// [`RecordError::Value`] with its place where it is something else.
     pub fn flag(&self, key: &'static str) -> Result<Option<bool>, RecordError> {
-        self.get(key)
-            .map(|v| {
-                v.get_ref()
-                    .as_bool()
-                    .ok_or_else(|| self.wrong(key, v, format!("is {}; expected true or false", found(v))))
-            })
-            .transpose()
+        let Some(value) = self.get(key) else { return Ok(None) };
+        let wrong = || self.wrong(key, value, format!("is {}; expected true or false", found(value)));
+        value.get_ref().as_bool().map(Some).ok_or_else(wrong)
     }
 
     /// A number without a unit.
@@ -218,11 +233,10 @@ impl<'a> Section<'a> {
         };
         match text.replace('_', "").parse::<f64>() {
             Ok(x) if is_plausible(x) => Ok(x),
-            Ok(x) if x.is_finite() => Err(self.wrong(
-                key,
-                value,
-                format!("is {text}; no number of a test is beyond {LARGEST_SI:e} in SI: correct it"),
-            )),
+            Ok(x) if x.is_finite() => {
+                let problem = format!("is {text}; no number of a test is beyond {LARGEST_SI:e} in SI: correct it");
+                Err(self.wrong(key, value, problem))
+            }
             _ => Err(self.wrong(key, value, format!("is {text}; expected a finite number"))),
         }
     }
@@ -233,17 +247,13 @@ impl<'a> Section<'a> {
     ///
     /// [`RecordError::Value`] with its place where it is something else.
     pub fn integer(&self, key: &'static str) -> Result<Option<u64>, RecordError> {
-        self.get(key)
-            .map(|v| {
-                let parsed = match v.get_ref() {
-                    DeValue::Integer(i) if i.radix() == 10 => i.as_str().replace('_', "").parse().ok(),
-                    _ => None,
-                };
-                parsed.ok_or_else(|| {
-                    self.wrong(key, v, format!("is {}; expected a whole number, zero or larger", found(v)))
-                })
-            })
-            .transpose()
+        let Some(value) = self.get(key) else { return Ok(None) };
+        let parsed = match value.get_ref() {
+            DeValue::Integer(i) if i.radix() == 10 => i.as_str().replace('_', "").parse().ok(),
+            _ => None,
+        };
+        let problem = || format!("is {}; expected a whole number, zero or larger", found(value));
+        parsed.map(Some).ok_or_else(|| self.wrong(key, value, problem()))
     }
 
     /// A quantity of a given dimension, SI.
@@ -334,10 +344,8 @@ impl<'a> Section<'a> {
         dimension: Dimension,
     ) -> Result<Quantity, RecordError> {
         let quantity = self.quantity_like(key, value, Some((name, dimension)))?;
-        let si = match quantity.expect(dimension) {
-            Ok(si) => si,
-            Err(e) => return Err(self.wrong(key, value, format!("is {}: {e}", found(value)))),
-        };
+        let wrong = |e| self.wrong(key, value, format!("is {}: {e}", found(value)));
+        let si = quantity.expect(dimension).map_err(wrong)?;
         match plausible::problem(name, si, &quantity.unit) {
             Some(problem) => Err(self.wrong(key, value, format!("is {}, which {problem}", found(value)))),
             None => Ok(quantity),
@@ -432,23 +440,18 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// [`RecordError::UnknownKey`] with the nearest known key.
+    /// [`RecordError::Syntax`] with the nearest known key.
     pub fn finish(&self) -> Result<(), RecordError> {
         let Some((key, offset, _)) = self.others().into_iter().next() else { return Ok(()) };
         let asked = self.asked.borrow();
-        Err(RecordError::UnknownKey {
-            place: self.source.place(offset),
-            key: key.to_owned(),
-            section: self.label(),
-            advice: suggestion(key, asked.iter().copied()),
-        })
+        Err(self.unknown(key, offset, &suggestion(key, asked.iter().copied())))
     }
 
     /// Checks `schema = 1`.
     ///
     /// # Errors
     ///
-    /// [`RecordError::Schema`] and [`RecordError::NewerSchema`].
+    /// [`RecordError::Value`] and [`RecordError::NewerSchema`].
     pub fn schema(&self, what: &str) -> Result<(), RecordError> {
         self.schema_up_to(what, 1).map(|_| ())
     }
@@ -457,7 +460,7 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     ///
-    /// [`RecordError::Schema`] and [`RecordError::NewerSchema`].
+    /// [`RecordError::Value`] and [`RecordError::NewerSchema`].
     pub fn schema_up_to(&self, what: &str, newest: u64) -> Result<u64, RecordError> {
         let place = || self.raw("schema").map_or_else(|| self.place(), |v| self.source.place(v.span().start));
         match self.integer("schema") {
@@ -467,13 +470,10 @@ impl<'a> Section<'a> {
                 found: format!("{what} schema {newer}"),
                 known: format!("{what} schema {newest}"),
             }),
-            Ok(Some(other)) => {
-                Err(RecordError::Schema { place: place(), found: other.to_string(), known: newest.to_string() })
-            }
-            Ok(None) => Err(self.misspelt("schema").unwrap_or_else(|| RecordError::Schema {
-                place: Place::line(self.source.path, 1),
-                found: "missing".to_owned(),
-                known: format!("schema = {newest}"),
+            Ok(Some(other)) => Err(RecordError::value(place(), "schema", format!("is {other}; expected {newest}"))),
+            Ok(None) => Err(self.misspelt("schema").unwrap_or_else(|| {
+                let first = Place::line(self.source.path, 1);
+                RecordError::value(first, "schema", format!("is missing; expected schema = {newest}"))
             })),
             Err(e) => Err(e),
         }

@@ -24,12 +24,9 @@ pub fn one_of<T: Copy>(
 ) -> Result<Option<T>, RecordError> {
     let Some(value) = s.get(key) else { return Ok(None) };
     let text = s.as_text(key, value)?;
-    names
-        .iter()
-        .zip(values)
-        .find(|(name, _)| **name == text)
-        .map(|(_, v)| Some(*v))
-        .ok_or_else(|| s.wrong(key, value, format!("is {text:?}; {}", suggestion(text, names.iter().copied()))))
+    let found = names.iter().position(|name| *name == text).and_then(|at| values.get(at));
+    let problem = || format!("is {text:?}; {}", suggestion(text, names.iter().copied()));
+    found.copied().map(Some).ok_or_else(|| s.wrong(key, value, problem()))
 }
 
 /// A whole number from 1 to `most`.
@@ -38,12 +35,9 @@ pub fn one_of<T: Copy>(
 ///
 /// [`RecordError::Value`] with its place where it is something else.
 pub fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Option<usize>, RecordError> {
-    match (s.integer(key)?, s.get(key)) {
-        (Some(n), Some(value)) if n == 0 || n > most => {
-            Err(s.wrong(key, value, format!("is {n}; it must lie between 1 and {most}")))
-        }
-        (n, _) => Ok(n.map(|n| n as usize)),
-    }
+    let Some(n) = s.integer(key)? else { return Ok(None) };
+    s.refuse(key, n == 0 || n > most, format!("is {n}; it must lie between 1 and {most}"))?;
+    Ok(Some(n as usize))
 }
 
 /// What a section multiplies out to is checked against a limit: each of its numbers may be small, and their product not.
@@ -58,11 +52,7 @@ pub fn at_most(s: &Section<'_>, numbers: &[(&str, usize)], most: usize) -> Resul
     }
     let others: Vec<String> = numbers.iter().skip(1).map(|(key, n)| format!(" × `{key}` ({n})")).collect();
     let (first, n) = numbers.first().copied().unwrap_or_default();
-    Err(RecordError::Value {
-        place: s.place(),
-        key: first.to_owned(),
-        problem: format!("({n}){} is {product}; at most {most} are made", others.concat()),
-    })
+    Err(RecordError::value(s.place(), first, format!("({n}){} is {product}; at most {most} are made", others.concat())))
 }
 
 /// Their product; the largest number where it is larger than that.
@@ -117,7 +107,7 @@ pub fn plan_of<T>(
         let refuse = |found: String, most: String| {
             let problem =
                 format!("asks for {found} up to this block; {most}: make lists shorter, or split the campaign");
-            Err(RecordError::Value { place: section.place(), key: "plan".to_owned(), problem })
+            Err(RecordError::value(section.place(), "plan", problem))
         };
         if sum.count > most {
             return refuse(format!("{} {what}", sum.count), format!("at most {most} are made ({most_text})"));
@@ -157,17 +147,13 @@ pub fn series<'a>(
     let range = s.as_section(key, value)?;
     range.only(&["start", "stop", "step"])?;
     let need = |end: &'static str| {
-        let value = range.get(end).ok_or_else(|| range.missing(end, "a range needs start, stop and step"))?;
+        let value = range.need(end, "a range needs start, stop and step")?;
         range.as_written(end, value, key, dimension)
     };
     let (start, stop, step) = (need("start")?, need("stop")?, need("step")?);
     let count = (stop.value_si - start.value_si) / step.value_si;
     if !(count.is_finite() && (0.0..=MOST_STEPS).contains(&count)) {
-        return Err(s.wrong(
-            key,
-            value,
-            "must go from start to stop in at most 100000 steps of the step's sign".to_owned(),
-        ));
+        return Err(s.wrong(key, value, "must go from start to stop in at most 100000 steps of the step's sign"));
     }
     let steps = (count + ON_A_STEP).floor();
     if count - steps > ON_A_STEP {
@@ -175,23 +161,19 @@ pub fn series<'a>(
         let last = short(start.unit.from_si(start.value_si + steps * step.value_si));
         let [one, other] = steps_that_fit((stop.value_si - start.value_si) / step.unit.factor, count);
         let (first, unit) = (&start.unit, &step.unit);
-        return Err(s.wrong(
-            key,
-            value,
-            format!(
-                "goes from {start} in steps of {step} to {last} {first} and does not reach {stop}; write step = \"{one} {unit}\" or \
-                 \"{other} {unit}\", or another stop"
-            ),
-        ));
+        let problem = format!(
+            "goes from {start} in steps of {step} to {last} {first} and does not reach {stop}; write step = \"{one} {unit}\" or \
+             \"{other} {unit}\", or another stop"
+        );
+        return Err(s.wrong(key, value, problem));
     }
     let steps = steps as usize;
     // In the written unit 0.02 + 49·0.02 is exactly what a person means; converted once.
-    Ok((0..=steps)
-        .map(|k| {
-            let value = start.unit.from_si(start.value_si) + k as f64 * start.unit.from_si(step.value_si);
-            start.unit.to_si((value * 1e12).round() / 1e12)
-        })
-        .collect())
+    let of = |k: usize| {
+        let value = start.unit.from_si(start.value_si) + k as f64 * start.unit.from_si(step.value_si);
+        start.unit.to_si((value * 1e12).round() / 1e12)
+    };
+    Ok((0..=steps).map(of).collect())
 }
 
 /// Two steps that divide `way` (of either sign), next to where `count` of them would: short numbers, where there are any.

@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
-use crate::error::{Place, RecordError, read_bytes, utf8};
+use crate::error::{Place, RecordError, briefly, read_bytes, utf8};
 use crate::estimate::Measured;
 use crate::nearest::suggestion;
-use crate::raw_column::{Raw, check_dimension, fill_or_delete, in_light_of, unit_of_column};
+use crate::raw_column::{FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, check_dimension, in_light_of, unit_of_column};
 use crate::run::Role;
 use crate::run::cell::Cell;
 use crate::run::channel::Words;
 use crate::run::declarations::{self, Declarations};
 use crate::run::sensor::{self, Sensor};
-use crate::run::sidecar::{conditions, configuration};
+use crate::run::sidecar::{configuration, quantities};
 use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};
 use crate::section_values::one_of;
@@ -113,7 +113,7 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
         method: root.text("method")?.map(str::to_owned),
         role: one_of(&root, "role", &Role::NAMES, &Role::ALL)?,
         configuration: configuration(&root)?,
-        conditions: conditions(&root)?,
+        conditions: quantities(&root, "conditions")?,
         declared: Declarations::read(&root)?,
     };
     let mut constants = IndexMap::new();
@@ -123,9 +123,8 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
         }
     }
     let mut columns = IndexMap::new();
-    let section = root.section("columns")?.ok_or_else(|| {
-        root.missing("columns", "write [columns] with lines like speed_col = { name = \"speed\", unit = \"m/s\" }")
-    })?;
+    let advice = "write [columns] with lines like speed_col = { name = \"speed\", unit = \"m/s\" }";
+    let section = root.as_section("columns", root.need("columns", advice)?)?;
     for (header, _, value) in section.entries() {
         columns.insert(header.to_owned(), mapping(&section.as_section(header, value)?, &run.declared.frame_names())?);
     }
@@ -143,16 +142,10 @@ fn of_a_run(root: &Section<'_>, run: &RunFacts, columns: &IndexMap<String, Mappi
     }
     let needs = "is of the log of a run: state what that is with method = \"steady\", role = \"test\", for example; observations of a table are read as they stand";
     for key in declarations::KEYS {
-        if let Some(value) = root.get(key) {
-            return Err(root.wrong(key, value, needs));
-        }
+        root.refuse(key, true, needs)?;
     }
     match columns.values().find(|column| !column.sensor.is_silent()) {
-        Some(column) => Err(RecordError::Value {
-            place: column.place.clone(),
-            key: "range, resolution, filter or delay".to_owned(),
-            problem: needs.to_owned(),
-        }),
+        Some(column) => Err(RecordError::value(column.place.clone(), "range, resolution, filter or delay", needs)),
         None => Ok(()),
     }
 }
@@ -160,38 +153,27 @@ fn of_a_run(root: &Section<'_>, run: &RunFacts, columns: &IndexMap<String, Mappi
 /// Every bridge of a cell is a column, and no load of it is.
 fn bridges(root: &Section<'_>, cell: &Cell, columns: &IndexMap<String, Mapping>) -> Result<(), RecordError> {
     let names = || columns.values().map(|column| column.name.as_str());
-    let Some(value) = root.get("cell") else { return Ok(()) };
     if let Some(missing) = cell.columns.iter().find(|bridge| !names().any(|name| name == bridge.as_str())) {
-        return Err(root.wrong(
-            "cell",
-            value,
-            format!(
-                "names the bridge {missing:?}, which no column is; {}",
-                suggestion(missing, names().collect::<Vec<_>>())
-            ),
-        ));
+        let near = suggestion(missing, names().collect::<Vec<_>>());
+        root.refuse("cell", true, format!("names the bridge {missing:?}, which no column is; {near}"))?;
     }
     match cell.loads.iter().find(|load| names().any(|name| name == load.as_str())) {
-        Some(doubled) => Err(root.wrong(
-            "cell",
-            value,
-            format!("makes the load {doubled}, which is a column too; leave one of them out"),
-        )),
+        Some(doubled) => {
+            let problem = format!("makes the load {doubled}, which is a column too; leave one of them out");
+            root.refuse("cell", true, problem)
+        }
         None => Ok(()),
     }
 }
 
 fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordError> {
     section.only(&[&["name", "unit", "sign", "scale", "quantity", "frame", "clock"], &sensor::KEYS[..]].concat())?;
-    let name =
-        section.text("name")?.ok_or_else(|| section.missing("name", "write name = \"f_x\", for example"))?.to_owned();
+    let name = section.need_text("name", "write name = \"f_x\", for example")?.to_owned();
     let place = section.place();
     let unit = match section.text("unit")? {
         Some(text) => {
-            let unit = parse_unit(text).map_err(|e| RecordError::Value {
-                place: place.clone(),
-                key: "unit".to_owned(),
-                problem: format!("cannot be read: {}", in_light_of(&name, text, e)),
+            let unit = parse_unit(text).map_err(|e| {
+                RecordError::value(place.clone(), "unit", format!("cannot be read: {}", in_light_of(&name, text, e)))
             })?;
             check_dimension(&place, &format!("{name} [{text}]"), &name, &unit)?;
             Some(unit_of_column(&name, unit))
@@ -200,35 +182,24 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
     };
     let sign = section.number("sign")?.unwrap_or(1.0);
     if sign.abs() != 1.0 {
-        return Err(RecordError::Value {
-            place,
-            key: "sign".to_owned(),
-            problem: format!("is {sign}; it is 1 or -1, and a factor goes into scale"),
-        });
+        let problem = format!("is {sign}; it is 1 or -1, and a factor goes into scale");
+        return Err(RecordError::value(place, "sign", problem));
     }
     let scale = section
         .text("scale")?
         .map(|text| {
-            Scale::parse(text).map_err(|problem| RecordError::Value {
-                place: place.clone(),
-                key: "scale".to_owned(),
-                problem: format!("{text:?} cannot be read: {problem}"),
+            Scale::parse(text).map_err(|problem| {
+                RecordError::value(place.clone(), "scale", format!("{text:?} cannot be read: {problem}"))
             })
         })
         .transpose()?;
     if scale.is_some() && unit.as_ref().is_some_and(|u| u.dimension != Dimension::ONE) {
-        return Err(RecordError::Value {
-            place,
-            key: "scale".to_owned(),
-            problem: "belongs to a dimensionless column: leave `unit` out, the scale gives it".to_owned(),
-        });
+        let problem = "belongs to a dimensionless column: leave `unit` out, the scale gives it";
+        return Err(RecordError::value(place, "scale", problem));
     }
     if unit.is_none() && scale.is_none() && !is_text_column(&name) && known_dimension(&name).is_some() {
-        return Err(RecordError::MissingUnit {
-            place,
-            column: name.clone(),
-            advice: "write unit = \"…\" beside its name, or scale = \"…\" for a dimensionless column".to_owned(),
-        });
+        let problem = " has no unit; write unit = \"…\" beside its name, or scale = \"…\" for a dimensionless column";
+        return Err(RecordError::column(place, &name, problem));
     }
     let dimension = unit.as_ref().map(|unit| unit.dimension);
     let words = Words::read(section, dimension, frames)?;
@@ -277,21 +248,12 @@ impl Sidecar {
                 if is_text_column(&mapping.name)
                     && let Some(row) = cells.iter().position(String::is_empty)
                 {
-                    return Err(RecordError::EmptyCell {
-                        place: place(row),
-                        column: written.to_owned(),
-                        advice: fill_or_delete(),
-                    });
+                    return Err(RecordError::empty_cell(place(row), written, FILL_OR_DELETE));
                 }
                 return Ok(ColumnData::Text(cells.into()));
             }
             (Raw::Texts(_), true) => {
-                return Err(RecordError::ColumnKind {
-                    place: mapping.place.clone(),
-                    column: written.to_owned(),
-                    found: "text",
-                    expected: "numbers",
-                });
+                return Err(RecordError::column(mapping.place.clone(), written, TEXT_FOR_NUMBERS));
             }
         };
         let data = match (&mapping.scale, &mapping.unit) {
@@ -309,11 +271,7 @@ impl Sidecar {
         if let ColumnData::Number { si, .. } = &data
             && let Some(row) = si.iter().position(|v| !is_plausible(*v))
         {
-            return Err(RecordError::NotFinite {
-                place: place(row),
-                column: written.to_owned(),
-                found: crate::error::briefly(si[row]),
-            });
+            return Err(RecordError::not_finite(place(row), written, &briefly(si[row])));
         }
         Ok(data)
     }
@@ -327,10 +285,8 @@ impl Sidecar {
         values: &[f64],
         done: &[(usize, Column)],
     ) -> Result<ColumnData, RecordError> {
-        let refuse = |problem: String| RecordError::Value {
-            place: mapping.place.clone(),
-            key: "scale".to_owned(),
-            problem: format!("{:?}: {problem}", scale.text()),
+        let refuse = |problem: String| {
+            RecordError::value(mapping.place.clone(), "scale", format!("{:?}: {problem}", scale.text()))
         };
         let mut si = Vec::with_capacity(values.len());
         let mut dimension = None;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
 use crate::plausible;
+use crate::raw_column::TEXT_FOR_NUMBERS;
 use crate::texts::Texts;
 use crate::units::{Dimension, Unit};
 
@@ -81,13 +82,12 @@ impl Table {
     pub fn number(&self, name: &str, dimension: Dimension) -> Result<&[f64], RecordError> {
         match &self.column(name)?.data {
             ColumnData::Number { si, dimension: own, .. } if *own == dimension => Ok(si),
-            ColumnData::Number { dimension: own, unit, .. } => Err(RecordError::WrongDimension {
-                place: Place::whole(&self.path),
-                column: format!("{name} [{unit}]"),
-                expected: dimension.describe(),
-                found: own.describe(),
-            }),
-            ColumnData::Text(_) => Err(self.kind(name, "text", "numbers")),
+            ColumnData::Number { dimension: own, unit, .. } => {
+                let header = format!("{name} [{unit}]");
+                let [expected, found] = [dimension, *own].map(Dimension::describe);
+                Err(RecordError::wrong_dimension(Place::whole(&self.path), &header, &expected, &found))
+            }
+            ColumnData::Text(_) => Err(RecordError::column(Place::whole(&self.path), name, TEXT_FOR_NUMBERS)),
         }
     }
 
@@ -99,7 +99,9 @@ impl Table {
     pub fn text(&self, name: &str) -> Result<&Texts, RecordError> {
         match &self.column(name)?.data {
             ColumnData::Text(texts) => Ok(texts),
-            ColumnData::Number { .. } => Err(self.kind(name, "numbers", "text")),
+            ColumnData::Number { .. } => {
+                Err(RecordError::column(Place::whole(&self.path), name, " holds numbers; expected text"))
+            }
         }
     }
 
@@ -109,11 +111,9 @@ impl Table {
     ///
     /// No such column, with the nearest name.
     pub fn column(&self, name: &str) -> Result<&Column, RecordError> {
-        self.columns.iter().find(|c| c.name == name).ok_or_else(|| RecordError::UnknownColumn {
-            place: Place::whole(&self.path),
-            column: name.to_owned(),
-            advice: suggestion(name, self.columns.iter().map(|c| c.name.as_str())),
-        })
+        let near = || suggestion(name, self.columns.iter().map(|c| c.name.as_str()));
+        let unknown = || RecordError::unknown_column(Place::whole(&self.path), name, near());
+        self.columns.iter().find(|c| c.name == name).ok_or_else(unknown)
     }
 
     /// Place of a row (from 0) in its file, for messages: a line of a CSV, a row of a Parquet file.
@@ -130,11 +130,8 @@ impl Table {
             let ColumnData::Number { unit, si, .. } = &column.data else { continue };
             let doubtful = |(row, si): (usize, &f64)| Some((row, *si, plausible::problem(&column.name, *si, unit)?));
             if let Some((row, si, problem)) = si.iter().enumerate().find_map(doubtful) {
-                return Err(RecordError::Value {
-                    place: self.place_of_row(row),
-                    key: column.header(),
-                    problem: format!("is {}, which {problem}", unit.from_si(si)),
-                });
+                let problem = format!("is {}, which {problem}", unit.from_si(si));
+                return Err(RecordError::value(self.place_of_row(row), column.header(), problem));
             }
         }
         let Some(ColumnData::Number { si: n_links, .. }) =
@@ -145,29 +142,20 @@ impl Table {
         let configurations = self.text("configuration").ok();
         for (row, &found) in n_links.iter().enumerate() {
             if found < 0.0 || found.fract() != 0.0 {
-                return Err(RecordError::Value {
-                    place: self.place_of_row(row),
-                    key: "n_links".to_owned(),
-                    problem: format!("is {found}; it counts links: 0, 1, 2, …"),
-                });
+                let problem = format!("is {found}; it counts links: 0, 1, 2, …");
+                return Err(RecordError::value(self.place_of_row(row), "n_links", problem));
             }
             if let Some(configuration) = configurations.and_then(|c| c.get(row))
                 && let Some(expected) = links_of_configuration(configuration).map(f64::from)
                 && expected != found
             {
-                return Err(RecordError::LinksContradictConfiguration {
-                    place: self.place_of_row(row),
-                    configuration: configuration.clone(),
-                    expected,
-                    found,
-                });
+                let links = if expected == 1.0 { "link" } else { "links" };
+                let problem =
+                    format!("{configuration} has {expected} {links}, but `n_links` is {found}; correct one of them");
+                return Err(RecordError::value(self.place_of_row(row), "configuration", problem));
             }
         }
         Ok(())
-    }
-
-    fn kind(&self, name: &str, found: &'static str, expected: &'static str) -> RecordError {
-        RecordError::ColumnKind { place: Place::whole(&self.path), column: name.to_owned(), found, expected }
     }
 }
 

@@ -14,11 +14,7 @@ use crate::{csv_table, parquet_table, sidecar};
 ///
 /// See [`RecordError`]: every message names file, line and column.
 pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordError> {
-    let mapping = sidecar_of(path, sidecar)?;
-    match Format::of(path)? {
-        Format::Csv => csv_table::read_csv(path, mapping.as_ref()),
-        Format::Parquet => parquet_table::read_parquet(path, mapping.as_ref()),
-    }
+    read(path, sidecar, csv_table::read_csv)
 }
 
 /// As [`read_table`]; in CSV a load, and a motion along or about an axis, may have empty cells, which [`Table::blank`] lists.
@@ -27,9 +23,17 @@ pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordEr
 ///
 /// As [`read_table`].
 pub fn read_table_with_blanks(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordError> {
+    read(path, sidecar, csv_table::read_csv_with_blanks)
+}
+
+fn read(
+    path: &Path,
+    sidecar: Option<&Path>,
+    read_csv: fn(&Path, Option<&Sidecar>) -> Result<Table, RecordError>,
+) -> Result<Table, RecordError> {
     let mapping = sidecar_of(path, sidecar)?;
     match Format::of(path)? {
-        Format::Csv => csv_table::read_csv_with_blanks(path, mapping.as_ref()),
+        Format::Csv => read_csv(path, mapping.as_ref()),
         Format::Parquet => parquet_table::read_parquet(path, mapping.as_ref()),
     }
 }
@@ -61,7 +65,7 @@ impl Format {
         match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
             Some("csv") => Ok(Self::Csv),
             Some("parquet") => Ok(Self::Parquet),
-            _ => Err(RecordError::Extension { path: path.to_owned() }),
+            _ => Err(RecordError::Refused(format!("{}: tables are read from .csv and .parquet files", path.display()))),
         }
     }
 }

@@ -33,6 +33,7 @@ use std::fmt;
 pub use dimension::Dimension;
 pub use error::UnitError;
 use parser::Parser;
+pub(crate) use parser::SUPERSCRIPTS;
 
 /// A unit as written, with its way to SI: `si = factor · value + offset`.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,25 +120,13 @@ impl Quantity {
     ///
     /// # Errors
     ///
-    /// [`UnitError::Dimension`] when it measures something else.
+    /// [`UnitError`] when it measures something else.
     pub fn expect(&self, dimension: Dimension) -> Result<f64, UnitError> {
-        self.check(dimension).map(|()| self.value_si)
-    }
-
-    /// SI value as a difference (a step, a standard uncertainty): `0.1 degC` is 0.1 K.
-    ///
-    /// # Errors
-    ///
-    /// [`UnitError::Dimension`] when it measures something else.
-    pub fn expect_difference(&self, dimension: Dimension) -> Result<f64, UnitError> {
-        self.check(dimension).map(|()| self.unit.difference_to_si(self.value))
-    }
-
-    fn check(&self, dimension: Dimension) -> Result<(), UnitError> {
         if self.unit.dimension == dimension {
-            Ok(())
+            Ok(self.value_si)
         } else {
-            Err(UnitError::Dimension { expected: dimension.describe(), found: self.unit.dimension.describe() })
+            let (expected, found) = (dimension.describe(), self.unit.dimension.describe());
+            Err(UnitError::Other(format!("expected {expected}, found {found}")))
         }
     }
 }
@@ -174,7 +163,7 @@ pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
         return Err(UnitError::Empty { example: "`m/s`, or `1` for a pure number".to_owned() });
     }
     if text.len() > LONGEST {
-        return Err(UnitError::Syntax { unit: shorten(text), problem: format!("it is longer than {LONGEST} bytes") });
+        return Err(UnitError::syntax(&shorten(text), &format!("it is longer than {LONGEST} bytes")));
     }
     if matches!(text, "degC" | "°C") {
         return Ok(Unit { text: text.to_owned(), factor: 1.0, offset: 273.15, dimension: Dimension::TEMPERATURE });
@@ -186,7 +175,7 @@ pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
     }
     let factor = scale.above / scale.below;
     if !(factor.is_finite() && factor > 0.0) {
-        return Err(UnitError::Range { unit: text.to_owned() });
+        return Err(UnitError::range(text));
     }
     Ok(Unit { text: text.to_owned(), factor, offset: 0.0, dimension: scale.dimension })
 }
@@ -206,11 +195,16 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
     let (number, unit) = text.split_at(end);
     if unit.strip_prefix(',').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
         let text = shorten(text);
-        return Err(UnitError::DecimalComma { point: text.replacen(',', ".", 1), text });
+        let point = text.replacen(',', ".", 1);
+        return Err(UnitError::Other(format!("`{text}` has a decimal comma; write a decimal point, `{point}`")));
     }
     let value: f64 = number.parse().map_err(|_| no_number())?;
+    let not_finite = || {
+        let problem = format!("is not a finite number, or beyond {LARGEST_SI:e} in SI, as no quantity of a test is");
+        UnitError::Other(format!("`{}` {problem}", shorten(text)))
+    };
     if !value.is_finite() {
-        return Err(UnitError::NotFinite { text: shorten(text) });
+        return Err(not_finite());
     }
     if unit.trim().is_empty() {
         let text = shorten(text);
@@ -220,7 +214,7 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
     let unit = parse_unit(unit)?;
     let value_si = unit.to_si(value);
     if !is_plausible(value_si) {
-        return Err(UnitError::NotFinite { text: shorten(text) });
+        return Err(not_finite());
     }
     Ok(Quantity { value, value_si, unit })
 }

@@ -104,11 +104,7 @@ impl Prepared {
     ///
     /// [`RecordError::Write`]; what stood there is untouched.
     pub fn take_place(self) -> Result<(), RecordError> {
-        let refuse =
-            |e: tempfile::PersistError| RecordError::Write { path: self.path.clone(), reason: reason(&e.error) };
-        uninterrupted(|| self.temporary.persist(&self.path)).map_err(refuse)?;
-        sync_folder(&self.folder);
-        Ok(())
+        self.persisted(|file, path| file.persist(path))
     }
 
     /// Takes a place that is free, also where another program might take it at this moment.
@@ -117,9 +113,15 @@ impl Prepared {
     ///
     /// [`RecordError::Write`]: something stands there, and is untouched.
     pub fn take_free_place(self) -> Result<(), RecordError> {
-        let refuse =
-            |e: tempfile::PersistError| RecordError::Write { path: self.path.clone(), reason: reason(&e.error) };
-        uninterrupted(|| self.temporary.persist_noclobber(&self.path)).map_err(refuse)?;
+        self.persisted(|file, path| file.persist_noclobber(path))
+    }
+
+    fn persisted(
+        self,
+        persist: fn(NamedTempFile, &Path) -> Result<std::fs::File, tempfile::PersistError>,
+    ) -> Result<(), RecordError> {
+        uninterrupted(|| persist(self.temporary, &self.path))
+            .map_err(|e| RecordError::Write { path: self.path, reason: reason(&e.error) })?;
         sync_folder(&self.folder);
         Ok(())
     }

@@ -221,8 +221,8 @@ fn a_record_survives_being_written_and_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("estimate.json");
     let file = sample();
-    file.write(&path).unwrap();
-    assert_eq!(EstimateFile::read(&path).unwrap(), file);
+    write_estimates(&path, &file).unwrap();
+    assert_eq!(read_estimates(&path).unwrap(), file);
     assert!(std::fs::read_to_string(&path).unwrap().ends_with("}\n"));
 }
 

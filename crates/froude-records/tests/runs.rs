@@ -435,11 +435,6 @@ fn a_damaged_chunk_is_a_gap_with_its_byte_or_an_error() {
     let begin = format!("161 ticks are missing before 0.0805 s: the chunk at byte {offset} is damaged: ");
     assert!(gap.text.starts_with(&begin), "{}", gap.text);
     assert_eq!(log.meta.status, RunStatus::Complete, "the run itself ended as planned");
-
-    let error = RunReader::open(&path).unwrap().refuse_damage().read_all().unwrap_err().to_string();
-    let begin = format!("{}, byte {offset}: the chunk at byte {offset} is damaged: ", path.display());
-    assert!(error.starts_with(&begin), "{error}");
-    assert!(error.ends_with("; copy the file again, or read it without what is damaged"), "{error}");
 }
 
 #[test]
@@ -548,8 +543,8 @@ fn bytes_changed_anywhere_give_a_run_or_an_error_and_never_a_panic() {
                 }
             }
         }
-        let open = || RunReader::new(Path::new("run.mcap"), std::io::Cursor::new(&bytes), None);
-        match open().and_then(RunReader::read_all) {
+        let reader = RunReader::new(Path::new("run.mcap"), std::io::Cursor::new(&bytes), None);
+        match reader.and_then(RunReader::read_all) {
             Ok(log) => {
                 n_read += 1;
                 assert!(log.time_s.windows(2).all(|w| w[0] < w[1]));
@@ -558,7 +553,6 @@ fn bytes_changed_anywhere_give_a_run_or_an_error_and_never_a_panic() {
             }
             Err(error) => assert!(error.to_string().starts_with("run.mcap"), "{error}"),
         }
-        let _ = open().map(RunReader::refuse_damage).and_then(RunReader::read_all);
     }
     assert!(n_read > n / 2, "most damage leaves something to read: {n_read} of {n}");
 }

@@ -92,7 +92,7 @@ pub fn read_wamit(path: &Path, density_kg_m3: f64, length_m: f64) -> Result<Adde
     let (mut largest, mut n_other_rows) = (0, 0);
     for (index, line) in text.lines().enumerate() {
         let number = index + 1;
-        let refuse = |problem: String| RecordError::Syntax { place: Place::line(path, number), problem };
+        let refuse = |problem: String| RecordError::syntax(Place::line(path, number), problem);
         let cells: Vec<&str> = line.split_whitespace().collect();
         let is_header = number == 1 && cells.first().is_some_and(|c| c.parse::<f64>().is_err());
         if cells.is_empty() || is_header {
@@ -128,10 +128,8 @@ pub fn read_wamit(path: &Path, density_kg_m3: f64, length_m: f64) -> Result<Adde
         for (i, j, bar, line) in elements {
             let before = std::mem::replace(&mut lines[i * size + j], line);
             if before > 0 {
-                return Err(RecordError::Syntax {
-                    place: Place::line(path, line),
-                    problem: format!("element {}, {} stands in line {before} already; delete one", i + 1, j + 1),
-                });
+                let problem = format!("element {}, {} stands in line {before} already; delete one", i + 1, j + 1);
+                return Err(RecordError::syntax(Place::line(path, line), problem));
             }
             matrix[i][j] = bar * scale(density_kg_m3, length_m, i, j);
         }

@@ -48,8 +48,8 @@ impl Field<'_> {
         let unit = parse_unit(text).map_err(|e| self.bad(text, e.to_string()))?;
         match self.expected {
             Some(expected) if unit.dimension != expected => {
-                Err(self
-                    .bad(text, format!("`{text}` is {}; expected {}", unit.dimension.describe(), expected.describe())))
+                let [found, expected] = [unit.dimension, expected].map(Dimension::describe);
+                Err(self.bad(text, format!("`{text}` is {found}; expected {expected}")))
             }
             _ => Ok(unit),
         }
@@ -118,13 +118,10 @@ fn estimate_to_si(e: &mut Estimate) -> Result<(), BadUnit> {
     let is_relative = power_law(&e.law.name) == Some(PowerLaw::InLogarithms);
     for (name, m) in &mut e.sigma {
         let expected = if is_relative { Some(Dimension::ONE) } else { known_dimension(name) };
-        let unit = Field { path: &["sigma", name], expected }.converted(&mut m.unit)?;
-        m.value = unit.difference_to_si(m.value);
+        scatter(m, &Field { path: &["sigma", name], expected })?;
     }
     for (name, RunScatter { constant, part: _, dof: _ }) in &mut e.run_scatter {
-        let field = Field { path: &["run_scatter", name], expected: known_dimension(name) };
-        let unit = field.converted(&mut constant.unit)?;
-        constant.value = unit.difference_to_si(constant.value);
+        scatter(constant, &Field { path: &["run_scatter", name], expected: known_dimension(name) })?;
     }
     for (name, range) in &mut e.validity {
         let Range { low, high, unit } = range;
@@ -154,9 +151,7 @@ fn estimate_to_si(e: &mut Estimate) -> Result<(), BadUnit> {
     }
     for error in e.errors.values_mut() {
         for (row, f) in error.sensitivity.iter_mut().zip(&factors) {
-            for entry in row.iter_mut() {
-                *entry *= f;
-            }
+            row.iter_mut().for_each(|entry| *entry *= f);
         }
     }
     Ok(())
@@ -164,6 +159,11 @@ fn estimate_to_si(e: &mut Estimate) -> Result<(), BadUnit> {
 
 fn measured(m: &mut Measured, field: &Field<'_>) -> Result<(), BadUnit> {
     m.value = field.converted(&mut m.unit)?.to_si(m.value);
+    Ok(())
+}
+
+fn scatter(m: &mut Measured, field: &Field<'_>) -> Result<(), BadUnit> {
+    m.value = field.converted(&mut m.unit)?.difference_to_si(m.value);
     Ok(())
 }
 

@@ -55,7 +55,6 @@ struct EstimateV1 {
     law: LawV1,
     #[serde(default)]
     geometry: IndexMap<String, Measured>,
-    #[serde(default)]
     density: Option<Measured>,
     #[serde(default)]
     frame: String,
@@ -72,7 +71,6 @@ struct EstimateV1 {
     #[serde(default)]
     n_observations: usize,
     coefficients: IndexMap<String, Coefficient>,
-    #[serde(default)]
     covariance: Option<CovarianceV1>,
     #[serde(default)]
     undetermined: Vec<String>,
@@ -82,7 +80,6 @@ struct EstimateV1 {
     diagnostics: Diagnostics,
     #[serde(default)]
     recommended: bool,
-    #[serde(default)]
     reason: Option<String>,
 }
 

@@ -33,12 +33,12 @@ impl Allowance {
     pub fn take(&mut self, path: &Path, bytes: usize) -> Result<(), RecordError> {
         self.taken = self.taken.saturating_add(bytes as u64);
         if self.taken > self.limit {
-            return Err(RecordError::TooLarge {
-                path: path.to_owned(),
-                bytes: self.taken,
-                limit: self.limit,
-                what: "the chunks of a run of this size, unpacked",
-            });
+            return Err(RecordError::too_large(
+                path,
+                self.taken,
+                self.limit,
+                "the chunks of a run of this size, unpacked",
+            ));
         }
         Ok(())
     }
@@ -52,12 +52,7 @@ impl Allowance {
 pub(crate) fn holds(path: &Path, ticks: usize, channels: usize) -> Result<(), RecordError> {
     let numbers = (ticks as u64).saturating_mul(channels as u64 + 1);
     if numbers > MOST_NUMBERS {
-        return Err(RecordError::TooLarge {
-            path: path.to_owned(),
-            bytes: 8 * numbers,
-            limit: 8 * MOST_NUMBERS,
-            what: "the channels of a run in memory",
-        });
+        return Err(RecordError::too_large(path, 8 * numbers, 8 * MOST_NUMBERS, "the channels of a run in memory"));
     }
     Ok(())
 }

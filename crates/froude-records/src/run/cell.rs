@@ -50,22 +50,17 @@ pub(crate) fn cell(root: &Section<'_>, frames: &[&str]) -> Result<Option<Cell>, 
         let out = s.placed_texts(key)?;
         if out.is_empty() { Err(s.missing(key, advice)) } else { Ok(out) }
     };
-    let columns: Vec<String> = list("columns", "name the channels of its bridges: columns = [\"g1\", \"g2\"]")?
-        .into_iter()
-        .map(|(name, _)| name)
-        .collect();
-    let count = |key: &'static str, found: usize, expected: usize, of: &str| match s.get(key) {
-        Some(value) if found != expected => {
-            Err(s.wrong(key, value, format!("has {found} entries; expected {expected}, one for each of the {of}")))
-        }
-        _ => Ok(()),
+    let columns = list("columns", "name the channels of its bridges: columns = [\"g1\", \"g2\"]")?;
+    let columns: Vec<String> = columns.into_iter().map(|(name, _)| name).collect();
+    let is_one_a_load = |key: &'static str, found: usize, expected: usize| {
+        let problem = format!("has {found} entries; expected {expected}, one for each of the loads");
+        s.refuse(key, found != expected, problem)
     };
-    if let (true, Some(value)) = (columns.len() > MOST, s.get("columns")) {
-        return Err(s.wrong("columns", value, format!("names {} bridges; at most {MOST} are read", columns.len())));
-    }
+    let problem = format!("names {} bridges; at most {MOST} are read", columns.len());
+    s.refuse("columns", columns.len() > MOST, problem)?;
     let mut loads: Vec<String> = Vec::new();
     for (load, place) in list("loads", "name the loads: loads = [\"f_x\", \"f_y\", \"m_z\"]")? {
-        let refuse = |problem: String| Err(RecordError::Value { place, key: "loads".to_owned(), problem });
+        let refuse = |problem: String| Err(RecordError::value(place, "loads", problem));
         if !LOADS.contains(&load.as_str()) {
             return refuse(format!("names {load:?}; {}", suggestion(&load, LOADS)));
         }
@@ -75,10 +70,10 @@ pub(crate) fn cell(root: &Section<'_>, frames: &[&str]) -> Result<Option<Cell>, 
         loads.push(load);
     }
     let texts = list("units", "write units = [\"N\", \"N\", \"N m\"], one for each load")?;
-    count("units", texts.len(), loads.len(), "loads")?;
+    is_one_a_load("units", texts.len(), loads.len())?;
     let mut units = Vec::new();
     for ((text, place), load) in texts.into_iter().zip(&loads) {
-        let refuse = |problem: String| RecordError::Value { place, key: "units".to_owned(), problem };
+        let refuse = |problem: String| RecordError::value(place, "units", problem);
         let expected = dimension_of_load(load);
         match parse_unit(&text) {
             Ok(unit) if unit.dimension == expected => units.push(unit),
@@ -89,29 +84,21 @@ pub(crate) fn cell(root: &Section<'_>, frames: &[&str]) -> Result<Option<Cell>, 
             Err(e) => return Err(refuse(format!("has {text:?} for {load}, which cannot be read: {e}"))),
         }
     }
-    let frame = s.text("frame")?.ok_or_else(|| {
-        s.missing("frame", "state along which axes its loads are: frame = \"body\", or a declared frame")
-    })?;
-    if let (false, Some(value)) = (frame == "body" || frames.contains(&frame), s.get("frame")) {
-        return Err(s.wrong(
-            "frame",
-            value,
-            format!("is {frame:?}; {}", suggestion(frame, frames.iter().copied().chain(["body"]))),
-        ));
-    }
-    let value = s.get("matrix").ok_or_else(|| s.missing("matrix", "write matrix = [[…], […]], a row for each load"))?;
-    let rows = value.get_ref().as_array();
-    let rows =
-        rows.ok_or_else(|| s.wrong("matrix", value, format!("is {}; expected rows of numbers", found(value))))?;
-    count("matrix", rows.len(), loads.len(), "loads")?;
+    let advice = "state along which axes its loads are: frame = \"body\", or a declared frame";
+    let frame = s.need_text("frame", advice)?;
+    let mut known = frames.iter().copied().chain(["body"]);
+    let problem = format!("is {frame:?}; {}", suggestion(frame, known.clone()));
+    s.refuse("frame", !known.any(|known| known == frame), problem)?;
+    let value = s.need("matrix", "write matrix = [[…], […]], a row for each load")?;
+    let no_rows = || s.wrong("matrix", value, format!("is {}; expected rows of numbers", found(value)));
+    let rows = value.get_ref().as_array().ok_or_else(no_rows)?;
+    is_one_a_load("matrix", rows.len(), loads.len())?;
     let mut matrix = Vec::new();
     for row in rows {
         let numbers = row.get_ref().as_array().filter(|numbers| numbers.len() == columns.len()).ok_or_else(|| {
-            s.wrong(
-                "matrix",
-                row,
-                format!("is {}; expected a row of {} numbers, one for each bridge", found(row), columns.len()),
-            )
+            let problem =
+                format!("is {}; expected a row of {} numbers, one for each bridge", found(row), columns.len());
+            s.wrong("matrix", row, problem)
         })?;
         matrix.push(numbers.iter().map(|x| s.as_number("matrix", x)).collect::<Result<Vec<f64>, _>>()?);
     }

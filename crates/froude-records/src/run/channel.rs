@@ -153,9 +153,7 @@ impl Meaning {
     /// A unit of another dimension than the quantity's, a sign against that of a name of Froude's own.
     pub(crate) fn read(s: &Section<'_>, name: &str, frames: &[&str]) -> Result<(Self, Words), RecordError> {
         s.only(&[&["quantity", "unit", "frame", "sign", "clock"], &KEYS_OF_SENSOR[..]].concat())?;
-        let unit = s
-            .text("unit")?
-            .ok_or_else(|| s.missing("unit", "write unit = \"m\", for example; \"1\" for counts and codes"))?;
+        let unit = s.need_text("unit", "write unit = \"m\", for example; \"1\" for counts and codes")?;
         let dimension =
             parse_unit(unit).map_err(|e| wrong(s, "unit", format!("is {unit:?}, which cannot be read: {e}")))?;
         let mut out = Self::of(name, unit, LOG);
@@ -262,5 +260,5 @@ impl Words {
 
 fn wrong(s: &Section<'_>, key: &'static str, problem: String) -> RecordError {
     let place = s.get(key).map_or_else(|| s.place(), |value: &Spanned<DeValue<'_>>| s.source.place(value.span().start));
-    RecordError::Value { place, key: key.to_owned(), problem }
+    RecordError::value(place, key, problem)
 }

@@ -54,11 +54,8 @@ pub(crate) fn clocks(root: &Section<'_>) -> Result<IndexMap<String, Clock>, Reco
     let mut out = IndexMap::new();
     for (name, _, value) in section.entries() {
         if is_own(name) {
-            return Err(section.wrong(
-                name,
-                value,
-                "is the log's own clock, which all others are aligned with; declare the others",
-            ));
+            let problem = "is the log's own clock, which all others are aligned with; declare the others";
+            return Err(section.wrong(name, value, problem));
         }
         out.insert(name.to_owned(), clock(&section.as_section(name, value)?)?);
     }
@@ -77,14 +74,8 @@ fn clock(s: &Section<'_>) -> Result<Clock, RecordError> {
         .text("found")?
         .filter(|found| !found.trim().is_empty())
         .ok_or_else(|| s.missing("found", "state how it was found: found = \"by cross-correlation with acc_heave\""))?;
-    for (key, is_wrong, what) in [
-        ("skew", skew.abs() > MOST_SKEW, "is beyond 100 ms/s, which no two clocks differ by"),
-        ("standard", standard_s < 0.0, "is negative; a standard uncertainty is not"),
-    ] {
-        if let (true, Some(value)) = (is_wrong, s.get(key)) {
-            return Err(s.wrong(key, value, what));
-        }
-    }
+    s.refuse("skew", skew.abs() > MOST_SKEW, "is beyond 100 ms/s, which no two clocks differ by")?;
+    s.refuse("standard", standard_s < 0.0, "is negative; a standard uncertainty is not")?;
     let origin_s = s.quantity("origin", Dimension::TIME)?.unwrap_or(0.0);
     Ok(Clock { offset_s, skew, origin_s, standard_s, found: found.to_owned() })
 }

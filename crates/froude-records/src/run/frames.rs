@@ -75,11 +75,8 @@ pub(crate) fn frames(root: &Section<'_>) -> Result<IndexMap<String, FrameSpec>, 
     let mut out: IndexMap<String, (FrameSpec, Place)> = IndexMap::new();
     for (name, _, value) in section.entries() {
         if Frame::NAMES.contains(&name) {
-            return Err(section.wrong(
-                name,
-                value,
-                "is a frame that is known already; give the sensor's another name, \"cell\" for example",
-            ));
+            let problem = "is a frame that is known already; give the sensor's another name, \"cell\" for example";
+            return Err(section.wrong(name, value, problem));
         }
         let s = section.as_section(name, value)?;
         let spec = frame(&s)?;
@@ -87,7 +84,7 @@ pub(crate) fn frames(root: &Section<'_>) -> Result<IndexMap<String, FrameSpec>, 
         out.insert(name.to_owned(), (spec, place));
     }
     let resolved = out.iter().map(|(name, (spec, place))| {
-        let refuse = |problem: String| RecordError::Value { place: place.clone(), key: "parent".to_owned(), problem };
+        let refuse = |problem: String| RecordError::value(place.clone(), "parent", problem);
         let (mut pose, mut parent) = (spec.pose, spec.parent.as_str());
         for _ in 0..=out.len() {
             if parent == Frame::Body.name() {
@@ -110,15 +107,12 @@ pub(crate) fn frames(root: &Section<'_>) -> Result<IndexMap<String, FrameSpec>, 
 
 fn frame(s: &Section<'_>) -> Result<FrameSpec, RecordError> {
     s.only(&["parent", "rotation", "origin"])?;
-    let parent = s.text("parent")?.ok_or_else(|| s.missing("parent", "write parent = \"body\""))?.to_owned();
-    let value = s
-        .get("rotation")
-        .ok_or_else(|| s.missing("rotation", "write rotation = { axis = \"z\", angle = \"90 deg\" }, or three rows"))?;
+    let parent = s.need_text("parent", "write parent = \"body\"")?.to_owned();
+    let value = s.need("rotation", "write rotation = { axis = \"z\", angle = \"90 deg\" }, or three rows")?;
     let rotation =
         if value.get_ref().as_array().is_some() { rows(s, value)? } else { about(&s.as_section("rotation", value)?)? };
-    let value = s.get("origin").ok_or_else(|| {
-        s.missing("origin", "write origin = [\"0.1 m\", \"0 m\", \"0 m\"], all zero where it lies in the parent's")
-    })?;
+    let advice = "write origin = [\"0.1 m\", \"0 m\", \"0 m\"], all zero where it lies in the parent's";
+    let value = s.need("origin", advice)?;
     let list = value.get_ref().as_array().filter(|list| list.len() == 3);
     let list = list.ok_or_else(|| s.wrong("origin", value, format!("is {}; expected three lengths", found(value))))?;
     let mut origin_m = [0.0; 3];
@@ -146,13 +140,10 @@ fn rows<'a>(s: &Section<'a>, value: &'a Spanned<DeValue<'a>>) -> Result<Rotation
     let off = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
     let off = off.map(|(i, j)| (dot(i, j) - f64::from(u8::from(i == j))).abs()).fold(0.0, f64::max);
     if off.is_nan() || off > ORTHONORMAL {
-        return Err(s.wrong(
-            "rotation",
-            value,
-            format!(
-                "turns nothing: its columns are off unit vectors at right angles by {off:.2e}, and {ORTHONORMAL:.0e} is allowed; write four digits or more, or an axis and an angle"
-            ),
-        ));
+        let problem = format!(
+            "turns nothing: its columns are off unit vectors at right angles by {off:.2e}, and {ORTHONORMAL:.0e} is allowed; write four digits or more, or an axis and an angle"
+        );
+        return Err(s.wrong("rotation", value, problem));
     }
     let [a, b, c] = out;
     let determinant =

@@ -11,7 +11,7 @@
 //! u_ctrl_V  = { name = "command", unit = "V" }
 //! ```
 //!
-//! The names of an axis ([`AXIS_NAMES`]) become channels of axis `y`, as in a run of the carriage; `force` and every other
+//! The names of an axis (`position`, `command`, …; a sidecar may also write `y/position` or `x/position` itself) become channels of axis `y`, as in a run of the carriage; `force` and every other
 //! name stay as they are. An entry may also say `quantity`, `frame` and `clock`; what it leaves out is what its name tells, as it is
 //! written there (`y/position` is along the chain, `position` has no frame until somebody says it). Times are kept as they are written; steps that are not even are reported, never resampled.
 
@@ -22,31 +22,20 @@ use indexmap::IndexMap;
 use crate::error::{Place, RecordError};
 use crate::estimate::Measured;
 use crate::finding::{Finding, Severity};
+use crate::raw_column::TWICE;
 use crate::run::channel::{LOG, Meaning};
 use crate::run::declarations::{Declarations, Told};
 use crate::run::extremes::Extremes;
+use crate::run::layout::AXIS;
 use crate::run::log::{Channel, Gap, GapCause, RunLog};
 use crate::run::meta::{Role, RunMeta, RunStatus};
 use crate::run::step::Step;
-use crate::run::ticks::Ticks;
+use crate::run::ticks::{Ticks, median};
 use crate::sidecar::{Mapping, Sidecar, read_sidecar};
-use crate::table::{Column, ColumnData, Table, sidecar_of};
+use crate::table::{ColumnData, Table, sidecar_of};
 use crate::table_file::read_table;
 use crate::text::counted;
 use crate::units::{Dimension, Unit};
-
-/// Names that belong to an axis; a sidecar may also write `y/position` or `x/position` itself.
-pub const AXIS_NAMES: [&str; 9] = [
-    "encoder",
-    "position",
-    "reference_position",
-    "reference_velocity",
-    "reference_acceleration",
-    "command",
-    "current",
-    "state",
-    "fault",
-];
 
 /// Steps that differ less than this from their median, relative to it, are even but for the clock's resolution.
 pub(crate) const EVEN: f64 = 0.01;
@@ -55,7 +44,7 @@ pub(crate) const EVEN: f64 = 0.01;
 pub(crate) const GAP: f64 = 1.5;
 
 /// A log that was imported, with what was found in it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImportedRun {
     /// Its sidecar, where it has one.
     pub sidecar: Option<Sidecar>,
@@ -89,7 +78,7 @@ pub struct Averaged {
 }
 
 /// Steps between ticks, s.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TimeSteps {
     /// The median: gaps do not move it.
     pub median_s: f64,
@@ -178,7 +167,7 @@ fn run(
             told.insert(channel_name(&column.name), entry.told(header));
         }
         if channels.insert(channel_name(&column.name), Channel { meaning, values: si.clone() }).is_some() {
-            return Err(RecordError::DuplicateColumn { place: Place::whole(&table.path), column: column.name.clone() });
+            return Err(RecordError::column(Place::whole(&table.path), &column.name, TWICE));
         }
     }
     let constants = sidecar.map(|s| &s.constants).into_iter().flatten().map(|(name, quantity)| {
@@ -200,17 +189,8 @@ fn run(
     let findings = vec![finding(table, steps, &lost)];
     let log = RunLog { path: table.path.clone(), time_s, channels, lost, meta, ..RunLog::default() };
     let declared = sidecar.map(|s| s.run.declared.clone()).unwrap_or_default();
-    Ok(ImportedRun {
-        sidecar: sidecar.cloned(),
-        log,
-        steps,
-        averaged: None,
-        recorded: IndexMap::new(),
-        findings,
-        told,
-        declared,
-        done: Vec::new(),
-    })
+    let sidecar = sidecar.cloned();
+    Ok(ImportedRun { sidecar, log, steps, findings, told, declared, ..ImportedRun::default() })
 }
 
 impl Mapping {
@@ -230,7 +210,7 @@ impl Mapping {
 }
 
 fn channel_name(name: &str) -> String {
-    if AXIS_NAMES.contains(&name) { format!("y/{name}") } else { name.to_owned() }
+    if AXIS.iter().any(|(of_axis, ..)| *of_axis == name) { format!("y/{name}") } else { name.to_owned() }
 }
 
 /// The time column, two ticks at least, increasing.
@@ -238,7 +218,7 @@ fn times(table: &Table) -> Result<Vec<f64>, RecordError> {
     let time_s = time_column(table)?;
     if time_s.len() < 2 {
         let problem = "has one value; a log needs two ticks at least".to_owned();
-        return Err(RecordError::Value { place: table.place_of_row(0), key: "time".to_owned(), problem });
+        return Err(RecordError::value(table.place_of_row(0), "time", problem));
     }
     match time_s.windows(2).position(|w| w[1] <= w[0]) {
         Some(row) => Err(not_increasing(table.place_of_row(row + 1), time_s[row], time_s[row + 1])),
@@ -248,28 +228,21 @@ fn times(table: &Table) -> Result<Vec<f64>, RecordError> {
 
 /// The times of a table, s.
 pub(crate) fn time_column(table: &Table) -> Result<&[f64], RecordError> {
-    let is_time = |c: &&Column| c.name == "time";
-    let Some(_) = table.columns.iter().find(is_time) else {
-        return Err(RecordError::UnknownColumn {
-            place: Place::whole(&table.path),
-            column: "time".to_owned(),
-            advice: "a log needs its times: head the column `time [s]`, or map it with { name = \"time\", unit = \"s\" } in \
-                     the sidecar"
-                .to_owned(),
-        });
-    };
+    if !table.columns.iter().any(|column| column.name == "time") {
+        let advice = "a log needs its times: head the column `time [s]`, or map it with { name = \"time\", unit = \"s\" } in the sidecar";
+        return Err(RecordError::unknown_column(Place::whole(&table.path), "time", advice));
+    }
     table.number("time", Dimension::TIME)
 }
 
 pub(crate) fn not_increasing(place: Place, before: f64, now: f64) -> RecordError {
     let problem = format!("is {now} s after {before} s; it must increase: sort the rows, or delete doubled ones");
-    RecordError::Value { place, key: "time".to_owned(), problem }
+    RecordError::value(place, "time", problem)
 }
 
 pub(super) fn steps(time_s: &[f64]) -> TimeSteps {
     let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
-    let middle = steps.len() / 2;
-    let median_s = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let median_s = median(&mut steps).unwrap_or(f64::NAN);
     let (shortest_s, longest_s) =
         steps.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), step| (low.min(*step), high.max(*step)));
     TimeSteps { median_s, shortest_s, longest_s }

@@ -19,7 +19,7 @@ pub(crate) const CDR_HEADER: [u8; 4] = [0, 1, 0, 0];
 pub(crate) const PREFIX_KEY: &str = "froude.prefix";
 
 /// The axes' channels, in the order of [`AxisSample`].
-const AXIS: [(&str, &str, Kind); 9] = [
+pub(crate) const AXIS: [(&str, &str, Kind); 9] = [
     ("encoder", "1", Kind::I64),
     ("position", "m", Kind::F64),
     ("reference_position", "m", Kind::F64),
@@ -211,7 +211,7 @@ impl Layout {
 }
 
 fn refuse(name: &str, problem: &str) -> RecordError {
-    RecordError::Channel { channel: name.to_owned(), problem: problem.to_owned() }
+    RecordError::Refused(format!("channel `{name}` {problem}"))
 }
 
 fn check(channel: &ChannelSpec) -> Result<(), RecordError> {
@@ -222,10 +222,8 @@ fn check(channel: &ChannelSpec) -> Result<(), RecordError> {
             && !part.contains("__")
     };
     if !channel.name.split('/').all(is_word) {
-        return Err(refuse(
-            &channel.name,
-            "is not a name: write words of a-z, 0-9 and _, joined by /, as in `y/position`",
-        ));
+        let problem = "is not a name: write words of a-z, 0-9 and _, joined by /, as in `y/position`";
+        return Err(refuse(&channel.name, problem));
     }
     parse_unit(&channel.unit)
         .map(|_| ())

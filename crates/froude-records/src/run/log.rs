@@ -10,6 +10,7 @@ use crate::nearest::suggestion;
 use crate::run::channel::Meaning;
 use crate::run::doubt::Doubt;
 use crate::run::meta::RunMeta;
+use crate::run::ticks::median;
 use crate::units::{Dimension, parse_unit};
 
 /// A whole run.
@@ -135,30 +136,18 @@ impl RunLog {
     ///
     /// No such channel (with the nearest name), or another dimension (with both units).
     pub fn channel(&self, name: &str, dimension: Dimension) -> Result<&[f64], RecordError> {
-        let channel = self.channels.get(name).ok_or_else(|| RecordError::UnknownColumn {
-            place: self.place(),
-            column: name.to_owned(),
-            advice: suggestion(name, self.channels.keys().map(String::as_str)),
-        })?;
-        let header = || format!("{name} [{}]", channel.meaning.unit);
-        let unit = parse_unit(&channel.meaning.unit).map_err(|e| RecordError::BadUnit {
-            place: self.place(),
-            column: header(),
-            problem: e.to_string(),
-        })?;
+        let near = || suggestion(name, self.channels.keys().map(String::as_str));
+        let unknown = || RecordError::unknown_column(self.place(), name, near());
+        let channel = self.channels.get(name).ok_or_else(unknown)?;
+        let header = format!("{name} [{}]", channel.meaning.unit);
+        let unit = parse_unit(&channel.meaning.unit)
+            .map_err(|e| RecordError::column(self.place(), &header, format!(": {e}")))?;
         if unit.dimension == dimension && unit.factor == 1.0 && unit.offset == 0.0 {
             return Ok(&channel.values);
         }
-        Err(RecordError::WrongDimension {
-            place: self.place(),
-            column: header(),
-            expected: dimension.describe(),
-            found: if unit.dimension == dimension {
-                format!("{unit}, which is not SI")
-            } else {
-                unit.dimension.describe()
-            },
-        })
+        let is_alike = unit.dimension == dimension;
+        let found = if is_alike { format!("{unit}, which is not SI") } else { unit.dimension.describe() };
+        Err(RecordError::wrong_dimension(self.place(), &header, &dimension.describe(), &found))
     }
 
     /// Where messages say that something of this run stands.
@@ -193,12 +182,7 @@ impl RunLog {
     #[must_use]
     pub fn sample_rate_hz(&self) -> Option<f64> {
         let mut steps: Vec<f64> = self.time_s.windows(2).map(|w| w[1] - w[0]).collect();
-        let middle = steps.len() / 2;
-        if steps.is_empty() {
-            return None;
-        }
-        let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-        (*median > 0.0).then(|| 1.0 / *median)
+        median(&mut steps).filter(|median| *median > 0.0).map(|median| 1.0 / median)
     }
 
     /// Rows with `from_s ≤ time < to_s`.
@@ -228,17 +212,6 @@ impl RunLog {
             meta: self.meta.clone(),
             doubts: self.doubts.clone(),
         }
-    }
-
-    /// Smallest and largest value of each channel, for `inspect`; channels without values are left out.
-    #[must_use]
-    pub fn ranges(&self) -> IndexMap<String, (f64, f64)> {
-        let range = |values: &[f64]| {
-            values.iter().fold(None, |range: Option<(f64, f64)>, v| {
-                Some(range.map_or((*v, *v), |(low, high)| (low.min(*v), high.max(*v))))
-            })
-        };
-        self.channels.iter().filter_map(|(name, c)| Some((name.clone(), range(&c.values)?))).collect()
     }
 
     /// Ticks that are known to be missing.

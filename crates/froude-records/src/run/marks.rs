@@ -93,16 +93,10 @@ pub(crate) fn marks(root: &Section<'_>) -> Result<Vec<Mark>, RecordError> {
 fn mark(s: &Section<'_>) -> Result<Mark, RecordError> {
     s.only(&["from", "to", "why", "by", "note"])?;
     let (from_s, to_s) = stretch(s)?;
-    let why = s
-        .text("why")?
-        .ok_or_else(|| s.missing("why", "write why = \"clipped\", \"dropped\", \"outlier\", or another word"))?;
-    if let (false, Some(value)) = (REASONS.contains(&why), s.get("why")) {
-        if why.trim().is_empty() {
-            return Err(s.wrong("why", value, "is empty; write clipped, dropped, outlier, or another word"));
-        }
-        if let Some(advice) = meant(why, REASONS) {
-            return Err(s.wrong("why", value, format!("is {why:?}; {advice}")));
-        }
+    let why = s.need_text("why", "write why = \"clipped\", \"dropped\", \"outlier\", or another word")?;
+    s.refuse("why", why.trim().is_empty(), "is empty; write clipped, dropped, outlier, or another word")?;
+    if let Some(advice) = meant(why, REASONS) {
+        s.refuse("why", !REASONS.contains(&why), format!("is {why:?}; {advice}"))?;
     }
     let by = s
         .text("by")?
@@ -115,22 +109,12 @@ fn mark(s: &Section<'_>) -> Result<Mark, RecordError> {
 /// `[[segments]]`.
 pub(crate) fn segments(root: &Section<'_>) -> Result<Vec<Segment>, RecordError> {
     let out: Vec<Segment> = few(root, "segments")?.iter().map(segment).collect::<Result<_, _>>()?;
-    let only = |kind: SegmentKind| {
-        let n = out.iter().filter(|segment| segment.kind == kind).count();
-        match root.get("segments") {
-            Some(value) if n > 1 => Err(root.wrong(
-                "segments",
-                value,
-                format!(
-                    "name {n} of the kind {:?}; a log has one, so split the log, or mark what lies between",
-                    kind.name()
-                ),
-            )),
-            _ => Ok(()),
-        }
-    };
-    only(SegmentKind::Steady)?;
-    only(SegmentKind::Test)?;
+    for kind in [SegmentKind::Steady, SegmentKind::Test] {
+        let (n, name) = (out.iter().filter(|segment| segment.kind == kind).count(), kind.name());
+        let problem =
+            format!("name {n} of the kind {name:?}; a log has one, so split the log, or mark what lies between");
+        root.refuse("segments", n > 1, problem)?;
+    }
     Ok(out)
 }
 
@@ -145,12 +129,8 @@ fn segment(s: &Section<'_>) -> Result<Segment, RecordError> {
 
 fn few<'a>(root: &Section<'a>, key: &'static str) -> Result<Vec<Section<'a>>, RecordError> {
     let out = root.sections(key)?;
-    match root.get(key) {
-        Some(value) if out.len() > MOST => {
-            Err(root.wrong(key, value, format!("are {}; at most {MOST} are read", out.len())))
-        }
-        _ => Ok(out),
-    }
+    root.refuse(key, out.len() > MOST, format!("are {}; at most {MOST} are read", out.len()))?;
+    Ok(out)
 }
 
 /// `from` and `to`, times of the log.
@@ -160,8 +140,6 @@ fn stretch(s: &Section<'_>) -> Result<(f64, f64), RecordError> {
             .ok_or_else(|| s.missing(key, &format!("write {key} = \"3.2 s\", in the time of the log")))
     };
     let (from_s, to_s) = (need("from")?, need("to")?);
-    match s.get("to") {
-        Some(value) if to_s < from_s => Err(s.wrong("to", value, format!("is {to_s} s, before from ({from_s} s)"))),
-        _ => Ok((from_s, to_s)),
-    }
+    s.refuse("to", to_s < from_s, format!("is {to_s} s, before from ({from_s} s)"))?;
+    Ok((from_s, to_s))
 }

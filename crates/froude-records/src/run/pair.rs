@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::error::{Place, RecordError, read_bytes};
+use crate::error::{RecordError, read_bytes};
 use crate::hash::fingerprint_of_file;
 use crate::run::doubt::DoubtKind;
 use crate::run::log::GapCause;
@@ -90,7 +90,7 @@ pub fn check_names(folder: &Path, id: &str, campaign: CampaignMark<'_>) -> Resul
         return Ok(None);
     }
     let meta = read_run_meta(&sidecar)?;
-    let refuse = |path: &Path, problem: String| Err(RecordError::NotItsRun { place: Place::whole(path), problem });
+    let refuse = |path: &Path, problem: String| Err(RecordError::Refused(format!("{} {problem}", path.display())));
     if meta.id != id {
         let problem = format!(
             "is the sidecar of run {}, not of {id}: it was renamed or exchanged; give log and sidecar the name of their own run, or \

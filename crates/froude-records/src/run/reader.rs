@@ -1,8 +1,8 @@
 //! Reading a run, whole or in bounded memory, however much of its file there is.
 //!
 //! A file that was cut off (power, `kill -9`, a full disk) gives every tick of its whole chunks, a gap that says what is
-//! missing, and the status `interrupted`. A damaged chunk is passed over and reported as a gap with its byte, or refused
-//! ([`RunReader::refuse_damage`]). A tick is taken only when every topic has its message of it.
+//! missing, and the status `interrupted`. A damaged chunk is passed over and reported as a gap with its byte. A tick is taken only when
+//! every topic has its message of it.
 //!
 //! **Whether it is the log.** Where the sidecar has the log's SHA-256 the whole file is summed before anything in it is read: one pass
 //! more over the file. All checksums that the file has itself (chunks, data, summary) are checked against it
@@ -21,6 +21,7 @@ use mcap::records::op;
 
 use crate::error::{Place, RecordError, reason};
 use crate::hash::Fingerprint;
+use crate::nearest::suggestion;
 use crate::run::allowance::{Allowance, holds};
 use crate::run::channel::{BOARD, LOG, Meaning};
 use crate::run::doubt::{Doubt, DoubtKind};
@@ -56,7 +57,6 @@ pub struct RunReader<R> {
     is_being_recorded: bool,
     /// The sidecar says that the run has no end yet.
     is_unfinished: bool,
-    refuses_damage: bool,
     has_ended: bool,
     schemas: IndexMap<u16, String>,
     topics: Vec<ReadTopic>,
@@ -133,9 +133,11 @@ impl<R: Read + Seek> RunReader<R> {
     /// As [`RunReader::open`].
     pub fn new(path: &Path, input: R, meta: Option<RunMeta>) -> Result<Self, RecordError> {
         let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
-        let walk = Walk::new(input).map_err(failed)?.ok_or_else(|| RecordError::Syntax {
-            place: Place::byte(path, 0),
-            problem: "the file does not begin as MCAP does; runs are MCAP files that `froude run` records".to_owned(),
+        let walk = Walk::new(input).map_err(failed)?.ok_or_else(|| {
+            RecordError::syntax(
+                Place::byte(path, 0),
+                "the file does not begin as MCAP does; runs are MCAP files that `froude run` records",
+            )
         })?;
         let id = || path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         let is_unfinished = meta.as_ref().is_some_and(|meta| meta.status == RunStatus::Running);
@@ -147,7 +149,6 @@ impl<R: Read + Seek> RunReader<R> {
             meta: meta.unwrap_or_else(|| RunMeta { id: id(), ..RunMeta::default() }),
             is_being_recorded: false,
             is_unfinished,
-            refuses_damage: false,
             has_ended: false,
             schemas: IndexMap::new(),
             topics: Vec::new(),
@@ -173,13 +174,6 @@ impl<R: Read + Seek> RunReader<R> {
         &self.doubts
     }
 
-    /// A damaged chunk is an error that names its byte, not a gap.
-    #[must_use]
-    pub fn refuse_damage(mut self) -> Self {
-        self.refuses_damage = true;
-        self
-    }
-
     /// Only these channels, in the order of the file: others cost neither time nor memory.
     ///
     /// # Errors
@@ -188,11 +182,8 @@ impl<R: Read + Seek> RunReader<R> {
     pub fn select(mut self, names: &[&str]) -> Result<Self, RecordError> {
         for name in names {
             if !self.channels.iter().any(|(own, _)| own == name) {
-                return Err(RecordError::UnknownColumn {
-                    place: Place::whole(&self.path),
-                    column: (*name).to_owned(),
-                    advice: crate::nearest::suggestion(name, self.channels.iter().map(|(own, _)| own.as_str())),
-                });
+                let near = suggestion(name, self.channels.iter().map(|(own, _)| own.as_str()));
+                return Err(RecordError::unknown_column(Place::whole(&self.path), name, near));
             }
         }
         let mut kept = 0;
@@ -313,7 +304,8 @@ impl<R: Read + Seek> RunReader<R> {
 
     fn take_metadata(&mut self, offset: u64, body: &[u8]) -> Result<(), RecordError> {
         let Some((name, entries)) = metadata(body) else {
-            return self.damaged(offset, "the metadata there does not fit into its record".to_owned());
+            self.damaged("the metadata there does not fit into its record".to_owned());
+            return Ok(());
         };
         if ![RECORD_NAME, END_RECORD_NAME].contains(&name) {
             return Ok(());
@@ -327,9 +319,6 @@ impl<R: Read + Seek> RunReader<R> {
                     other => other.to_string(),
                 };
                 let problem = format!("what is said of the run at byte {offset} cannot be read: {problem}");
-                if self.refuses_damage {
-                    return self.damaged(offset, problem);
-                }
                 self.damage.get_or_insert(problem);
                 return Ok(());
             }
@@ -374,20 +363,15 @@ impl<R: Read + Seek> RunReader<R> {
         }
         self.unpacked = unpacked;
         self.allowance.take(&self.path, self.unpacked.len())?;
-        problem
-            .map_or(Ok(()), |problem| self.damaged(offset, format!("the chunk at byte {offset} is damaged: {problem}")))
+        if let Some(problem) = problem {
+            self.damaged(format!("the chunk at byte {offset} is damaged: {problem}"));
+        }
+        Ok(())
     }
 
-    fn damaged(&mut self, offset: u64, problem: String) -> Result<(), RecordError> {
-        if self.refuses_damage {
-            return Err(RecordError::Syntax {
-                place: Place::byte(&self.path, offset),
-                problem: format!("{problem}; copy the file again, or read it without what is damaged"),
-            });
-        }
+    fn damaged(&mut self, problem: String) {
         self.damage.get_or_insert_with(|| problem.clone());
         self.rows.pending.get_or_insert((GapCause::Damaged, problem));
-        Ok(())
     }
 }
 

@@ -26,19 +26,15 @@ pub fn recorded_run(path: &Path) -> Result<ImportedRun, RecordError> {
     let mut log = read_run(path)?;
     if log.len() < 2 {
         let found = log.len();
-        return Err(RecordError::Value {
-            place: Place::whole(path),
-            key: "time".to_owned(),
-            problem: format!("has {found} values; a log needs two ticks at least"),
-        });
+        let problem = format!("has {found} values; a log needs two ticks at least");
+        return Err(RecordError::value(Place::whole(path), "time", problem));
     }
     let mut told = IndexMap::new();
     for (name, channel) in &mut log.channels {
         let meaning = &mut channel.meaning;
-        let unit = parse_unit(&meaning.unit).map_err(|e| RecordError::BadUnit {
-            place: Place::whole(path),
-            column: format!("{name} [{}]", meaning.unit),
-            problem: e.to_string(),
+        let unit = parse_unit(&meaning.unit).map_err(|e| {
+            let header = format!("{name} [{}]", meaning.unit);
+            RecordError::column(Place::whole(path), &header, format!(": {e}"))
         })?;
         let sign = f64::from(meaning.sign);
         channel.values.iter_mut().for_each(|x| *x = sign * unit.to_si(*x));
@@ -71,15 +67,6 @@ pub fn recorded_run(path: &Path) -> Result<ImportedRun, RecordError> {
     let steps = steps(&log.time_s);
     let findings: Vec<Finding> = log.doubts.iter().map(super::Doubt::finding).collect();
     let declared = std::mem::take(&mut log.meta.declared);
-    Ok(ImportedRun {
-        averaged: None,
-        recorded: indexmap::IndexMap::new(),
-        sidecar: None,
-        log: RunLog { doubts: Vec::new(), ..log },
-        steps,
-        findings,
-        told,
-        declared,
-        done: Vec::new(),
-    })
+    let log = RunLog { doubts: Vec::new(), ..log };
+    Ok(ImportedRun { log, steps, findings, told, declared, ..ImportedRun::default() })
 }

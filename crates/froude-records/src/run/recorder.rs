@@ -27,15 +27,15 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 
 use crate::error::{RecordError, reason};
+use crate::hash::Sealed;
 use crate::run::channel::{BOARD, Meaning};
 use crate::run::layout::{ChannelSpec, Layout, text};
 use crate::run::log::EventKind;
 use crate::run::meta::{RunMeta, RunStatus};
-use crate::run::seal::Sealed;
 use crate::run::sidecar::{END_RECORD_NAME, RECORD_NAME, to_record, write_run_meta};
 use crate::run::sync::Syncer;
 
-type Writer = mcap::Writer<NoSeek<BufWriter<Sealed>>>;
+type Writer = mcap::Writer<NoSeek<BufWriter<Sealed<File>>>>;
 
 /// Run time after which a chunk is handed to the system: 10 ms before the 50 ms that are claimed.
 const CHUNK_NS: u64 = 40_000_000;
@@ -142,10 +142,12 @@ impl Recorder {
     ///
     /// # Errors
     ///
-    /// [`RecordError::Tick`] for a tick that is not later than the last one, or a row of another length: nothing is
+    /// [`RecordError::Refused`] for a tick that is not later than the last one, or a row of another length: nothing is
     /// recorded, and recording may go on. [`RecordError::Recording`] where the disk is full or fails: stop the carriage.
     pub fn record(&mut self, tick: u64, row: &[f64]) -> Result<(), RecordError> {
-        let refuse = |problem: String| Err(RecordError::Tick { path: self.path.clone(), tick, problem });
+        let refuse = |problem: String| {
+            Err(RecordError::Refused(format!("cannot record tick {tick} of {}: {problem}", self.path.display())))
+        };
         let width = self.layout.channels().len();
         if row.len() != width {
             return refuse(format!("it has {} values, the layout has {width} channels", row.len()));
@@ -336,7 +338,7 @@ fn with_channels(mut meta: RunMeta, layout: &Layout) -> Result<RunMeta, RecordEr
         let known = meta.channels.entry(name.clone()).or_insert_with(|| Meaning::of(name, unit, BOARD));
         if known.unit != *unit {
             let problem = format!("is declared in {:?}, and is recorded in {unit:?}", known.unit);
-            return Err(RecordError::Channel { channel: name.clone(), problem });
+            return Err(RecordError::Refused(format!("channel `{name}` {problem}")));
         }
     }
     Ok(meta)
@@ -344,7 +346,7 @@ fn with_channels(mut meta: RunMeta, layout: &Layout) -> Result<RunMeta, RecordEr
 
 fn check(meta: &RunMeta) -> Result<(), RecordError> {
     let refuse =
-        |key: &str, problem: String| Err(RecordError::Meta { run: meta.id.clone(), key: key.to_owned(), problem });
+        |key: &str, problem: String| Err(RecordError::Refused(format!("run {:?}: `{key}` {problem}", meta.id)));
     let is_name = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     if meta.id.is_empty() || meta.id.len() > 200 || meta.id.starts_with('.') || !meta.id.chars().all(is_name) {
         return refuse(

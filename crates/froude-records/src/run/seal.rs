@@ -1,12 +1,8 @@
 //! Whether a log is the one that its sidecar was written for, and whether a run lies in a folder as it was driven.
 
 use std::fmt;
-use std::fs::File;
-use std::io::{self, Write};
 
-use sha2::{Digest as _, Sha256};
-
-use crate::hash::{Fingerprint, hexadecimal};
+use crate::hash::Fingerprint;
 use crate::run::meta::RunMeta;
 
 /// A campaign as its runs name it.
@@ -63,35 +59,4 @@ pub(crate) fn difference(recorded: &Fingerprint, found: &Fingerprint) -> Option<
         return Some(format!("has {} of the {} bytes that were recorded: it was cut off", found.bytes, recorded.bytes));
     }
     (found != recorded).then(|| "is not the file that was recorded, its SHA-256 is another".to_owned())
-}
-
-/// A file that is being written, and its fingerprint so far.
-pub(crate) struct Sealed {
-    file: File,
-    sum: Sha256,
-    bytes: u64,
-}
-
-impl Sealed {
-    pub fn new(file: File) -> Self {
-        Self { file, sum: Sha256::new(), bytes: 0 }
-    }
-
-    /// Of all that was written.
-    pub fn fingerprint(self) -> Fingerprint {
-        Fingerprint { bytes: self.bytes, sha256: hexadecimal(&self.sum.finalize()) }
-    }
-}
-
-impl Write for Sealed {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let n = self.file.write(bytes)?;
-        self.sum.update(&bytes[..n]);
-        self.bytes += n as u64;
-        Ok(n)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
-    }
 }

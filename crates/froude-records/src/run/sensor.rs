@@ -82,13 +82,8 @@ impl Sensor {
                 let dimension = of_unit("resolution", value)?;
                 let quantity = s.as_written("resolution", value, "resolution", dimension)?;
                 let step = quantity.unit.difference_to_si(quantity.value);
-                if step <= 0.0 {
-                    return Err(s.wrong(
-                        "resolution",
-                        value,
-                        format!("is {}; it must be larger than zero", found(value)),
-                    ));
-                }
+                let problem = format!("is {}; it must be larger than zero", found(value));
+                s.refuse("resolution", step <= 0.0, problem)?;
                 Some(step)
             }
             None => None,
@@ -108,24 +103,18 @@ fn range<'a>(s: &Section<'a>, value: &'a Spanned<DeValue<'a>>, dimension: Dimens
             [low, high] => {
                 Err(s.wrong("range", value, format!("goes from {low} to {high} in SI; the smaller end stands first")))
             }
-            _ => Err(s.wrong(
-                "range",
-                value,
-                format!("has {} ends; write [\"-2 N\", \"10 N\"], or \"±10 N\"", ends.len()),
-            )),
+            _ => {
+                let problem = format!("has {} ends; write [\"-2 N\", \"10 N\"], or \"±10 N\"", ends.len());
+                Err(s.wrong("range", value, problem))
+            }
         };
     }
     let text = s.as_text("range", value)?.trim();
     let bare = ["±", "+-", "+/-"].iter().find_map(|sign| text.strip_prefix(sign)).unwrap_or(text);
     let end = parse_quantity(bare).and_then(|quantity| quantity.expect(dimension));
     let end = end.map_err(|e| s.wrong("range", value, format!("is {text:?}, which cannot be read: {e}")))?;
-    if end <= 0.0 {
-        return Err(s.wrong(
-            "range",
-            value,
-            format!("is {text:?}; of a range that goes as far either way the half is larger than zero"),
-        ));
-    }
+    let problem = format!("is {text:?}; of a range that goes as far either way the half is larger than zero");
+    s.refuse("range", end <= 0.0, problem)?;
     Ok([-end, end])
 }
 
@@ -136,10 +125,8 @@ fn filter(s: &Section<'_>) -> Result<Filter, RecordError> {
     let is_causal = s.flag("causal")?.ok_or_else(|| {
         s.missing("causal", "write causal = true for a filter that delays, causal = false for one that was run forward and backward, or is centred")
     })?;
-    let unknown = |key: &'static str, of: &str| match s.get(key) {
-        Some(value) => Err(s.wrong(key, value, format!("belongs to another filter; a {of} has none"))),
-        None => Ok(()),
-    };
+    let unknown =
+        |key: &'static str, of: &str| s.refuse(key, true, format!("belongs to another filter; a {of} has none"));
     match kind {
         Kind::Butterworth => {
             unknown("length", "butterworth")?;

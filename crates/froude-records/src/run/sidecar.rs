@@ -299,9 +299,8 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
             &[&ALWAYS[..], &["method", "role", "mounted", "conditions", "carriage", "channels"], &declarations::KEYS]
                 .concat(),
         )?;
-        let method = s.text("method")?.ok_or_else(|| {
-            s.missing("method", "state the kind of experiment that it belongs to: \"tow\", \"free_decay\", …")
-        })?;
+        let advice = "state the kind of experiment that it belongs to: \"tow\", \"free_decay\", …";
+        let method = s.need_text("method", advice)?;
         let mounted = s.section("mounted")?.map(|m| {
             m.only(&[&MOUNTED[..], &["travel", "configuration"]].concat())?;
             mounted(&m)
@@ -316,13 +315,13 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
     let mut out = RunMeta {
         campaign: text("campaign")?,
         campaign_sha256: text("campaign_sha256")?,
-        id: s.text("id")?.ok_or_else(|| s.missing("id", "write id = \"…\", the name of the run's files"))?.to_owned(),
+        id: s.need_text("id", "write id = \"…\", the name of the run's files")?.to_owned(),
         method,
         role,
         mounted,
         carriage,
         configuration: configuration(s)?,
-        conditions: conditions(s)?,
+        conditions: quantities(s, "conditions")?,
         status: one_of(s, "status", &RunStatus::NAMES, &RunStatus::ALL)?.ok_or_else(|| {
             s.missing("status", "state how it ended: \"complete\", \"interrupted\", \"faulted\" or \"cut\"")
         })?,
@@ -349,11 +348,9 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
     }
     if let Some(log) = s.section("log")? {
         log.only(&["bytes", "sha256"])?;
-        let lacks =
-            |key| log.missing(key, "both are written when a log is finished; without them leave the section out");
-        let bytes = log.integer("bytes")?.ok_or_else(|| lacks("bytes"))?;
-        let sha256 = log.text("sha256")?.ok_or_else(|| lacks("sha256"))?.to_owned();
-        out.log = Some(Fingerprint { bytes, sha256 });
+        let advice = "both are written when a log is finished; without them leave the section out";
+        let bytes = log.integer("bytes")?.ok_or_else(|| log.missing("bytes", advice))?;
+        out.log = Some(Fingerprint { bytes, sha256: log.need_text("sha256", advice)?.to_owned() });
     }
     if let Some(clock) = s.section("clock")? {
         clock.only(&["host_at_zero", "drift", "standard_uncertainty"])?;
@@ -364,13 +361,7 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
             standard_uncertainty_s: part("standard_uncertainty", Dimension::TIME)?,
         });
     }
-    if let Some(constants) = s.section("constants")? {
-        for (name, _, value) in constants.entries() {
-            let quantity = constants.as_quantity(name, value)?;
-            let unit = quantity.unit.dimension.to_string();
-            out.constants.insert(name.to_owned(), Measured { value: quantity.value_si, unit });
-        }
-    }
+    out.constants = quantities(s, "constants")?;
     if let Some(versions) = s.section("versions")? {
         for (name, _, value) in versions.entries() {
             out.versions.insert(name.to_owned(), versions.as_text(name, value)?.to_owned());
@@ -385,15 +376,16 @@ pub(crate) fn configuration(s: &Section<'_>) -> Result<String, RecordError> {
     Ok(mounted.text("configuration")?.unwrap_or_default().to_owned())
 }
 
-/// `[conditions]`: quantities by name.
-pub(crate) fn conditions(s: &Section<'_>) -> Result<IndexMap<String, Measured>, RecordError> {
-    let Some(section) = s.section("conditions")? else { return Ok(IndexMap::new()) };
-    let one = |(name, _, value): (&str, usize, _)| {
+/// A section of quantities by name, in SI: `[conditions]`, `[constants]`.
+pub(crate) fn quantities(s: &Section<'_>, key: &'static str) -> Result<IndexMap<String, Measured>, RecordError> {
+    let Some(section) = s.section(key)? else { return Ok(IndexMap::new()) };
+    let mut out = IndexMap::new();
+    for (name, _, value) in section.entries() {
         let quantity = section.as_quantity(name, value)?;
         let unit = quantity.unit.dimension.to_string();
-        Ok((name.to_owned(), Measured { value: quantity.value_si, unit }))
-    };
-    section.entries().map(|(name, at, value)| one((name, at, value))).collect()
+        out.insert(name.to_owned(), Measured { value: quantity.value_si, unit });
+    }
+    Ok(out)
 }
 
 /// What is mounted: of a section of its own, in schema 1 of the file.
@@ -470,12 +462,9 @@ pub fn positive_declared(
     key: &'static str,
     dimension: Dimension,
 ) -> Result<Option<Declared>, RecordError> {
-    match (declared(s, key, dimension)?, s.get(key)) {
-        (Some(constant), Some(value)) if constant.value <= 0.0 => {
-            Err(s.wrong(key, value, format!("is {} in SI; it must be larger than zero", constant.value)))
-        }
-        (constant, _) => Ok(constant),
-    }
+    let Some(constant) = declared(s, key, dimension)? else { return Ok(None) };
+    s.refuse(key, constant.value <= 0.0, format!("is {} in SI; it must be larger than zero", constant.value))?;
+    Ok(Some(constant))
 }
 
 /// The same as [`declared`] of a key that a person chose.
@@ -494,9 +483,7 @@ pub fn declared_value<'a>(
     }
     let table = s.as_section(key, value)?;
     table.only(&["value", "standard"])?;
-    let written = table
-        .get("value")
-        .ok_or_else(|| table.missing("value", "a constant is a quantity, or { value = \"…\", standard = \"…\" }"))?;
+    let written = table.need("value", "a constant is a quantity, or { value = \"…\", standard = \"…\" }")?;
     let si = table.as_written("value", written, key, dimension)?.value_si;
     let Some(standard) = table.get("standard") else { return Ok(Declared::exact(si)) };
     let quantity = table.quantity_like("standard", standard, Some((key, dimension)))?;
@@ -505,8 +492,6 @@ pub fn declared_value<'a>(
     } else {
         table.as_written("standard", standard, key, dimension)?.value_si
     };
-    if standard_uncertainty < 0.0 {
-        return Err(table.wrong("standard", standard, "is negative; a standard uncertainty is not"));
-    }
+    table.refuse("standard", standard_uncertainty < 0.0, "is negative; a standard uncertainty is not")?;
     Ok(Declared { value: si, standard_uncertainty })
 }

@@ -81,7 +81,7 @@ impl Ticks {
                 1e3 * self.usual_s.unwrap_or(f64::NAN),
                 self.long.len()
             );
-            return Err(RecordError::Value { place: Place::whole(&part.path), key: "time".to_owned(), problem });
+            return Err(RecordError::value(Place::whole(&part.path), "time", problem));
         }
         Ok((time_s, gaps))
     }
@@ -92,8 +92,7 @@ impl Ticks {
     ///
     /// Steps whose median is not that of the first rows: what lies between would be averaged over unequal times.
     pub(crate) fn finish(mut self, path: &Path) -> Result<(TimeSteps, Vec<Gap>), RecordError> {
-        let refuse =
-            |problem: String| RecordError::Value { place: Place::whole(path), key: "time".to_owned(), problem };
+        let refuse = |problem: String| RecordError::value(Place::whole(path), "time", problem);
         let (Some(median_s), Some(usual_s)) = (median(&mut self.kept), self.usual_s) else {
             return Err(refuse("has one value; a log needs two ticks at least".to_owned()));
         };
@@ -110,7 +109,8 @@ impl Ticks {
     }
 }
 
-fn median(steps: &mut [f64]) -> Option<f64> {
+/// The middle one, in the order of size; `None` of none.
+pub(super) fn median(steps: &mut [f64]) -> Option<f64> {
     let middle = steps.len() / 2;
     (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

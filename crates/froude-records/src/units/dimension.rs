@@ -112,13 +112,6 @@ impl Dimension {
         is_written.then_some(self)
     }
 
-    /// Square root; `None` when an exponent is odd.
-    #[must_use]
-    pub fn checked_sqrt(self) -> Option<Self> {
-        let even = [self.m, self.kg, self.s, self.k, self.a].iter().all(|e| e % 2 == 0);
-        even.then_some(Self { m: self.m / 2, kg: self.kg / 2, s: self.s / 2, k: self.k / 2, a: self.a / 2 })
-    }
-
     /// In words with the SI unit, for messages: `a speed (m/s)`.
     #[must_use]
     pub fn describe(self) -> String {

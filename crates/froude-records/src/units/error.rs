@@ -1,7 +1,7 @@
 //! Why a text is no unit, and what was probably meant.
 
 use super::symbols::{NEVER_PREFIXED, PLAIN, PREFIXED, PREFIXES};
-use super::{Dimension, LARGEST_SI, number_length, parse_unit};
+use super::{Dimension, number_length, parse_unit};
 
 /// Why a text is not a unit or not the quantity asked for.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -21,32 +21,6 @@ pub enum UnitError {
         /// `; did you mean …?`, or nothing.
         advice: String,
     },
-    /// A character that does not belong into a unit.
-    #[error("`{unit}` is not a unit: {problem}")]
-    Syntax {
-        /// The unit as written.
-        unit: String,
-        /// What is wrong.
-        problem: String,
-    },
-    /// A product after a division.
-    #[error("`{unit}` can be read in two ways; put the divisor in parentheses, as in `kg/(m s)`")]
-    Ambiguous {
-        /// The unit as written.
-        unit: String,
-    },
-    /// `degC` inside a product.
-    #[error("`{unit}`: degC has an offset and can only stand alone; write K for differences")]
-    Offset {
-        /// The unit as written.
-        unit: String,
-    },
-    /// Exponents or factor beyond what numbers can hold.
-    #[error("`{unit}` is out of range: exponents must lie between -127 and 127")]
-    Range {
-        /// The unit as written.
-        unit: String,
-    },
     /// A quantity without a number.
     #[error("`{text}` does not begin with a number; write a quantity as `0.4 {unit}`")]
     NoNumber {
@@ -63,31 +37,22 @@ pub enum UnitError {
         /// The same with a unit, in backquotes.
         example: String,
     },
-    /// A decimal comma.
-    #[error("`{text}` has a decimal comma; write a decimal point, `{point}`")]
-    DecimalComma {
-        /// As written.
-        text: String,
-        /// The same with a point.
-        point: String,
-    },
-    /// A number beyond [`LARGEST_SI`].
-    #[error("`{text}` is not a finite number, or beyond {LARGEST_SI:e} in SI, as no quantity of a test is")]
-    NotFinite {
-        /// As written.
-        text: String,
-    },
-    /// A unit of another kind.
-    #[error("expected {expected}, found {found}")]
-    Dimension {
-        /// In words, with the SI unit.
-        expected: String,
-        /// In words, with the SI unit.
-        found: String,
-    },
+    /// A character that does not belong into a unit, a number that no quantity has, a unit of another kind: in words.
+    #[error("{0}")]
+    Other(String),
 }
 
 impl UnitError {
+    /// A text that is not a unit.
+    pub(super) fn syntax(unit: &str, problem: &str) -> Self {
+        Self::Other(format!("`{unit}` is not a unit: {problem}"))
+    }
+
+    /// Exponents or a factor beyond what numbers can hold.
+    pub(super) fn range(unit: &str) -> Self {
+        Self::Other(format!("`{unit}` is out of range: exponents must lie between -127 and 127"))
+    }
+
     /// The same error where the kind of quantity is known: what it suggests is of that kind.
     ///
     /// `text` is the quantity or unit as written, `usual` the unit that people write for it.

@@ -20,11 +20,13 @@ pub(super) struct Parser<'a> {
 
 impl Parser<'_> {
     pub(super) fn syntax(&self, problem: String) -> UnitError {
-        UnitError::Syntax { unit: self.text.to_owned(), problem }
+        UnitError::syntax(self.text, &problem)
     }
 
-    fn range(&self) -> UnitError {
-        UnitError::Range { unit: self.text.to_owned() }
+    /// A product after a division.
+    fn ambiguous(&self) -> UnitError {
+        let problem = "can be read in two ways; put the divisor in parentheses, as in `kg/(m s)`";
+        UnitError::Other(format!("`{}` {problem}", self.text))
     }
 
     fn skip_spaces(&mut self) {
@@ -45,7 +47,7 @@ impl Parser<'_> {
                 _ => {
                     // A space stood here, or two factors touch: `m(s)`.
                     if was_divided {
-                        return Err(UnitError::Ambiguous { unit: self.text.to_owned() });
+                        return Err(self.ambiguous());
                     }
                     let factor = self.power()?;
                     total = self.combine(total, factor, false)?;
@@ -53,7 +55,7 @@ impl Parser<'_> {
                 }
             };
             if was_divided && !divide {
-                return Err(UnitError::Ambiguous { unit: self.text.to_owned() });
+                return Err(self.ambiguous());
             }
             self.rest = &self.rest[c.len_utf8()..];
             let factor = self.power()?;
@@ -65,7 +67,7 @@ impl Parser<'_> {
     fn combine(&self, a: Scale, b: Scale, divide: bool) -> Result<Scale, UnitError> {
         let dimension =
             if divide { a.dimension.checked_div(b.dimension) } else { a.dimension.checked_mul(b.dimension) };
-        let dimension = dimension.ok_or_else(|| self.range())?;
+        let dimension = dimension.ok_or_else(|| UnitError::range(self.text))?;
         let (above, below) = if divide { (b.below, b.above) } else { (b.above, b.below) };
         Ok(Scale { above: a.above * above, below: a.below * below, dimension })
     }
@@ -88,7 +90,7 @@ impl Parser<'_> {
             self.symbol()?
         };
         let exponent = self.exponent()?;
-        let dimension = base.dimension.checked_powi(exponent).ok_or_else(|| self.range())?;
+        let dimension = base.dimension.checked_powi(exponent).ok_or_else(|| UnitError::range(self.text))?;
         let power = i32::from(exponent.unsigned_abs());
         let (above, below) = (base.above.powi(power), base.below.powi(power));
         Ok(if exponent < 0 {
@@ -117,7 +119,8 @@ impl Parser<'_> {
         }
         self.rest = rest;
         if matches!(symbol, "degC" | "°C") {
-            return Err(UnitError::Offset { unit: self.text.to_owned() });
+            let problem = "degC has an offset and can only stand alone; write K for differences";
+            return Err(UnitError::Other(format!("`{}`: {problem}", self.text)));
         }
         let (above, below, dimension) = look_up(symbol)
             .ok_or_else(|| UnitError::Unknown { symbol: symbol.to_owned(), advice: advice(symbol, None) })?;
@@ -161,8 +164,10 @@ impl Parser<'_> {
     }
 }
 
+/// The raised digits, from 0 on.
+pub(crate) const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
 fn superscript(c: char) -> Option<char> {
-    const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     if c == '⁻' {
         return Some('-');
     }

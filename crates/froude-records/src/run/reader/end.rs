@@ -30,9 +30,6 @@ impl<R: Read + Seek> RunReader<R> {
                 if self.meta.status == RunStatus::Running {
                     self.meta.status = RunStatus::Interrupted;
                 }
-                if self.refuses_damage {
-                    return self.damaged(0, problem);
-                }
                 self.damage.get_or_insert(problem);
             }
             End::CutOff { .. } if self.is_being_recorded => self.meta.status = RunStatus::Running,
@@ -56,9 +53,6 @@ impl<R: Read + Seek> RunReader<R> {
             End::Broken { offset, lost, problem } => {
                 self.meta.status = unfinished(self.meta.status);
                 let problem = format!("{problem}; the {lost} bytes from byte {offset} on cannot be read");
-                if self.refuses_damage {
-                    return self.damaged(offset, problem);
-                }
                 self.damage.get_or_insert_with(|| problem.clone());
                 block.lost.push(Gap { from_s, to_s: None, ticks: None, cause: GapCause::Damaged, text: problem });
             }
@@ -76,11 +70,11 @@ impl<R: Read + Seek> RunReader<R> {
         let mut both = self.channels.iter().filter_map(|(name, unit)| Some((name, unit, declared(name)?)));
         let Some((name, unit, declared)) = both.find(|(_, unit, declared)| unit != declared) else { return Ok(()) };
         let path = if self.has_sidecar { self.path.with_extension("toml") } else { self.path.clone() };
-        Err(RecordError::Value {
-            place: Place::whole(&path),
-            key: format!("channels.{name:?}.unit"),
-            problem: format!("is {declared:?}; expected {unit:?}, in which {} was recorded", self.path.display()),
-        })
+        Err(RecordError::value(
+            Place::whole(&path),
+            format!("channels.{name:?}.unit"),
+            format!("is {declared:?}; expected {unit:?}, in which {} was recorded", self.path.display()),
+        ))
     }
 
     /// A run has the name of its files; one that was set aside has a word more.
