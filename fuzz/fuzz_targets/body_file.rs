@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use froude_records::body::{Shape, parse_body};
+use froude::methods::added_mass::body_file::{Shape, parse_body};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

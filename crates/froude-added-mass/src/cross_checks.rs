@@ -1,5 +1,6 @@
 //! The matrix beside what closed forms, strips and printed tables give for the same or a like body.
 
+use crate::body_file::Shape;
 use froude_hydro::ellipsoid::{ellipsoid_added_mass, ellipsoid_volume_m3};
 use froude_hydro::strip::{Station, strip_added_mass};
 use froude_hydro::tabulated::circular_cylinder_added_mass_m3;
@@ -8,7 +9,6 @@ use froude_panel::matrix::AddedMass;
 use froude_panel::problem::Frame;
 use froude_panel::refine::Refined;
 use froude_records::block::{ResultTable, TableBuilder};
-use froude_records::body::Shape;
 use froude_records::number;
 
 use super::record::{diagonal_head, diagonal_key};

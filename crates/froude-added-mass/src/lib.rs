@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`source`] | the method: a mesh of a campaign, its estimates, page and exports |
 //! | [`options`] | what is asked for, as flags or keys of a campaign say it |
+//! | [`body_file`] | a shape by its dimensions, in TOML |
 //! | [`load`], [`shape`] | a body file or a mesh, read and checked; the meshes of a shape |
 //! | [`body`] | one body or mesh: what is computed, in which frame |
 //! | [`links`] | the robot with 1 to k links: the table, its least squares |
@@ -18,6 +19,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod body;
+pub mod body_file;
 mod cross_checks;
 mod error;
 mod exports;

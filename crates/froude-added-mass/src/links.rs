@@ -4,6 +4,7 @@
 
 use std::fmt::Write as _;
 
+use crate::body_file::{Shape, read_body};
 use froude_identify::IdentifyError;
 use froude_identify::dataset::Dataset;
 use froude_identify::law::ForceLaw;
@@ -12,7 +13,6 @@ use froude_identify::seam::{Reduced, fit};
 use froude_identify::source::SourceResult;
 use froude_panel::problem::Frame;
 use froude_panel::refine::{Refined, Wanted, refine};
-use froude_records::body::{Shape, read_body};
 use froude_records::campaign::{Identify, SourceKind};
 use froude_records::estimate::{Estimate, Range};
 use froude_records::finding::Finding;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::body_file::{Shape, read_body};
 use froude_mesh::check::{Trouble, check, extent};
 use froude_mesh::crossing::crossings;
 use froude_mesh::files::{self, Format, MeshFile};
@@ -13,7 +14,6 @@ use froude_mesh::repair::{WELD, merged};
 use froude_mesh::vector::{norm, sub};
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::family::Family;
-use froude_records::body::{Shape, read_body};
 use froude_records::finding::{Finding, Severity};
 
 use super::frame::Direction;

@@ -3,6 +3,7 @@
 //! The matrix has six rows and columns a part, in the part's own axes about its own point: force and moment on one part from the motion of
 //! another.
 
+use crate::body_file::{Shape, read_body};
 use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_identify::method::Export;
 use froude_mesh::Mesh;
@@ -19,7 +20,6 @@ use froude_panel::problem::{Frame, Problem, Solution};
 use froude_panel::refine::{Levels, RefineError, RefinedParts, Stop, refine_parts};
 use froude_panel::study::Size;
 use froude_records::block::{Block, ResultTable, TableBuilder};
-use froude_records::body::{Shape, read_body};
 use froude_records::estimate::{Coefficient, Estimate, Interval, Law, Measured, MethodUsed, ReferencePoint, Status};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;

@@ -1,9 +1,9 @@
 //! The meshes of a shape that a body file gives.
 
+use crate::body_file::Shape;
 use froude_mesh::robot::sections;
 use froude_mesh::sections::SectionBody;
 use froude_panel::family::Family;
-use froude_records::body::Shape;
 
 /// Similar meshes of a shape; of a robot with a number of links.
 #[must_use]

@@ -1,10 +1,10 @@
 //! Bodies of revolution: the matrix in azimuthal modes, to eight digits and more, and the meshes beside it as a check.
 
+use crate::body_file::Shape;
 use froude_panel::matrix::AddedMass;
 use froude_panel::problem::Frame;
 use froude_panel::refine::Refined;
 use froude_panel::revolution::{Revolution, Stretch, rounded_cylinder, solve as modes, spheroid};
-use froude_records::body::Shape;
 
 use super::record::entry_name;
 

@@ -8,7 +8,6 @@
 //! | campaign (TOML) | [`campaign`]; its options of added mass [`added_mass_options`]; sections of methods and of the carriage are read by the crates that use them |
 //! | table (CSV)     | [`csv_table`], in memory; [`chunks`], some rows at a time |
 //! | table (Parquet) | [`parquet_table`]                          |
-//! | body (TOML)     | [`body`]                                   |
 //! | sidecar (TOML)  | [`sidecar`]                                |
 //! | run (MCAP)      | [`run`]                                    |
 //! | estimate (JSON) | [`mod@estimate`], [`json`], [`schema`]     |

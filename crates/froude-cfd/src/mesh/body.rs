@@ -1,11 +1,12 @@
 //! Bodies as their computations need them: shape, lengths, and the O-grid or the cubes about them.
 
 use crate::section::{CfdSpec, CubeSpec, MeshSpec, Mesher};
+use froude_added_mass::body_file::{BodyFile, Shape};
 use froude_mesh::measure::Measure;
 use froude_mesh::sections::{Resolution, SectionBody};
 use froude_mesh::vector::Vec3;
 use froude_mesh::{Mesh, robot};
-use froude_records::body::{BodyFile, SemiAxes, Shape};
+use froude_records::body::SemiAxes;
 use froude_records::table::links_of_configuration;
 
 use crate::case::Reference;
@@ -168,7 +169,7 @@ mod tests {
     use std::f64::consts::PI;
     use std::path::Path;
 
-    use froude_records::body::parse_body;
+    use froude_added_mass::body_file::parse_body;
 
     use super::*;
 

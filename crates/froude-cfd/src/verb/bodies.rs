@@ -2,6 +2,7 @@
 
 use crate::body::{Shaped, shaped};
 use crate::surface::asymmetry;
+use froude_added_mass::body_file::read_body;
 use froude_added_mass::frame::Axes;
 use froude_added_mass::load::{is_body_file, read_mesh};
 use froude_added_mass::options::{Asked as Lies, unit_of};
@@ -12,7 +13,6 @@ use froude_mesh::mesh::Mesh;
 use froude_mesh::parts::part_troubles;
 use froude_mesh::plausible::{LARGEST_M, too_large};
 use froude_mesh::vector::dot;
-use froude_records::body::read_body;
 use froude_records::table::links_of_configuration;
 
 use super::{Asked, VerbError};

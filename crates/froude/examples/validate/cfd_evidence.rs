@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use froude_added_mass::body_file::read_body;
 use froude_cfd::again::Again;
 use froude_cfd::body::shaped;
 use froude_cfd::case::Case;
@@ -16,7 +17,6 @@ use froude_cfd::solve::How;
 use froude_cfd::store::Store;
 use froude_cfd::transient::{Times, solve_in_time};
 use froude_cfd::window::std_of_mean;
-use froude_records::body::read_body;
 use froude_records::hash::sha256_of_bytes;
 use froude_records::write::write_atomically;
 
