@@ -58,6 +58,7 @@ pub mod table;
 mod tare;
 pub mod two_units;
 pub mod uncertainty;
+pub mod unevenness;
 pub mod unexplained;
 pub mod validation;
 pub mod validity;

@@ -22,8 +22,8 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number::{plain, significant};
 
 use crate::dataset::{Dataset, unit_text};
-use crate::diagnosis::{FEWEST_FOR_SCATTER, Unevenness};
 use crate::regression::{ModelFit, Scatter, Variance};
+use crate::unevenness::{FEWEST_FOR_SCATTER, Unevenness};
 
 /// Chance of naming a row where all are sound, over all loads of a law.
 const FALSE_ALARM: f64 = 0.004;

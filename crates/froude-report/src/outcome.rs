@@ -6,8 +6,9 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::error::ReportError;
 use crate::findings::findings_by_severity;
-use crate::sheet::{count, sheet, table_markup};
+use crate::sheet::{count, sheet};
 use crate::tables::Tables;
+use crate::tables::typed::table_markup;
 use crate::{chart, field, map};
 
 /// An outcome as one self-contained HTML file.

@@ -15,9 +15,10 @@ use maud::{Markup, PreEscaped, html};
 use crate::figures::drawing::recommended;
 use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs};
 use crate::findings::findings_by_severity;
-use crate::sheet::{sheet, table_markup};
+use crate::sheet::sheet;
 use crate::side_by_side;
 use crate::symbol::unit_text;
+use crate::tables::typed::table_markup;
 use crate::tables::{self, Tables, counted, html_symbol};
 use froude_records::page::Report;
 

@@ -3,13 +3,14 @@
 mod budget;
 mod coefficients;
 mod selection;
+pub(crate) mod typed;
 
 use froude_records::block::TableBuilder;
 use froude_records::estimate::{Coefficient, Estimate, Range, Status};
 use froude_records::number;
 use maud::{Markup, html};
 
-use crate::sheet::table_markup;
+use self::typed::table_markup;
 use crate::symbol::{Rich, Style, symbol, unit_text};
 
 /// A count with its noun.

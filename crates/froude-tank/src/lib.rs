@@ -12,6 +12,7 @@ mod drawn;
 mod error;
 pub mod excited_response;
 mod fluid;
+mod inverted;
 pub mod joint;
 mod logs;
 mod long_logs;

@@ -152,9 +152,8 @@ fn two_sources_of_a_method_are_told_apart() {
     let path = |name: &str| folder.path().join(name);
     let mut text = "schema = 1\nname = \"two\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n".to_owned();
     for (name, axis) in [("slender", "60 mm"), ("stout", "90 mm")] {
-        let body = format!(
-            "schema = 1\nname = \"{name}\"\n[body]\nshape = \"ellipsoid\"\nsemi_axes = [\"100 mm\", \"{axis}\", \"{axis}\"]\n"
-        );
+        let axes = format!("semi_axis_x = \"100 mm\"\nsemi_axis_y = \"{axis}\"\nsemi_axis_z = \"{axis}\"\n");
+        let body = format!("schema = 1\nname = \"{name}\"\n[body]\nshape = \"ellipsoid\"\n{axes}");
         std::fs::write(path(&format!("{name}.toml")), body).unwrap();
         text += &format!("[[source]]\nname = \"{name}\"\nkind = \"potential\"\nmesh = \"{name}.toml\"\n");
     }

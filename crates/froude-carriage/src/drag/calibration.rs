@@ -27,8 +27,8 @@ pub mod record;
 pub mod source;
 
 use super::error::DragError;
-use super::fsm::reach;
 use super::run::{DragRun, RunKind};
+use super::steady::reach;
 use super::steady::{SteadySettings, window};
 
 /// The pulley's loss where both directions with light weights do not measure it, and nobody declared it: a ball bearing

@@ -9,8 +9,8 @@ use froude_fit::faer::Mat;
 use froude_fit::series::taper;
 use froude_fit::{Options, Problem, fit};
 
-use super::fsm::reach;
 use super::run::DragRun;
+use super::steady::reach;
 use super::steady::{SteadySettings, window};
 
 /// Spacing of the knots of a map, m, where that takes no more than 2501 of them: 0.1 m resolves a bump that is half a metre wide to 2 % of its height.
@@ -139,7 +139,7 @@ fn locate(position_m: f64, first_m: f64, spacing_m: f64, knots: usize) -> (usize
 #[must_use]
 pub fn cells(run: &DragRun<'_>, settings: SteadySettings) -> Vec<Cell> {
     let Ok(window) = window(run, settings) else { return Vec::new() };
-    let speed_m_s = super::fsm::mean_speed(run, window);
+    let speed_m_s = super::steady::mean_speed(run, window);
     let travelled = (speed_m_s * window.len() as f64 * run.step_s()).abs();
     let count = ((travelled / KNOT_SPACING_M).round() as usize).min(window.len()).max(1);
     let weights: Vec<f64> = taper(window.len()).collect();

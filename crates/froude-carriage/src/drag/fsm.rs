@@ -84,16 +84,3 @@ impl Zero {
 fn centre_s(run: &DragRun<'_>, window: Window) -> f64 {
     0.5 * (run.time_s[window.first] + run.time_s[window.end - 1])
 }
-
-/// Mean speed over a window, m/s, from its end positions.
-#[must_use]
-pub fn mean_speed(run: &DragRun<'_>, window: Window) -> f64 {
-    let (first, last) = (window.first, window.end - 1);
-    (run.position_m[last] - run.position_m[first]) / (run.time_s[last] - run.time_s[first])
-}
-
-/// Smallest and largest of a column.
-#[must_use]
-pub fn reach(column: &[f64]) -> [f64; 2] {
-    column.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
-}

@@ -10,8 +10,8 @@
 use froude_fit::series::mean;
 
 use super::friction::Friction;
-use super::fsm::reach;
 use super::run::DragRun;
+use super::steady::reach;
 use super::steady::{Rejected, SteadySettings, Window, driving_part, window};
 use crate::drag::point::Point;
 

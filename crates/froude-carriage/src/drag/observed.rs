@@ -142,7 +142,7 @@ impl<'r, 'a> Tows<'r, 'a> {
         let with_drag: Vec<(u32, Vec<Cell>)> = self.wet.iter().map(|r| (r.pair, cells(r, setup.steady))).collect();
         // A map is made where it is used: friction runs elsewhere would leave stretches of it that nobody passed.
         let towed: Vec<f64> = with_drag.iter().flat_map(|c| &c.1).map(|c| c.position_m).collect();
-        let [low, high] = fsm::reach(&towed);
+        let [low, high] = super::steady::reach(&towed);
         let is_near = |c: &&Cell| !is_mapped || (low - KNOT_SPACING_M..=high + KNOT_SPACING_M).contains(&c.position_m);
         let identify = |skip: Option<Cluster>| {
             let cells = without_drag.iter().filter(|c| Some(c.0) != skip).flat_map(|c| &c.1);

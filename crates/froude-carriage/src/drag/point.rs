@@ -2,9 +2,9 @@
 
 use froude_fit::series::Mean;
 
-use super::fsm::{mean_speed, reach};
 use super::run::DragRun;
 use super::steady::Window;
+use super::steady::{mean_speed, reach};
 
 /// A steady force.
 #[derive(Debug, Clone, PartialEq)]

@@ -17,9 +17,9 @@ use indexmap::IndexMap;
 
 use super::coefficient::Coefficient;
 use super::errors;
-use super::fsm::reach;
 use super::observed::Observed;
 use super::run::DragRun;
+use super::steady::reach;
 use crate::drag::point::{Method, Point, slope};
 use crate::drag::setup::{DragSetup, Efficiency};
 

@@ -380,6 +380,19 @@ fn head_against_rest(force: &[f64], window: Window, split: usize, step_s: f64) -
     (of(head) - of(rest), noise * (1.0 + longer).sqrt())
 }
 
+/// Mean speed over a window, m/s, from its end positions.
+#[must_use]
+pub fn mean_speed(run: &DragRun<'_>, window: Window) -> f64 {
+    let (first, last) = (window.first, window.end - 1);
+    (run.position_m[last] - run.position_m[first]) / (run.time_s[last] - run.time_s[first])
+}
+
+/// Smallest and largest of a column.
+#[must_use]
+pub fn reach(column: &[f64]) -> [f64; 2] {
+    column.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

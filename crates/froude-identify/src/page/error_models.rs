@@ -3,9 +3,9 @@
 use froude_records::number;
 
 use crate::dataset::unit_text;
-use crate::diagnosis::{FEWEST_FOR_SCATTER, unevenness};
 use crate::regression::ModelFit;
 use crate::result::SourceResult;
+use crate::unevenness::{FEWEST_FOR_SCATTER, unevenness};
 
 /// AICc differences below this are no evidence.
 const NO_EVIDENCE_BELOW: f64 = 2.0;

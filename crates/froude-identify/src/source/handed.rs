@@ -10,7 +10,7 @@ use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::regression::Scatter;
-use crate::seam::Reduced;
+use crate::seam::reduced::Reduced;
 use crate::uncertainty::SharedError;
 
 /// The method of rows that are read as they are.

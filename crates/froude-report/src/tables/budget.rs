@@ -2,9 +2,9 @@
 
 use maud::{Markup, html};
 
+use super::typed::table_markup;
 use super::{Tables, head_unit, html_symbol, union};
 use crate::figures::{budget_rows, ranked_inputs, share};
-use crate::sheet::table_markup;
 use crate::symbol::unit_text;
 use froude_records::block::TableBuilder;
 use froude_records::number;

@@ -7,8 +7,8 @@ use froude_records::estimate::{Coefficient, Estimate, Status};
 use froude_records::number::{self, MISSING};
 use maud::{Markup, html};
 
+use super::typed::table_markup;
 use super::{Tables, called, dagger, head_unit, html_symbol, html_unit, is_bare, named, sigma, union};
-use crate::sheet::table_markup;
 use crate::symbol::unit_text;
 
 /// Most models side by side in one table.

@@ -5,8 +5,8 @@ use froude_records::number::{self, MISSING};
 use froude_records::page::{SelectionRow, SourceSection};
 use maud::{Markup, html};
 
+use super::typed::table_markup;
 use super::{Tables, html_symbol, union};
-use crate::sheet::table_markup;
 use crate::symbol::unit_text;
 
 impl Tables {

@@ -22,8 +22,8 @@ use super::output_error::linearised;
 use super::record::LAW;
 use super::releases::{Logged, Planned, sensor_of, simulated};
 use super::run::{DecayRun, DecaySetup, Restoring};
+use crate::inverted::inverted;
 use crate::joint::conclude::part;
-use crate::joint::forecast::inverted;
 use crate::noise::correlated;
 use crate::plan::Expected;
 

@@ -20,11 +20,11 @@ use froude_fit::jackknife::{AtEqualErrors, at_equal_errors};
 use froude_fit::propagate::effective_dof;
 use froude_fit::{self as ls, Status};
 
-use super::forecast::inverted;
 use super::solve::{Solved, values};
 use super::{DeclaredError, Equation, JointFit, Problem, Unknown};
 use crate::between_runs::{BetweenRuns, between_runs};
 use crate::error::TankError;
+use crate::inverted::inverted;
 
 impl<E: Equation> Problem<'_, E> {
     /// Fits all runs together.

@@ -14,7 +14,6 @@
 use froude_fit::FEWEST_CLUSTERS;
 use froude_fit::budget::{Kind, Part};
 use froude_fit::faer::Mat;
-use froude_fit::faer::prelude::*;
 use froude_fit::jackknife::{AtEqualErrors, at_equal_errors};
 use froude_records::campaign::SensorSpec;
 
@@ -22,6 +21,7 @@ use super::conclude::part;
 use super::solve::Columns;
 use super::{Equation, Problem};
 use crate::error::TankError;
+use crate::inverted::inverted;
 use crate::noise::correlated;
 
 pub use crate::plan::Expected;
@@ -172,20 +172,4 @@ fn about_mean(mut column: Vec<f64>) -> Vec<f64> {
         *x -= mean;
     }
     column
-}
-
-/// The inverse of a symmetric positive matrix, its diagonal scaled to one first; `None` where it has none.
-pub(crate) fn inverted(matrix: &Mat<f64>) -> Option<Mat<f64>> {
-    let p = matrix.nrows();
-    let scale: Vec<f64> = (0..p).map(|i| matrix[(i, i)].sqrt()).collect();
-    if scale.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
-        return None;
-    }
-    let scaled = Mat::from_fn(p, p, |i, j| matrix[(i, j)] / (scale[i] * scale[j]));
-    let least = scaled.self_adjoint_eigenvalues(froude_fit::faer::Side::Lower).ok()?.first().copied()?;
-    if least < 1e-12 {
-        return None;
-    }
-    let inverse = scaled.llt(froude_fit::faer::Side::Lower).ok()?.solve(Mat::<f64>::identity(p, p));
-    Some(Mat::from_fn(p, p, |i, j| inverse[(i, j)] / (scale[i] * scale[j])))
 }

@@ -21,8 +21,8 @@ use super::simulate::senses;
 use super::simulate::{Plan, Simulated, loads_at, plan_of, simulated};
 use super::window::window;
 use crate::error::undeclared;
+use crate::inverted::inverted;
 use crate::joint::conclude::part;
-use crate::joint::forecast::inverted;
 use crate::plan;
 use crate::sensors::seed_and_sensors;
 

@@ -54,7 +54,7 @@ pub fn all(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
             let n = source.data.rows;
             let size: Vec<f64> = model.fit.residuals.iter().map(|r| r.abs()).collect();
             let rho =
-                froude::identify::diagnosis::rank_correlation(&size, source.data.values("speed").unwrap_or_default());
+                froude::identify::unevenness::rank_correlation(&size, source.data.values("speed").unwrap_or_default());
             claims.add(
                 SECTION,
                 &format!("{}: rank correlation of |residual| with speed; AICc in newtons", model.law.name),

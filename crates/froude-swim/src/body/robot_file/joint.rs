@@ -4,12 +4,9 @@ use froude_records::RecordError;
 use froude_records::section::Section;
 use froude_records::units::Dimension;
 
-use super::spatial::not_negative;
+use super::spatial::{DAMPING, not_negative};
 use crate::drive::Following;
 use crate::joints::Limits;
-
-/// N m s: a moment over an angular speed.
-pub(super) const DAMPING: Dimension = Dimension::new(2, 1, -1);
 
 /// Limits where they are declared, and drives.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

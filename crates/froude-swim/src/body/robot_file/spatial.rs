@@ -22,8 +22,10 @@ use froude_records::units::Dimension;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::joint::DAMPING;
 use super::{FromRecord, from_record};
+
+/// N m s: a moment over an angular speed.
+pub(super) const DAMPING: Dimension = Dimension::new(2, 1, -1);
 
 /// kg m².
 const INERTIA: Dimension = Dimension::new(2, 1, 0);
