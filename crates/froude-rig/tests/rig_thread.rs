@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use froude_control::fault::{Fault, StopCategory};
-use froude_control::request::Request;
+use froude_control::request::{Excitation, Request};
 use froude_control::status::Phase;
 use froude_records::Place;
 use froude_records::run::{Axis, BodyState, Role, RunStatus, read_run};
@@ -263,7 +263,8 @@ fn a_stop_from_another_host_ends_the_campaign_in_a_run_and_between_two() {
     let folder = tempfile::tempdir().unwrap();
     let mut steps = steps();
     if let Some(Step::Run(run)) = steps.last_mut() {
-        run.drive = Drive::Pulses { from_m: 0.5, volts: 0.5, period_s: 1.0, duty: 0.5, duration_s: 20.0 };
+        let excitation = Excitation::Pulses { volts: 0.5, period_s: 1.0, duty: 0.5, duration_s: 20.0 };
+        run.drive = Drive::Excitation { from_m: 0.5, excitation };
     }
     let mut rig = Running::new();
     let seen = Arc::clone(&rig.seen);

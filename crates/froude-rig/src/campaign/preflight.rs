@@ -68,6 +68,6 @@ pub fn check(
         Drive::Profile { from_m, to_m, speed_m_s } => {
             tow(run, Way { from_m, to_m, speed_m_s }, asked, control, expected)
         }
-        _ => excitation(run, control, expected),
+        Drive::Excitation { excitation: asked, .. } => excitation(run, asked, control, expected),
     }
 }

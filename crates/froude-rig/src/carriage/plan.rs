@@ -1,5 +1,6 @@
 //! From what is asked for to runs in order.
 
+use froude_control::request::Excitation;
 use froude_records::estimate::Measured;
 use froude_records::run::{Axis, BodyState, Direction, Role};
 use indexmap::IndexMap;
@@ -32,77 +33,45 @@ pub enum Drive {
         /// Steady speed, m/s.
         speed_m_s: f64,
     },
-    /// Pulses from `from_m` on.
-    Pulses {
+    /// What the controller is asked for at `from_m`; a jog is far enough from the soft limits that they do not end it.
+    Excitation {
         /// Start, m.
         from_m: f64,
-        /// Amplitude, V.
-        volts: f64,
-        /// Period, s.
-        period_s: f64,
-        /// Part of the period that is on.
-        duty: f64,
-        /// Length, s.
-        duration_s: f64,
-    },
-    /// Relay feedback about `from_m`.
-    Relay {
-        /// Start, m.
-        from_m: f64,
-        /// Height, V.
-        volts: f64,
-        /// Half width of the hysteresis, m.
-        hysteresis_m: f64,
-        /// Length, s.
-        duration_s: f64,
-    },
-    /// A sine of rising frequency on top of a slow tow.
-    Sweep {
-        /// Start, m.
-        from_m: f64,
-        /// Speed of the tow, m/s.
-        speed_m_s: f64,
-        /// Amplitude, V.
-        volts: f64,
-        /// First frequency, Hz.
-        from_hz: f64,
-        /// Last frequency, Hz.
-        to_hz: f64,
-        /// Length, s.
-        duration_s: f64,
-    },
-    /// A short open-loop jog from `from_m`: far enough from the soft limits that they do not end it.
-    Jog {
-        /// Start, m.
-        from_m: f64,
-        /// Command, V.
-        volts: f64,
-        /// It ends after this way, m.
-        distance_m: f64,
+        /// The signal.
+        excitation: Excitation,
     },
 }
 
 impl Drive {
+    /// Where the run starts, m.
+    #[must_use]
+    pub fn from_m(&self) -> f64 {
+        match *self {
+            Self::Profile { from_m, .. } | Self::Excitation { from_m, .. } => from_m,
+        }
+    }
+
     /// What a relay or a sweep is driven with, as constants of its run: whoever reads the log needs them, and they are in no channel.
     #[must_use]
     pub fn constants(&self) -> IndexMap<String, Measured> {
+        let Self::Excitation { excitation, .. } = *self else { return IndexMap::new() };
         let named = |constants: &[(&str, f64, &str)]| {
             let measured =
                 |&(name, value, unit): &(&str, f64, &str)| (name.to_owned(), Measured { value, unit: unit.to_owned() });
             constants.iter().map(measured).collect()
         };
-        match *self {
-            Self::Relay { volts, hysteresis_m, .. } => {
+        match excitation {
+            Excitation::Relay { volts, hysteresis_m, .. } => {
                 named(&[(RELAY_HEIGHT, volts, "V"), (RELAY_HYSTERESIS, hysteresis_m, "m")])
             }
-            Self::Sweep { speed_m_s, volts, from_hz, to_hz, duration_s, .. } => named(&[
+            Excitation::Sweep { speed_m_s, volts, from_hz, to_hz, duration_s } => named(&[
                 (SWEEP_SPEED, speed_m_s, "m/s"),
                 (SWEEP_AMPLITUDE, volts, "V"),
                 (SWEEP_FROM, from_hz, "Hz"),
                 (SWEEP_TO, to_hz, "Hz"),
                 (SWEEP_DURATION, duration_s, "s"),
             ]),
-            Self::Profile { .. } | Self::Pulses { .. } | Self::Jog { .. } => IndexMap::new(),
+            Excitation::Pulses { .. } | Excitation::Jog { .. } => IndexMap::new(),
         }
     }
 }
@@ -153,21 +122,21 @@ impl PlannedRun {
     /// Which way a profile goes.
     #[must_use]
     pub fn direction(&self) -> Option<Direction> {
-        match self.drive {
-            Drive::Profile { from_m, to_m, .. } => {
-                Some(if to_m > from_m { Direction::Forward } else { Direction::Backward })
-            }
-            Drive::Pulses { .. } | Drive::Relay { .. } => None,
-            Drive::Sweep { .. } => Some(Direction::Forward),
-            Drive::Jog { volts, .. } => Some(if volts > 0.0 { Direction::Forward } else { Direction::Backward }),
-        }
+        let is_forward = match self.drive {
+            Drive::Profile { from_m, to_m, .. } => to_m > from_m,
+            Drive::Excitation { excitation: Excitation::Sweep { .. }, .. } => true,
+            Drive::Excitation { excitation: Excitation::Jog { volts, .. }, .. } => volts > 0.0,
+            Drive::Excitation { .. } => return None,
+        };
+        Some(if is_forward { Direction::Forward } else { Direction::Backward })
     }
 
     /// Steady speed of a profile, m/s.
     #[must_use]
     pub fn speed_m_s(&self) -> Option<f64> {
         match self.drive {
-            Drive::Profile { speed_m_s, .. } | Drive::Sweep { speed_m_s, .. } => Some(speed_m_s),
+            Drive::Profile { speed_m_s, .. }
+            | Drive::Excitation { excitation: Excitation::Sweep { speed_m_s, .. }, .. } => Some(speed_m_s),
             _ => None,
         }
     }
@@ -185,7 +154,7 @@ pub enum Step {
 /// Way of the jog test, m: a reversed polarity is caught within it.
 const JOG_M: f64 = 0.01;
 /// It ends after this time in any case, s.
-pub const JOG_S: f64 = 1.0;
+const JOG_S: f64 = 1.0;
 /// Its command, V: twice breakaway of the paper's rig.
 const JOG_V: f64 = 1.0;
 
@@ -203,22 +172,16 @@ struct Planner<'a> {
 /// `start_m` is where forward runs begin. The order of the speeds within a half is drawn from `order_seed`.
 #[must_use]
 pub fn plan(asked: &CarriagePlan, start_m: f64, order_seed: u64) -> Vec<Step> {
-    let mut planner =
-        Planner { asked, start_m, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 };
+    let mut planner = Planner::new(asked, start_m);
     for (name, volts) in [("jog-forward", JOG_V), ("jog-backward", -JOG_V)] {
-        planner.run(name, Role::Jog, Drive::Jog { from_m: start_m, volts, distance_m: JOG_M }, None);
+        let jog = Excitation::Jog { volts, distance_m: JOG_M, duration_s: JOG_S };
+        planner.excite(name, Role::Jog, start_m, jog);
     }
     planner.warm_up();
     if let Some(p) = &asked.excitation {
-        let from_m = start_m + 0.5 * asked.distance_m;
-        let drive = Drive::Pulses {
-            from_m,
-            volts: p.amplitude_v,
-            period_s: p.period_s,
-            duty: p.duty,
-            duration_s: p.duration_s,
-        };
-        planner.run("pulses", Role::Excitation, drive, None);
+        let (volts, period_s, duty, duration_s) = (p.amplitude_v, p.period_s, p.duty, p.duration_s);
+        let pulses = Excitation::Pulses { volts, period_s, duty, duration_s };
+        planner.excite("pulses", Role::Excitation, start_m + 0.5 * asked.distance_m, pulses);
     }
     // Friction and force per volt are those of the wheel load that is towed: the body rides along, dry.
     if asked.friction.is_some() || asked.calibration.is_some() {
@@ -267,11 +230,10 @@ impl Default for Experiments {
 /// Relay and sweep on the bare carriage.
 #[must_use]
 pub fn tuning(asked: &CarriagePlan, start_m: f64, experiments: &Experiments) -> Vec<Step> {
-    let mut planner =
-        Planner { asked, start_m, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 };
+    let mut planner = Planner::new(asked, start_m);
     let &Experiments { relay_v: volts, hysteresis_m, relay_s: duration_s, .. } = experiments;
-    let from_m = start_m + 0.5 * asked.distance_m;
-    planner.run("relay", Role::Relay, Drive::Relay { from_m, volts, hysteresis_m, duration_s }, None);
+    let relay = Excitation::Relay { volts, hysteresis_m, duration_s };
+    planner.excite("relay", Role::Relay, start_m + 0.5 * asked.distance_m, relay);
     planner.sweep("sweep", experiments);
     planner.steps
 }
@@ -279,8 +241,7 @@ pub fn tuning(asked: &CarriagePlan, start_m: f64, experiments: &Experiments) -> 
 /// The same sweep bare, with the body dry, and wet: the load mode in each state.
 #[must_use]
 pub fn resonance(asked: &CarriagePlan, start_m: f64, experiments: &Experiments) -> Vec<Step> {
-    let mut planner =
-        Planner { asked, start_m, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 };
+    let mut planner = Planner::new(asked, start_m);
     planner.sweep("sweep-bare", experiments);
     planner.mount(BodyState::Dry, 0.0);
     planner.sweep("sweep-dry", experiments);
@@ -289,13 +250,21 @@ pub fn resonance(asked: &CarriagePlan, start_m: f64, experiments: &Experiments) 
     planner.steps
 }
 
-impl Planner<'_> {
+impl<'a> Planner<'a> {
+    fn new(asked: &'a CarriagePlan, start_m: f64) -> Self {
+        Self { asked, start_m, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 }
+    }
+
+    fn excite(&mut self, name: &str, role: Role, from_m: f64, excitation: Excitation) {
+        self.run(name, role, Drive::Excitation { from_m, excitation }, None);
+    }
+
     fn sweep(&mut self, name: &str, experiments: &Experiments) {
         let &Experiments {
             sweep_v: volts, sweep_hz: [from_hz, to_hz], sweep_s: duration_s, sweep_m_s: speed_m_s, ..
         } = experiments;
-        let from_m = self.start_m;
-        self.run(name, Role::Sweep, Drive::Sweep { from_m, speed_m_s, volts, from_hz, to_hz, duration_s }, None);
+        let sweep = Excitation::Sweep { speed_m_s, volts, from_hz, to_hz, duration_s };
+        self.excite(name, Role::Sweep, self.start_m, sweep);
     }
 
     fn run(&mut self, name: &str, role: Role, drive: Drive, pair: Option<(u32, u32)>) {

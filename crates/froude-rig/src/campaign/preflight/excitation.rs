@@ -1,6 +1,6 @@
 //! Forecast of an excitation: pulses, relay, sweep, jog, and what a hung weight does.
 
-use crate::carriage::plan::{Drive, JOG_S, PlannedRun};
+use crate::carriage::plan::PlannedRun;
 use froude_control::config::Config;
 use froude_control::request::Excitation;
 use froude_control::travel::{Rigid, foresee_excitation, preflight_excitation};
@@ -9,49 +9,34 @@ use super::tow::{Load, beyond_the_drive};
 use crate::campaign::preflight::forecast::{Expected, Forecast, Objection};
 
 /// Pulses, relay, sweep and jog. The controller holds them inside the soft limits by ending them: what would be ended is refused here.
-pub(super) fn excitation(run: &PlannedRun, control: &Config, expected: &Expected) -> (Forecast, Vec<Objection>) {
+pub(super) fn excitation(
+    run: &PlannedRun,
+    asked: Excitation,
+    control: &Config,
+    expected: &Expected,
+) -> (Forecast, Vec<Objection>) {
     let axis = &control.axes[run.axis as usize];
     let (drive, limits) = (&axis.drive, &axis.limits);
     let n_m_v = drive.torque_constant_n_m_a * drive.amplifier_a_v;
-    // Largest command, its root mean square, what the controller is asked, from where, and what to do about too much.
-    let (command_v, rms_v, duration_s, asked, from_m, advice) = match run.drive {
-        Drive::Profile { .. } => unreachable!("a tow is not an excitation"),
-        Drive::Pulses { from_m, volts, period_s, duty, duration_s } => (
-            volts.abs(),
-            volts.abs() * duty.sqrt(),
-            duration_s,
-            Excitation::Pulses { volts, period_s, duty, duration_s },
-            from_m,
-            "lower the amplitude of [carriage.excitation]",
-        ),
-        Drive::Relay { from_m, volts, hysteresis_m, duration_s } => (
-            volts.abs(),
-            volts.abs(),
-            duration_s,
-            Excitation::Relay { volts, hysteresis_m, duration_s },
-            from_m,
-            "the relay's height is fixed, this drive is too weak for it",
-        ),
-        Drive::Sweep { from_m, speed_m_s, volts, from_hz, to_hz, duration_s } => {
+    let from_m = run.drive.from_m();
+    // Largest command, its root mean square, how long, and what to do about too much.
+    let (command_v, rms_v, duration_s, advice) = match asked {
+        Excitation::Pulses { volts, duty, duration_s, .. } => {
+            (volts.abs(), volts.abs() * duty.sqrt(), duration_s, "lower the amplitude of [carriage.excitation]")
+        }
+        Excitation::Relay { volts, duration_s, .. } => {
+            (volts.abs(), volts.abs(), duration_s, "the relay's height is fixed, this drive is too weak for it")
+        }
+        Excitation::Sweep { speed_m_s, volts, duration_s, .. } => {
             // The sine comes on top of what the tow below it takes.
             let steady_v = Load::of(run, speed_m_s, axis, expected).steady_n_m / n_m_v;
-            (
-                steady_v + volts.abs(),
-                steady_v.hypot(volts / std::f64::consts::SQRT_2),
-                duration_s,
-                Excitation::Sweep { volts, from_hz, to_hz, duration_s, speed_m_s },
-                from_m,
-                "the sweep's amplitude is fixed, this drive is too weak for it",
-            )
+            let rms_v = steady_v.hypot(volts / std::f64::consts::SQRT_2);
+            let advice = "the sweep's amplitude is fixed, this drive is too weak for it";
+            (steady_v + volts.abs(), rms_v, duration_s, advice)
         }
-        Drive::Jog { from_m, volts, distance_m } => (
-            volts.abs(),
-            volts.abs(),
-            JOG_S,
-            Excitation::Jog { volts, distance_m, duration_s: JOG_S },
-            from_m,
-            "the jog's command is fixed, this drive is too weak for it",
-        ),
+        Excitation::Jog { volts, duration_s, .. } => {
+            (volts.abs(), volts.abs(), duration_s, "the jog's command is fixed, this drive is too weak for it")
+        }
     };
     let (current_a, rms_current_a) = (command_v * drive.amplifier_a_v, rms_v * drive.amplifier_a_v);
     let mut out = beyond_the_drive("it", advice, [command_v, current_a, rms_current_a], axis);

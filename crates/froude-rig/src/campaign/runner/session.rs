@@ -1,6 +1,6 @@
 //! One order at a time, on the rig's thread: begun, watched, ended.
 
-use crate::carriage::plan::{Drive, JOG_S, PlannedRun};
+use crate::carriage::plan::{Drive, PlannedRun};
 use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::{Phase, Refusal};
@@ -90,18 +90,12 @@ impl<'a, 'o> Session<'a, 'o> {
     /// beyond the start would not fit into the travel.
     fn approach(&mut self) -> Result<(), RunnerError> {
         let mut speed_m_s = self.setting.return_speed_m_s;
-        let target_m = match self.run.drive {
-            Drive::Profile { from_m, speed_m_s: own_m_s, .. } => {
-                if self.run.hung_weight_n != 0.0 {
-                    speed_m_s = own_m_s;
-                }
-                from_m
-            }
-            Drive::Pulses { from_m, .. }
-            | Drive::Relay { from_m, .. }
-            | Drive::Sweep { from_m, .. }
-            | Drive::Jog { from_m, .. } => from_m,
-        };
+        if let Drive::Profile { speed_m_s: own_m_s, .. } = self.run.drive
+            && self.run.hung_weight_n != 0.0
+        {
+            speed_m_s = own_m_s;
+        }
+        let target_m = self.run.drive.from_m();
         loop {
             match self.go(target_m, speed_m_s) {
                 Err(RunnerError::Refused { refusal: Refusal::BeyondTravel, .. })
@@ -145,19 +139,7 @@ impl<'a, 'o> Session<'a, 'o> {
                 self.go(to_m, speed_m_s)?;
                 None
             }
-            Drive::Pulses { volts, period_s, duty, duration_s, .. } => {
-                self.excite("pulses", Excitation::Pulses { volts, period_s, duty, duration_s }, duration_s)?
-            }
-            Drive::Relay { volts, hysteresis_m, duration_s, .. } => {
-                self.excite("relay", Excitation::Relay { volts, hysteresis_m, duration_s }, duration_s)?
-            }
-            Drive::Sweep { speed_m_s, volts, from_hz, to_hz, duration_s, .. } => {
-                let sweep = Excitation::Sweep { volts, from_hz, to_hz, duration_s, speed_m_s };
-                self.excite("sweep", sweep, duration_s)?
-            }
-            Drive::Jog { volts, distance_m, .. } => {
-                self.excite("jog", Excitation::Jog { volts, distance_m, duration_s: JOG_S }, JOG_S)?
-            }
+            Drive::Excitation { excitation, .. } => self.excite(excitation)?,
         };
         if let Some(why) = &cut {
             self.event(EventKind::Warning, why);
@@ -168,13 +150,14 @@ impl<'a, 'o> Session<'a, 'o> {
     }
 
     /// Excites the axis; gives why that was not all that was planned, where it was not.
-    fn excite(
-        &mut self,
-        what: &'static str,
-        excitation: Excitation,
-        duration_s: f64,
-    ) -> Result<Option<String>, RunnerError> {
+    fn excite(&mut self, excitation: Excitation) -> Result<Option<String>, RunnerError> {
         let axis = self.axis();
+        let (what, duration_s) = match excitation {
+            Excitation::Pulses { duration_s, .. } => ("pulses", duration_s),
+            Excitation::Relay { duration_s, .. } => ("relay", duration_s),
+            Excitation::Sweep { duration_s, .. } => ("sweep", duration_s),
+            Excitation::Jog { duration_s, .. } => ("jog", duration_s),
+        };
         let begun = self.ask("excite", Request::Excite { axis, excitation })?;
         let mut last = None;
         let ended = self.until(what, duration_s + 30.0, |s| {
