@@ -21,6 +21,7 @@ use indexmap::IndexMap;
 
 use crate::conditioning;
 use crate::error::{TankError, undeclared};
+use crate::joint::findings::{note, warning};
 use crate::long_logs::{self, LENGTHS, Lengths, Reading};
 use crate::motion::Motion;
 
@@ -86,13 +87,13 @@ pub(crate) fn read_averaging(
         }
         if meta.status != RunStatus::Complete {
             let text = format!("{}: its sidecar says {}, not complete; left out", path.display(), meta.status.name());
-            out.findings.push(Finding::new(Severity::Warning, "run-left-out", text));
+            out.findings.push(warning("run-left-out", text));
             continue;
         }
         let role = meta.role;
         if !roles.contains(&role) {
             let text = format!("{}: a run of the role {} is not used by {method}", path.display(), role.name());
-            out.findings.push(Finding::new(Severity::Warning, "run-left-out", text));
+            out.findings.push(warning("run-left-out", text));
             continue;
         }
         out.findings.extend(long_logs::note(&log));
@@ -157,7 +158,7 @@ pub(crate) fn of_a_calendar(logs: &[ImportedRun]) -> Option<Finding> {
         counted(logs.iter().filter(has_it).count(), "log", "logs")
     );
     let text = if logs.len() == 1 { format!("{}: {text}", first.log.path.display()) } else { text };
-    Some(Finding::new(Severity::Note, "times-from-start", text))
+    Some(note("times-from-start", text))
 }
 
 /// Refuses an entry of the budget that not all runs share: these methods have one gain for all.
@@ -343,7 +344,7 @@ pub(crate) fn no_run(source: &Source, first: Option<TankError>) -> MethodError {
 }
 
 pub(crate) fn left_out(why: &TankError) -> Finding {
-    Finding::new(Severity::Warning, "run-left-out", format!("left out: {why}"))
+    warning("run-left-out", format!("left out: {why}"))
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::joint::findings::warning;
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::chunks::{count_rows, for_each_chunk};
@@ -220,7 +221,7 @@ pub(crate) fn too_coarse(log: &ImportedRun, frequency_hz: f64) -> Option<Finding
         "{}: the averages that the log is read in leave {left:.4} of what moves at {frequency_hz:.2} Hz, in every channel; cut the log into shorter runs",
         log.log.path.display()
     );
-    Some(Finding::new(Severity::Warning, "averages-too-coarse", text))
+    Some(warning("averages-too-coarse", text))
 }
 
 /// The step as a record states it, of the logs that were averaged; `frequencies_hz` is the fastest tone that counts in each.

@@ -43,7 +43,6 @@ fn the_drag_of_a_run_that_still_accelerates_has_the_error_that_it_states() {
             let position_m: Vec<f64> = trace.position_m.iter().map(|x| x + error()).collect();
             let run = WeightRun {
                 id: "a",
-                configuration: "",
                 angle_rad: 0.0,
                 weight_n,
                 time_s: &trace.time_s,

@@ -4,11 +4,12 @@ use froude_fit::distribution::t_two_sided;
 use froude_identify::lag::{ALARM, Lag, of_load};
 use froude_identify::regression::ModelFit;
 use froude_records::campaign::Campaign;
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Finding;
 use froude_records::number::{p_equation, plain, significant};
 
 use super::law::names;
 use super::reduce::{Reduced, Setup};
+use crate::joint::findings::warning;
 
 /// The lag of the force behind the motion, where the rows show it.
 pub(super) fn finding(campaign: &Campaign, reduced: &Reduced, setup: &Setup, model: &ModelFit) -> Option<Finding> {
@@ -31,6 +32,6 @@ pub(super) fn finding(campaign: &Campaign, reduced: &Reduced, setup: &Setup, mod
             significant(1e3 * delay_s, 3),
             significant(1e3 * standard_s, 2),
         );
-        Finding::new(Severity::Warning, "lag", text)
+        warning("lag", text)
     })
 }

@@ -20,6 +20,7 @@ use super::{lag, page, plan, section, simulate};
 use crate::between_runs::FEWEST_RUNS;
 use crate::declared::{check, gain as gain_of, needed};
 use crate::error::undeclared;
+use crate::joint::findings::{note, warning};
 use crate::logs::{self, Logs, no_run};
 use crate::method::TankMethod;
 use crate::reference;
@@ -78,13 +79,13 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
     if laws.len() > 1 {
         let text = "several laws are compared as if the rows of a run were independent, so that a law with more terms wins too easily: trust it where its extra coefficients \
                     are outside their intervals of zero";
-        findings.push(Finding::new(Severity::Warning, "laws-by-rows", text.to_owned()));
+        findings.push(warning("laws-by-rows", text.to_owned()));
     }
     if let Some(other) = &campaign.identify.covariance {
         let text = format!(
             "covariance = {other:?} of [identify] is not used: rows of a run follow each other in time, and their scatter is that of runs, or counts their correlation"
         );
-        findings.push(Finding::new(Severity::Note, "covariance-of-the-method", text));
+        findings.push(note("covariance-of-the-method", text));
     }
     let observations = Observations {
         data: reduced.data.clone(),
@@ -257,7 +258,7 @@ fn few(reduced: &Reduced) -> Option<Finding> {
             "{}: what changes from run to run is not included in the intervals; {FEWEST_RUNS} runs show it, five show it well",
             counted(n, "run", "runs")
         );
-        Finding::new(Severity::Warning, "few-runs", text)
+        warning("few-runs", text)
     })
 }
 
@@ -296,7 +297,7 @@ fn of_runs(reduced: &Reduced, setup: &Setup, spec: &AcceleratedTowSpec, relative
             1e2 * noise,
             setup.window_s
         );
-        out.push(Finding::new(Severity::Warning, "acceleration-noise", text));
+        out.push(warning("acceleration-noise", text));
     }
     for (body, mass) in setup.bodies.iter().zip(&reduced.masses) {
         if let Some(stated) = body.mass_kg.filter(|_| mass.is_weighed) {
@@ -312,14 +313,14 @@ fn of_runs(reduced: &Reduced, setup: &Setup, spec: &AcceleratedTowSpec, relative
                     stated.value,
                     stated.standard_uncertainty
                 );
-                out.push(Finding::new(Severity::Warning, "mass-contradicted", text));
+                out.push(warning("mass-contradicted", text));
             }
         }
     }
     if spec.delay_s.is_none() && setup.delay_s.standard_uncertainty == 0.0 {
         let text = "no delay of the force behind the motion is declared, and none is taken: a filter of the cell that the encoder does not have moves drag into added mass; write \
                     delay = { value = \"0 ms\", standard = \"2 ms\" } in [source.accelerated_tow]";
-        out.push(Finding::new(Severity::Note, "no-delay", text.to_owned()));
+        out.push(note("no-delay", text.to_owned()));
     }
     out
 }

@@ -8,7 +8,6 @@
 //! cubic spline; rows for which one of them has no data are cut off, never extrapolated.
 
 use froude_identify::method::MethodError;
-use froude_records::finding::{Finding, Severity};
 use froude_records::number::{percent, plain, significant};
 use froude_records::run::clocks::is_own;
 use froude_records::run::marks::{Mark, SegmentKind};
@@ -22,6 +21,7 @@ use froude_signal::resample::Spline;
 use indexmap::IndexMap;
 
 use super::stretches::keep_rows;
+use crate::joint::findings::warning;
 
 /// Methods of a periodic motion.
 const PERIODIC: [&str; 4] = [FORCED_OSCILLATION, FREE_DECAY, ROTATION, EXCITED_RESPONSE];
@@ -89,7 +89,7 @@ pub fn stamps(run: &mut ImportedRun, method: &str) -> Stamps {
                     percent(gain),
                     plain(signal_hz, 4)
                 );
-                findings.push(Finding::new(Severity::Warning, "filter-at-the-signal", text));
+                findings.push(warning("filter-at-the-signal", text));
             }
         }
         if clock.is_some() || late_s != 0.0 {

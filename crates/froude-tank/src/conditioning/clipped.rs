@@ -6,7 +6,6 @@
 
 use std::ops::Range;
 
-use froude_records::finding::{Finding, Severity};
 use froude_records::number::plain;
 use froude_records::run::marks::Mark;
 use froude_records::run::step::Step;
@@ -15,6 +14,7 @@ use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::align::Stamps;
+use crate::joint::findings::warning;
 
 /// Fewest samples of a flat stretch.
 const FEWEST: usize = 5;
@@ -60,8 +60,7 @@ pub fn mark(run: &mut ImportedRun, stamps: &Stamps) {
             plain(from_s, 5),
             plain(to_s, 5)
         );
-        findings.push(Finding::new(
-            Severity::Warning,
+        findings.push(warning(
             "channel-clipped",
             format!(
                 "{}: {name}: the sensor is clipped: {words}; widen its range, or move less",

@@ -6,7 +6,6 @@
 //! **Source.** Any textbook of statics; SNAME (1952) for the axes.
 
 use froude_identify::method::MethodError;
-use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::suggestion;
 use froude_records::number::plain;
 use froude_records::run::cell::{LOADS, dimension_of_load};
@@ -16,6 +15,7 @@ use froude_records::run::step::Step;
 use froude_records::run::{Channel, Frame, ImportedRun, LOG, Meaning, Told};
 
 use crate::error::undeclared;
+use crate::joint::findings::warning;
 
 /// A part of a rotation or of an arm, as part of 1 or of 1 m, that carries nothing: the cosine of 90° is 6e-17.
 const NOTHING: f64 = 1e-9;
@@ -150,7 +150,7 @@ pub fn in_body(run: &mut ImportedRun) -> Result<(), MethodError> {
                 run.log.path.display(),
                 lost.join(", ")
             );
-            run.findings.push(Finding::new(Severity::Warning, "load-not-turned", text));
+            run.findings.push(warning("load-not-turned", text));
         }
         let words = format!(
             "turned from the frame {frame} into the body's axes, R = {}, its origin at ({}) m from the reference point{}",

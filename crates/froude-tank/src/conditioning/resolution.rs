@@ -6,7 +6,7 @@
 //!
 //! **Source.** JCGM 100:2008 (GUM), F.2.2.1; Widrow & Kollár (2008), *Quantization Noise*, ch. 4.
 
-use froude_records::finding::{Finding, Severity};
+use crate::joint::findings::warning;
 use froude_records::number::significant;
 use froude_records::run::ImportedRun;
 
@@ -44,7 +44,7 @@ pub fn check(run: &mut ImportedRun) {
             significant(standard, 2),
             significant(noise, 2)
         );
-        found.push(Finding::new(Severity::Warning, "quantised", text));
+        found.push(warning("quantised", text));
     }
     run.findings.extend(found);
 }

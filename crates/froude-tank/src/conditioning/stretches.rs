@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use crate::joint::findings::warning;
 use froude_identify::method::MethodError;
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Finding;
 use froude_records::number::plain;
 use froude_records::run::marks::{Mark, Segment, SegmentKind};
 use froude_records::run::step::Step;
@@ -84,7 +85,7 @@ pub fn cut(run: &mut ImportedRun, method: &str) -> Result<(), MethodError> {
             counted(rows.len(), "sample", "samples")
         );
         let text = format!("{}: {words}: {}", run.log.path.display(), in_words(&run.declared.marks));
-        run.findings.push(Finding::new(Severity::Warning, "marks-left-out", text));
+        run.findings.push(warning("marks-left-out", text));
         run.done.push(step_of("cut", words, from_s, to_s));
         keep_rows(&mut run.log, rows);
     }
@@ -103,7 +104,7 @@ pub(super) fn astray(log: &RunLog, marks: &[Mark]) -> Option<Finding> {
             plain(to_s, 6),
             in_words(&beyond)
         );
-        Finding::new(Severity::Warning, "mark-beyond-log", text)
+        warning("mark-beyond-log", text)
     })
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use froude_fit::Report;
 use froude_fit::budget::jackknife_of_one;
 use froude_fit::distribution::coverage_factor;
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Finding;
 use froude_records::text::counted;
 
 use super::fit::{DecayFit, HalfCycle};
@@ -13,7 +13,7 @@ use super::pool::{EIGHT_OVER_3_PI, inverse_2};
 use super::run::DecaySetup;
 use super::swings::Swings;
 use crate::decay::reduced::{FEWEST_RUNS, Reduced, all_but};
-use crate::joint::findings::warning;
+use crate::joint::findings::{note, warning};
 
 /// Below this ratio of largest to smallest speed, u and u² are correlated by 0.986 and more.
 const APART: f64 = 2.0;
@@ -92,8 +92,7 @@ fn negative(fit: &DecayFit, j: usize) -> Option<Finding> {
         return None;
     }
     Some(match fit.interval_95(j) {
-        Some([_, high]) if high >= 0.0 => Finding::new(
-            Severity::Note,
+        Some([_, high]) if high >= 0.0 => note(
             "negative-damping",
             format!("{name} is {value:.4}, and its interval reaches to {high:.4}: these releases do not show it"),
         ),

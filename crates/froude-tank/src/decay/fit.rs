@@ -3,10 +3,11 @@
 use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Uncertain, combine};
 use froude_fit::faer::Mat;
 use froude_records::campaign::Motion;
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Finding;
 
 use super::run::{DecaySetup, Restoring};
 use crate::joint::conclude::part;
+use crate::joint::findings::warning;
 
 /// How the coefficients were got.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -77,14 +78,6 @@ pub struct HalfCycle {
     pub force_amplitude: f64,
     /// What the fit leaves of F, N or N m.
     pub residual: f64,
-}
-
-impl HalfCycle {
-    /// b_eq = F/u, N s/m or N m s.
-    #[must_use]
-    pub fn equivalent_damping(&self) -> f64 {
-        self.force_amplitude / self.speed_amplitude
-    }
 }
 
 /// A release as it was used.
@@ -213,7 +206,7 @@ impl DecayFit {
                 other.method.name(),
                 apart.join(", ")
             );
-            Finding::new(Severity::Warning, "methods-disagree", text)
+            warning("methods-disagree", text)
         })
     }
 

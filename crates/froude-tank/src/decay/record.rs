@@ -7,12 +7,13 @@ use froude_records::estimate::{
     Clusters, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, Output, Range as Stated, ReferencePoint,
     SharedError, Status, TypeA,
 };
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Finding;
 use froude_records::texts::Texts;
 use froude_records::units::{Dimension, Unit};
 use indexmap::IndexMap;
 
 use super::fit::{DecayFit, HalfCycle};
+use crate::joint::findings::warning;
 use crate::joint::record::{by_part, coefficient, shared_error};
 use froude_identify::IdentifyError;
 use froude_identify::dataset::Dataset;
@@ -77,7 +78,7 @@ fn as_exact(fit: &DecayFit) -> Vec<Finding> {
         let text = format!(
             "the {name} is declared without a standard uncertainty and counts as exact: write {name} = {{ value = …, standard = \"0.5 %\" }}"
         );
-        Finding::new(Severity::Warning, "declared-as-exact", text)
+        warning("declared-as-exact", text)
     };
     exact.map(said).collect()
 }

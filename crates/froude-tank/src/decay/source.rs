@@ -9,6 +9,7 @@ use crate::decay::{envelope, output_error, plan, record, releases};
 use crate::declared::{check, needed};
 use crate::drawn::{self, first_of, over_time, series};
 use crate::error::undeclared;
+use crate::joint::findings::warning;
 use crate::logs::{self, Logs};
 use crate::long_logs::Reading;
 use crate::method::TankMethod;
@@ -16,7 +17,7 @@ use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::runs::{recorded_in, refuse_others};
 use froude_records::block::{Section, TableBuilder};
 use froude_records::campaign::{Campaign, Motion, Source};
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Severity;
 use froude_records::page::{ChartPanel, Mark};
 use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role};
 use froude_records::units::Dimension;
@@ -81,7 +82,7 @@ fn identify(
     }
     findings.extend(failed.into_iter().map(|(method, why)| {
         let text = format!("{} could not be fitted and is left out: {why}", method.name());
-        Finding::new(Severity::Warning, "not-fitted", text)
+        warning("not-fitted", text)
     }));
     let best = fitted.iter().map(|(method, _)| *method).max_by_key(|method| *method == DecayMethod::OutputError);
     for (method, fit) in fitted {

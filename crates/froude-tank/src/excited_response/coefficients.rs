@@ -72,8 +72,6 @@ pub struct AtPeriod {
     pub held: Vec<Used>,
     /// Free runs.
     pub free: Vec<Used>,
-    /// X = F/z, N/m.
-    pub ratio_n_m: c64,
     /// A33 (kg) and B33 (N s/m).
     pub values: [f64; 2],
     /// The same from the first and from the last half of the cycles.
@@ -203,7 +201,6 @@ fn at_period(runs: &[WaveRun<'_>], waves: &[Wave], group: &[usize], setup: &Setu
         omega_rad_s,
         window_s,
         is_declared: setup.window_s.is_some(),
-        ratio_n_m: x,
         values: values(x),
         halves: [half(0), half(1)],
         errors,

@@ -1,12 +1,12 @@
 //! What is doubtful about runs in waves, with the numbers that support it.
 
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Finding;
 use froude_signal::clock::MOST_LEFT_RAD;
 
 use super::camera::camera;
 use super::coefficients::{AtPeriod, NAMES, UNITS, Used};
 use super::setup::{Setup, WaveRun};
-use crate::joint::findings::warning;
+use crate::joint::findings::{note, warning};
 
 /// Strokes that differ by more than this are no repeat of one wave.
 const SAME_STROKE: f64 = 0.02;
@@ -32,9 +32,7 @@ pub fn findings(found: &[AtPeriod], runs: &[WaveRun<'_>], setup: &Setup) -> Vec<
         out.extend(of_values(at, setup));
         out.extend(at.free.iter().filter_map(|used| of_camera(&runs[used.run], used, setup.harmonics)));
     }
-    out.push(Finding::new(
-        Severity::Note,
-        "guides-in-damping",
+    out.push(note("guides-in-damping",
         "B33 is all that takes energy out of the motion: waves, and with them viscosity and the friction of guides, which are not subtracted".to_owned(),
     ));
     out

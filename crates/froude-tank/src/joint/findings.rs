@@ -23,6 +23,10 @@ pub(crate) fn warning(code: &str, message: String) -> Finding {
     Finding::new(Severity::Warning, code, message)
 }
 
+pub(crate) fn note(code: &str, message: String) -> Finding {
+    Finding::new(Severity::Note, code, message)
+}
+
 /// A motion that is not the same from cycle to cycle, or not of the harmonics that it was fitted by.
 pub(crate) fn of_motion(id: &str, motion: &Motion, cycles: Cycles, harmonics: usize) -> Vec<Finding> {
     let mut out = Vec::new();

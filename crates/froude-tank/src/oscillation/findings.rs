@@ -12,7 +12,7 @@ use froude_records::text::counted;
 use super::fit::{ADDED, BUOYANCY, DELAY, MASS, OscillationFit};
 use super::setup::{OscillationRun, Setup};
 use crate::joint::Run;
-use crate::joint::findings::{are_whole, contradicted, few_runs, misfit, of_motion, undetermined, warning};
+use crate::joint::findings::{are_whole, contradicted, few_runs, misfit, note, of_motion, undetermined, warning};
 use crate::motion::Motion;
 
 /// A harmonic this near to a natural frequency of the tank makes waves grow, as part of that frequency.
@@ -29,9 +29,7 @@ pub fn of_runs(runs: &[OscillationRun<'_>], motions: &[Motion], setup: &Setup, c
     out.extend(sloshing(runs, motions, campaign));
     let wet = runs.iter().zip(motions).filter(|(run, _)| run.medium == Medium::Water);
     if are_whole(wet.map(|(run, motion)| motion.periods(run.time_s))) {
-        out.push(Finding::new(
-            Severity::Note,
-            "whole-periods",
+        out.push(note("whole-periods",
             "all runs are used over whole periods: drag is then orthogonal to acceleration whatever its law, so that drag laws agreeing on C_A is no evidence for any of \
              them"
             .to_owned(),

@@ -6,7 +6,6 @@ use froude_identify::dataset::Dataset;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::source::laws;
 use froude_records::campaign::{Campaign, Source};
-use froude_records::finding::{Finding, Severity};
 use froude_records::run::{Channel, FORCED_OSCILLATION, ImportedRun, Role};
 use froude_records::table::links_of_configuration;
 use froude_records::texts::Texts;
@@ -18,6 +17,7 @@ use super::setup::{Body, OscillationRun, Setup, motions_without};
 use super::{findings, fit, page, plan, record, section, simulate};
 use crate::declared::{self, check, needed, uncertain};
 use crate::error::undeclared;
+use crate::joint::findings::warning;
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs::{self, LENGTHS, Lengths};
 use crate::method::TankMethod;
@@ -83,9 +83,11 @@ fn identified(
     {
         return Err(MethodError::refused(why));
     }
-    findings.extend(failed.into_iter().map(|(law, why)| {
-        Finding::new(Severity::Warning, "not-fitted", format!("{law} could not be fitted and is left out: {why}"))
-    }));
+    findings.extend(
+        failed
+            .into_iter()
+            .map(|(law, why)| warning("not-fitted", format!("{law} could not be fitted and is left out: {why}"))),
+    );
     let chosen = record::chosen(&fits);
     findings.extend(findings::of_runs(&runs, &motions, &setup, campaign));
     findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));

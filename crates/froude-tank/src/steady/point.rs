@@ -21,10 +21,6 @@ const REPEATS: f64 = 0.1;
 pub struct Run<'a> {
     /// Its name.
     pub id: &'a str,
-    /// What is mounted.
-    pub configuration: &'a str,
-    /// Angle of attack, rad.
-    pub angle_rad: f64,
     /// Time, s.
     pub time_s: &'a [f64],
     /// Its motion.
@@ -203,15 +199,8 @@ mod tests {
         let time_s: Vec<f64> = (0..1000).map(|i| 0.02 * f64::from(i)).collect();
         let speed: Vec<f64> = time_s.iter().map(|t| (0.4 * (t - 4.0)).min(0.4 * (16.0 - t)).clamp(0.0, 0.4)).collect();
         let force: Vec<f64> = time_s.iter().zip(&speed).map(|(t, v)| 0.3 + 0.01 * t - 5.0 * v * v).collect();
-        let run = Run {
-            id: "a",
-            configuration: "",
-            angle_rad: 0.0,
-            time_s: &time_s,
-            motion: Motion::Speed(&speed),
-            loads: vec![("f_x", &force)],
-            zero: None,
-        };
+        let run =
+            Run { id: "a", time_s: &time_s, motion: Motion::Speed(&speed), loads: vec![("f_x", &force)], zero: None };
         let found = point(&run, &SteadySpec::default()).unwrap();
         assert!((found.speed_m_s - 0.4).abs() < 1e-12);
         // Nothing but rounding: means of a line are the line at their middles.
@@ -228,8 +217,6 @@ mod tests {
         let reduced = |force: &[f64]| {
             let run = Run {
                 id: "a",
-                configuration: "",
-                angle_rad: 0.0,
                 time_s: &time_s,
                 motion: Motion::Speed(&speed),
                 loads: vec![("f_x", force)],

@@ -2,10 +2,13 @@
 
 use std::path::Path;
 
+use froude_identify::method::MethodError;
+use froude_records::run::ImportedRun;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit};
 
 use super::point::Point;
+use crate::logs::condition;
 
 /// One observation with what it was made at.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +23,28 @@ pub struct Row {
     pub temperature_k: Option<f64>,
     /// What was observed.
     pub point: Point,
+}
+
+impl Row {
+    /// What was observed in a log, with what the log says it was made at.
+    ///
+    /// # Errors
+    ///
+    /// An angle or a temperature that is none.
+    pub(crate) fn of(log: &ImportedRun, point: Point) -> Result<Self, MethodError> {
+        Ok(Self {
+            run: log.log.meta.id.clone(),
+            configuration: log.log.meta.configuration.clone(),
+            angle_rad: angle_rad(log)?,
+            temperature_k: condition(log, "temperature", Dimension::TEMPERATURE)?,
+            point,
+        })
+    }
+}
+
+/// Angle of attack of a run, rad; none where it states none.
+pub(crate) fn angle_rad(log: &ImportedRun) -> Result<f64, MethodError> {
+    Ok(condition(log, "angle", Dimension::ONE)?.unwrap_or(0.0))
 }
 
 /// The observations as a table, whose place is the folder of the runs; a load that one row lacks is one that the table does not have.

@@ -45,8 +45,6 @@ impl Simulated {
         let loads = self.loads.iter().zip(&self.trace.loads_n);
         Run {
             id: &self.id,
-            configuration: &self.configuration,
-            angle_rad: self.angle_rad,
             time_s: &self.trace.time_s,
             motion: Motion::Speed(&self.trace.speed_m_s),
             loads: loads.map(|(name, values)| (name.as_str(), values.as_slice())).collect(),

@@ -13,7 +13,7 @@ use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::point::{Point, Run, Zero, point_told};
-use super::row::{Row, table};
+use super::row::{Row, angle_rad, table};
 use super::section::{self, SteadySpec};
 use super::tare::{self, Tare};
 use super::walls::Walls;
@@ -21,6 +21,7 @@ use super::window::{Motion, Told};
 use super::{page, plan, simulate};
 use crate::conditioning::stretches::{in_words, longest_free, rows};
 use crate::error::{TankError, undeclared};
+use crate::joint::findings::{note, warning};
 use crate::logs::{self, Logs};
 use crate::method::TankMethod;
 
@@ -105,7 +106,6 @@ fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Re
     let mut first: Option<TankError> = None;
     for log in logs.iter().filter(|log| log.log.meta.role != Role::Still) {
         let mut run = run(log)?;
-        let angle_rad = run.angle_rad;
         let found = match zero(log, &run, &stills, spec)? {
             Some(Err(error)) => Err(error),
             zero => {
@@ -119,15 +119,9 @@ fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Re
                 findings.extend(of_named_window(log, &run, &point, spec));
                 steps.push((log.log.meta.id.clone(), window_step(log, &point)));
                 if log.log.meta.role == Role::Tare {
-                    tares.push(Tare { angle_rad, point });
+                    tares.push(Tare { angle_rad: angle_rad(log)?, point });
                 } else {
-                    rows.push(Row {
-                        run: log.log.meta.id.clone(),
-                        configuration: log.log.meta.configuration.clone(),
-                        angle_rad,
-                        temperature_k: logs::condition(log, "temperature", Dimension::TEMPERATURE)?,
-                        point,
-                    });
+                    rows.push(Row::of(log, point)?);
                 }
             }
             Err(error) => {
@@ -146,7 +140,7 @@ fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Re
             "{} subtracted at the same speed and angle; what is uncertain about their mean is shared by all observations there",
             counted(tares.len(), "run without the body is", "runs without the body are")
         );
-        findings.push(Finding::new(Severity::Note, "tare-subtracted", text));
+        findings.push(note("tare-subtracted", text));
     }
     Ok(Reduced { rows, errors, findings, steps })
 }
@@ -196,9 +190,7 @@ fn of_point(run: &str, point: &Point) -> Vec<Finding> {
     for load in &point.loads {
         let unit = if load.name.starts_with('m') { "N m" } else { "N" };
         if load.read.has_trend() {
-            out.push(Finding::new(
-                Severity::Warning,
-                "load-not-steady",
+            out.push(warning("load-not-steady",
                 format!(
                     "run {run:?}: {} changes by {:.3e} ± {:.1e} {unit} over its window: the water has not settled, or the zero drifts; settle longer, or wait longer before \
                      the run",
@@ -207,9 +199,7 @@ fn of_point(run: &str, point: &Point) -> Vec<Finding> {
             ));
         }
         if let Some([drift, standard]) = load.drift.filter(|[d, s]| d.abs() > DRIFTS * s) {
-            out.push(Finding::new(
-                Severity::Note,
-                "zero-drift",
+            out.push(note("zero-drift",
                 format!(
                     "run {run:?}: the zero of {} moves by {drift:.3e} ± {standard:.1e} {unit} from before to after the tow; the straight line between them is subtracted",
                     load.name
@@ -260,15 +250,7 @@ fn run(log: &ImportedRun) -> Result<Run<'_>, MethodError> {
             return Err(MethodError::input(&log.log.path, what));
         }
     }
-    Ok(Run {
-        id: &log.log.meta.id,
-        configuration: &log.log.meta.configuration,
-        angle_rad: logs::condition(log, "angle", Dimension::ONE)?.unwrap_or(0.0),
-        time_s: &log.log.time_s,
-        motion,
-        loads,
-        zero: None,
-    })
+    Ok(Run { id: &log.log.meta.id, time_s: &log.log.time_s, motion, loads, zero: None })
 }
 
 /// A still run: when it was, and its mean loads.

@@ -14,10 +14,11 @@ use froude_hydro::geometry::Body;
 use froude_hydro::similarity::blockage;
 use froude_identify::validity::BLOCKAGE_LIMIT;
 use froude_records::campaign::Campaign;
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Finding;
 use froude_records::table::links_of_configuration;
 
 use super::row::Row;
+use crate::joint::findings::warning;
 
 /// Body and section of the tank.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,7 +87,7 @@ impl Walls {
                 self.depth_m,
                 100.0 * BLOCKAGE_LIMIT
             );
-            Finding::new(Severity::Warning, "blockage-of-run", text)
+            warning("blockage-of-run", text)
         })
     }
 }

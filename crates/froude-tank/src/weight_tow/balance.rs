@@ -41,8 +41,6 @@ pub struct Balance {
     pub standard_m_s2: f64,
     /// v_∞, m/s.
     pub terminal_m_s: f64,
-    /// Standard uncertainty of that, m/s.
-    pub terminal_standard_m_s: f64,
     /// Root mean square of what the motion leaves of the track, m.
     pub residual_m: f64,
     /// v_∞, start, speed there and s: from where a fit that differs a little sets out.
@@ -132,7 +130,6 @@ pub fn balance(
         acceleration_m_s2: here,
         standard_m_s2: variance.sqrt(),
         terminal_m_s: at[0],
-        terminal_standard_m_s: scale[0] * inverse[(0, 0)].sqrt(),
         residual_m: noise_m * of_track.sqrt(),
         solution: at,
     })

@@ -20,8 +20,6 @@ use crate::steady::window::{Motion, Window};
 pub struct WeightRun<'a> {
     /// Its name.
     pub id: &'a str,
-    /// What is mounted.
-    pub configuration: &'a str,
     /// Angle of attack, rad.
     pub angle_rad: f64,
     /// W, N.
@@ -101,8 +99,6 @@ pub fn reduce(run: &WeightRun<'_>, spec: &WeightTowSpec, noise_m: Option<f64>) -
     }
     let own = Run {
         id: run.id,
-        configuration: run.configuration,
-        angle_rad: run.angle_rad,
         time_s: run.time_s,
         motion: Motion::Position(run.position_m),
         loads: run.loads.clone(),

@@ -70,7 +70,6 @@ impl Simulated {
         let loads = self.names.iter().zip(&self.loads_n);
         WeightRun {
             id: &self.id,
-            configuration: &self.configuration,
             angle_rad: self.angle_rad,
             weight_n: self.weight_n,
             time_s: &self.time_s,

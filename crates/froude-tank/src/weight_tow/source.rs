@@ -6,7 +6,7 @@ use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
 use froude_records::campaign::{BudgetEntry, Campaign, Shared, Source};
 use froude_records::estimate::ErrorKind;
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Finding;
 use froude_records::run::step::Step;
 use froude_records::run::{ImportedRun, Role, WEIGHT_TOW};
 use froude_records::units::Dimension;
@@ -18,9 +18,10 @@ use super::{page, plan, section, simulate};
 use crate::conditioning::stretches::{in_words, touching};
 use crate::declared::check;
 use crate::error::{TankError, undeclared};
+use crate::joint::findings::{note, warning};
 use crate::logs::{self, Logs};
 use crate::method::TankMethod;
-use crate::steady::row::{Row, table};
+use crate::steady::row::{Row, angle_rad, table};
 
 const WHY: &str = "drag is wrong by its size or its sign where one is guessed";
 /// Residuals of the equation of motion this many times the errors of the track are none of the camera.
@@ -55,13 +56,7 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
             Ok(found) => {
                 logs::add_step(&mut files, log, window_step(log, &found));
                 findings.extend(of_run(run.id, &found, run.weight_n - spec.friction_n.value));
-                rows.push(Row {
-                    run: run.id.to_owned(),
-                    configuration: run.configuration.to_owned(),
-                    angle_rad: run.angle_rad,
-                    temperature_k: logs::condition(log, "temperature", Dimension::TEMPERATURE)?,
-                    point: found.point.clone(),
-                });
+                rows.push(Row::of(log, found.point.clone())?);
                 reduced.push(found);
             }
             Err(error) => {
@@ -145,8 +140,7 @@ fn run<'a>(log: &'a ImportedRun, position_m: &'a [f64]) -> Result<WeightRun<'a>,
     }
     Ok(WeightRun {
         id: &log.log.meta.id,
-        configuration: &log.log.meta.configuration,
-        angle_rad: logs::condition(log, "angle", Dimension::ONE)?.unwrap_or(0.0),
+        angle_rad: angle_rad(log)?,
         weight_n,
         time_s: &log.log.time_s,
         position_m,
@@ -160,9 +154,7 @@ fn of_run(run: &str, found: &Reduced, pull_n: f64) -> Vec<Finding> {
     if let Some(balance) = &found.balance {
         let [change, standard] = found.track.change;
         out.extend((change > 2.0 * standard).then(|| {
-            Finding::new(
-                Severity::Note,
-                "not-steady",
+            note("not-steady",
                 format!(
                     "run {run:?}: its speed changes by {:.1} ± {:.1} % over its window, at {:.0} % of its terminal speed: {:.2} of the {:.2} mN that pull are inertia",
                     1e2 * change,
@@ -174,9 +166,7 @@ fn of_run(run: &str, found: &Reduced, pull_n: f64) -> Vec<Finding> {
             )
         }));
         if balance.residual_m > MISFIT * found.track.noise_m {
-            out.push(Finding::new(
-                Severity::Warning,
-                "track-misfit",
+            out.push(warning("track-misfit",
                 format!(
                     "run {run:?}: the equation of motion leaves {:.2} mm of the track, whose errors are {:.2} mm: look at weight, friction and moving_mass, at a string that \
                      stretches, or a push at the start",
