@@ -3,12 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use crate::error::{Place, RecordError, briefly, decimal_comma};
+use crate::error::{Place, RecordError, decimal_comma};
 use crate::nearest::suggestion;
-use crate::raw_column::{FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, TWICE, check_dimension, in_light_of, unit_of_column};
+use crate::raw_column::{
+    FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, TWICE, check_dimension, check_numbers, check_texts, in_light_of,
+    unit_of_column,
+};
 use crate::sidecar::{Mapping, Sidecar};
 use crate::table::{Column, ColumnData, Table, is_text_column, known_dimension, usual_unit};
-use crate::units::{Unit, is_plausible, parse_unit};
+use crate::units::{Unit, parse_unit};
 use crate::{header, memory};
 
 /// What a column of a file becomes, decided by its header alone.
@@ -348,13 +351,11 @@ pub(crate) fn column(
     raw: Raw,
     header_place: &Place,
 ) -> Result<Option<Column>, RecordError> {
+    let place = |row: usize| table.place_of_row(row);
     Ok(Some(match (want, raw) {
         (Want::Number { name, unit }, Raw::Numbers(values)) => {
             let si: Vec<f64> = values.iter().map(|v| unit.to_si(*v)).collect();
-            if let Some(row) = si.iter().position(|v| !is_plausible(*v)) {
-                let header = format!("{name} [{unit}]");
-                return Err(RecordError::not_finite(table.place_of_row(row), &header, &briefly(si[row])));
-            }
+            check_numbers(&si, &format!("{name} [{unit}]"), &place)?;
             Column {
                 name: name.clone(),
                 data: ColumnData::Number { dimension: unit.dimension, unit: unit.clone(), si },
@@ -372,9 +373,7 @@ pub(crate) fn column(
                 Raw::Numbers(values) => values.iter().map(f64::to_string).collect(),
             };
             if may_be_text(name) {
-                if let Some(row) = cells.iter().position(String::is_empty) {
-                    return Err(RecordError::empty_cell(table.place_of_row(row), name, FILL_OR_DELETE));
-                }
+                check_texts(&cells, name, &place)?;
             } else if cells.iter().all(|cell| fast_float2::parse::<f64, _>(cell).is_ok()) {
                 return Err(missing_unit(&table.path, name, headers, header_place));
             }

@@ -20,7 +20,7 @@ use crate::section::Section;
 use crate::units::{Dimension, Unit};
 
 pub use crate::body_axis::BodyAxis;
-pub use crate::campaign_file::{parse_campaign, read_campaign};
+pub use crate::campaign_toml::{parse_campaign, read_campaign};
 pub use crate::keep::{Comparison, Keep, KeepClause, KeepValue};
 
 /// A whole campaign.

@@ -20,6 +20,8 @@ use crate::estimate::ErrorKind;
 use crate::hash::short_key;
 use crate::keep::parse_keep;
 use crate::plausible;
+use crate::prior_record;
+use crate::read;
 use crate::run::{ACCELERATED_TOW, EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, ROTATION, STEADY, WEIGHT_TOW};
 use crate::section::{Section, Value, found};
 use crate::section_values::{
@@ -38,8 +40,27 @@ pub(crate) const ROOT_KEYS: [&str; 11] =
 /// Where the numbers of a source can lie.
 const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
 
-/// Reads a campaign from text.
-pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
+/// The largest campaign that is read.
+const LARGEST_BYTES: u64 = 4 << 20;
+
+/// Reads a campaign; the files that it names must exist, except those that a plan will make.
+///
+/// # Errors
+///
+/// See [`RecordError`].
+pub fn read_campaign(path: &Path) -> Result<Campaign, RecordError> {
+    let mut campaign = parse_campaign(path, &read::text(path, LARGEST_BYTES, "a campaign")?)?;
+    campaign.check_files()?;
+    prior_record::resolve(&mut campaign)?;
+    Ok(campaign)
+}
+
+/// The same from text, without looking at the files that it names.
+///
+/// # Errors
+///
+/// See [`RecordError`].
+pub fn parse_campaign(path: &Path, text: &str) -> Result<Campaign, RecordError> {
     let document = Document::parse(path, text)?;
     let root = document.root();
     root.schema("campaign")?;
@@ -89,11 +110,7 @@ fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
     let mut volumes = IndexMap::new();
     if let Some(table) = s.section("volumes")? {
         for (configuration, _, value) in table.entries() {
-            let volume = table.as_quantity_of(configuration, value, Dimension::VOLUME)?;
-            if volume <= 0.0 {
-                let problem = format!("is {}; it must be larger than zero", found(value));
-                return Err(table.wrong(configuration, value, problem));
-            }
+            let volume = table.as_positive(configuration, value, Dimension::VOLUME)?;
             volumes.insert(configuration.to_owned(), volume);
         }
     }
@@ -466,21 +483,13 @@ fn known(
 
 /// A value with its standard uncertainty, in its unit or in per cent of the value.
 fn prior(s: &Section<'_>, stated_units: &mut Vec<StatedUnit>) -> Result<PriorSpec, RecordError> {
-    s.only(&[
-        "coefficient",
-        "value",
-        "standard_uncertainty",
-        "model",
-        "record",
-        "select",
-        "entry",
-        "volume",
-        "model_form",
-    ])?;
+    const WRITTEN: [&str; 2] = ["value", "standard_uncertainty"];
+    const OF_RECORD: [&str; 4] = ["select", "entry", "volume", "model_form"];
+    s.only(&[&["coefficient", "model", "record"], &WRITTEN[..], &OF_RECORD].concat())?;
     let coefficient = s.need_text("coefficient", "name the coefficient")?.to_owned();
     let model = s.text("model")?.map(str::to_owned);
     if let Some(record) = s.text("record")? {
-        for key in ["value", "standard_uncertainty"] {
+        for key in WRITTEN {
             s.refuse(key, true, "and record are given; a value is written, or taken from a record")?;
         }
         let entry = s.need_text("entry", "name the coefficient of the record, \"A66\" say")?;
@@ -496,7 +505,7 @@ fn prior(s: &Section<'_>, stated_units: &mut Vec<StatedUnit>) -> Result<PriorSpe
         let (value, standard_uncertainty) = (f64::NAN, f64::NAN);
         return Ok(PriorSpec { coefficient, value, standard_uncertainty, dof: None, model, record: Some(record) });
     }
-    for key in ["select", "entry", "volume", "model_form"] {
+    for key in OF_RECORD {
         s.refuse(key, true, "belongs to a value of a record: write record = \"estimate.json\" beside it")?;
     }
     let mut need = |key: &'static str, percent_of: Option<f64>| -> Result<f64, RecordError> {

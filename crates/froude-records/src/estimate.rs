@@ -29,7 +29,7 @@ pub const OWN: &str = "own/";
 /// A whole `estimate.json`.
 ///
 /// It is serialised with a `checksum` of its content, which [`crate::json::read_estimates`] checks it against.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 pub struct EstimateFile {
     /// `froude/estimate/2`; a record of version 1 is lifted to it when it is read.
     pub schema: String,
@@ -95,10 +95,11 @@ pub struct Range {
 }
 
 /// What became of a coefficient in the fit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// Estimated, inside its bounds.
+    #[default]
     Free,
     /// The constrained fit put it on a bound.
     AtBound,
@@ -115,7 +116,7 @@ pub enum Status {
 }
 
 /// One coefficient.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Coefficient {
     /// What a paper or a trade calls it, where that is another name than the record's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -559,14 +560,7 @@ impl EstimateFile {
     /// A record of this version, without files and findings yet.
     #[must_use]
     pub fn of(estimates: Vec<Estimate>) -> Self {
-        Self {
-            schema: ESTIMATE_SCHEMA.to_owned(),
-            data: IndexMap::new(),
-            versions: IndexMap::new(),
-            estimates,
-            comparison: None,
-            findings: Vec::new(),
-        }
+        Self { schema: ESTIMATE_SCHEMA.to_owned(), estimates, ..Self::default() }
     }
 
     /// The files that an estimate's observations came from.

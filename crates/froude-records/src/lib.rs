@@ -20,7 +20,6 @@ pub mod block;
 pub mod body;
 mod body_axis;
 pub mod campaign;
-mod campaign_file;
 mod campaign_toml;
 mod checksum;
 pub mod chunks;

@@ -1,8 +1,8 @@
 //! A column as it is read, before its unit is known.
 
-use crate::error::{Place, RecordError};
+use crate::error::{Place, RecordError, briefly};
 use crate::table::{expected, known_dimension, usual_unit};
-use crate::units::{Unit, UnitError};
+use crate::units::{Unit, UnitError, is_plausible};
 
 /// The cells of one column as the format gives them.
 pub(crate) enum Raw {
@@ -30,6 +30,22 @@ pub(crate) fn check_dimension(place: &Place, header: &str, name: &str, unit: &Un
             Err(RecordError::wrong_dimension(place.clone(), header, &words, &unit.dimension.describe()))
         }
         _ => Ok(()),
+    }
+}
+
+/// Refuses numbers that no test has; `place` is that of a row.
+pub(crate) fn check_numbers(si: &[f64], header: &str, place: &dyn Fn(usize) -> Place) -> Result<(), RecordError> {
+    match si.iter().position(|v| !is_plausible(*v)) {
+        Some(row) => Err(RecordError::not_finite(place(row), header, &briefly(si[row]))),
+        None => Ok(()),
+    }
+}
+
+/// Refuses empty cells; `place` is that of a row.
+pub(crate) fn check_texts(cells: &[String], header: &str, place: &dyn Fn(usize) -> Place) -> Result<(), RecordError> {
+    match cells.iter().position(String::is_empty) {
+        Some(row) => Err(RecordError::empty_cell(place(row), header, FILL_OR_DELETE)),
+        None => Ok(()),
     }
 }
 

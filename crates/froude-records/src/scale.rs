@@ -27,10 +27,8 @@ enum Node {
     Number(f64),
     Name(String),
     Negative(Box<Node>),
-    Sum(Box<Node>, Box<Node>),
-    Difference(Box<Node>, Box<Node>),
-    Product(Box<Node>, Box<Node>),
-    Quotient(Box<Node>, Box<Node>),
+    /// Two joined by `+`, `-`, `*` or `/`.
+    Joined(char, Box<Node>, Box<Node>),
     Power(Box<Node>, i8),
 }
 
@@ -81,21 +79,18 @@ fn evaluate(node: &Node, names: &dyn Fn(&str) -> Option<Value>) -> Result<Value,
             let a = evaluate(a, names)?;
             Value { si: -a.si, ..a }
         }
-        Node::Sum(a, b) | Node::Difference(a, b) => {
+        Node::Joined(operator, a, b) => {
             let (x, y) = (evaluate(a, names)?, evaluate(b, names)?);
-            if x.dimension != y.dimension {
-                return Err(format!("a sum of {} and {}", x.dimension, y.dimension));
-            }
-            let si = if matches!(node, Node::Sum(..)) { x.si + y.si } else { x.si - y.si };
-            Value { si, dimension: x.dimension }
-        }
-        Node::Product(a, b) => {
-            let (x, y) = (evaluate(a, names)?, evaluate(b, names)?);
-            Value { si: x.si * y.si, dimension: x.dimension.checked_mul(y.dimension).ok_or_else(out_of_range)? }
-        }
-        Node::Quotient(a, b) => {
-            let (x, y) = (evaluate(a, names)?, evaluate(b, names)?);
-            Value { si: x.si / y.si, dimension: x.dimension.checked_div(y.dimension).ok_or_else(out_of_range)? }
+            let (si, dimension) = match operator {
+                '*' => (x.si * y.si, x.dimension.checked_mul(y.dimension)),
+                '/' => (x.si / y.si, x.dimension.checked_div(y.dimension)),
+                _ if x.dimension != y.dimension => {
+                    return Err(format!("a sum of {} and {}", x.dimension, y.dimension));
+                }
+                '-' => (x.si - y.si, Some(x.dimension)),
+                _ => (x.si + y.si, Some(x.dimension)),
+            };
+            Value { si, dimension: dimension.ok_or_else(out_of_range)? }
         }
         Node::Power(a, n) => {
             let x = evaluate(a, names)?;
@@ -129,30 +124,22 @@ impl Parser<'_> {
         if self.depth > DEEPEST {
             return Err(format!("more than {DEEPEST} parentheses are open"));
         }
-        let mut left = self.product()?;
-        loop {
-            if self.eat('+') {
-                left = Node::Sum(Box::new(left), Box::new(self.product()?));
-            } else if self.eat('-') {
-                left = Node::Difference(Box::new(left), Box::new(self.product()?));
-            } else {
-                self.depth -= 1;
-                return Ok(left);
-            }
-        }
+        let sum = self.joined(['+', '-'], Self::product)?;
+        self.depth -= 1;
+        Ok(sum)
     }
 
     fn product(&mut self) -> Result<Node, String> {
-        let mut left = self.signed()?;
-        loop {
-            if self.eat('*') {
-                left = Node::Product(Box::new(left), Box::new(self.signed()?));
-            } else if self.eat('/') {
-                left = Node::Quotient(Box::new(left), Box::new(self.signed()?));
-            } else {
-                return Ok(left);
-            }
+        self.joined(['*', '/'], Self::signed)
+    }
+
+    /// Parts joined by one of two operators, from left to right.
+    fn joined(&mut self, operators: [char; 2], part: fn(&mut Self) -> Result<Node, String>) -> Result<Node, String> {
+        let mut left = part(self)?;
+        while let Some(operator) = operators.into_iter().find(|operator| self.eat(*operator)) {
+            left = Node::Joined(operator, Box::new(left), Box::new(part(self)?));
         }
+        Ok(left)
     }
 
     /// A sign binds weaker than a power: `-a^2` is `-(a^2)`.

@@ -277,10 +277,19 @@ impl<'a> Section<'a> {
     ///
     /// [`RecordError::Value`] with its place where it is something else.
     pub fn positive(&self, key: &'static str, dimension: Dimension) -> Result<Option<f64>, RecordError> {
-        let Some(value) = self.get(key) else { return Ok(None) };
+        self.get(key).map(|value| self.as_positive(key, value, dimension)).transpose()
+    }
+
+    /// A value that is a quantity of a given dimension and larger than zero, SI.
+    pub(crate) fn as_positive(
+        &self,
+        key: &str,
+        value: &'a Value<'a>,
+        dimension: Dimension,
+    ) -> Result<f64, RecordError> {
         let si = self.as_quantity_of(key, value, dimension)?;
         if si > 0.0 {
-            Ok(Some(si))
+            Ok(si)
         } else {
             Err(self.wrong(key, value, format!("is {}; it must be larger than zero", found(value))))
         }

@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
-use crate::error::{Place, RecordError, briefly, read_bytes, utf8};
+use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::estimate::Measured;
 use crate::nearest::suggestion;
-use crate::raw_column::{FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, check_dimension, in_light_of, unit_of_column};
+use crate::raw_column::{
+    Raw, TEXT_FOR_NUMBERS, check_dimension, check_numbers, check_texts, in_light_of, unit_of_column,
+};
 use crate::run::Role;
 use crate::run::cell::Cell;
 use crate::run::channel::Words;
@@ -19,7 +21,7 @@ use crate::section::{Section, Source, parse};
 use crate::section_values::one_of;
 use crate::table::{Column, ColumnData, is_text_column, known_dimension};
 use crate::texts::Texts;
-use crate::units::{Dimension, Quantity, Unit, is_plausible, parse_unit};
+use crate::units::{Dimension, Quantity, Unit, parse_unit};
 
 const LARGEST_BYTES: u64 = 1 << 20;
 
@@ -245,10 +247,8 @@ impl Sidecar {
                 return Ok(ColumnData::Text(values.iter().map(f64::to_string).collect()));
             }
             (Raw::Texts(cells), false) => {
-                if is_text_column(&mapping.name)
-                    && let Some(row) = cells.iter().position(String::is_empty)
-                {
-                    return Err(RecordError::empty_cell(place(row), written, FILL_OR_DELETE));
+                if is_text_column(&mapping.name) {
+                    check_texts(&cells, written, place)?;
                 }
                 return Ok(ColumnData::Text(cells.into()));
             }
@@ -268,10 +268,8 @@ impl Sidecar {
             }
             (None, None) => ColumnData::Text(Texts::default()),
         };
-        if let ColumnData::Number { si, .. } = &data
-            && let Some(row) = si.iter().position(|v| !is_plausible(*v))
-        {
-            return Err(RecordError::not_finite(place(row), written, &briefly(si[row])));
+        if let ColumnData::Number { si, .. } = &data {
+            check_numbers(si, written, place)?;
         }
         Ok(data)
     }

@@ -7,8 +7,8 @@ use indexmap::IndexMap;
 use serde::Deserialize;
 
 use super::{
-    Coefficient, DataFile, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Frame, Interval, Law, Measured,
-    MethodUsed, Output, Range, ReferencePoint, Signs, TypeA, keyed,
+    Coefficient, DataFile, Diagnostics, Estimate, EstimateFile, Frame, Law, Measured, MethodUsed, Output, Range,
+    ReferencePoint, TypeA, keyed,
 };
 use crate::finding::Finding;
 
@@ -86,12 +86,10 @@ struct EstimateV1 {
 impl From<FileV1> for EstimateFile {
     fn from(file: FileV1) -> Self {
         Self {
-            schema: ESTIMATE_SCHEMA.to_owned(),
             data: keyed(file.data),
             versions: file.versions,
-            estimates: file.estimates.into_iter().map(Estimate::from).collect(),
-            comparison: None,
             findings: file.findings,
+            ..Self::of(file.estimates.into_iter().map(Estimate::from).collect())
         }
     }
 }
@@ -105,6 +103,7 @@ impl From<EstimateV1> for Estimate {
         let kind = stated.collect::<Vec<_>>().join("; ");
         let type_a = e.covariance.map(|c| TypeA { dof: of(&c.names), names: c.names, matrix: c.matrix, kind });
         let density = e.density.map(|density| ("density".to_owned(), density));
+        let output = |formula| Output { unit: String::new(), formula: Some(formula) };
         let outputs = e.law.formulas.into_iter();
         Self {
             id: e.id,
@@ -113,35 +112,25 @@ impl From<EstimateV1> for Estimate {
             method: MethodUsed { words: e.method, ..MethodUsed::default() },
             frame: Frame { words: e.frame, ..Frame::default() },
             point: ReferencePoint { words: e.reference_point, stated: false },
-            signs: Signs::default(),
-            attitude: None,
             law: Law {
                 name: e.model,
                 version: e.law.version,
                 inputs: IndexMap::new(),
-                outputs: outputs
-                    .map(|(load, formula)| (load, Output { unit: String::new(), formula: Some(formula) }))
-                    .collect(),
+                outputs: outputs.map(|(load, formula)| (load, output(formula))).collect(),
                 constants: e.law.constants,
             },
             refers_to: density.into_iter().chain(e.geometry).collect(),
-            data: Vec::new(),
             n_observations: e.n_observations,
-            clusters: None,
             dof: e.dof,
             sigma: e.sigma,
-            run_scatter: IndexMap::new(),
             coefficients: e.coefficients,
-            derived: IndexMap::new(),
             type_a,
-            errors: IndexMap::new(),
-            interval: Interval::default(),
             undetermined: e.undetermined,
             validity: e.validity,
             diagnostics: e.diagnostics,
             recommended: e.recommended,
             reason: e.reason,
-            not_contradicted: Vec::new(),
+            ..Self::default()
         }
     }
 }

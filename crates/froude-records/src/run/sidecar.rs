@@ -218,18 +218,16 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
     }
     for (axis, constants) in rig {
         let axis = key_word(axis);
-        let efficiencies = [
-            ("efficiency_forward", "1", constants.efficiency_forward),
-            ("efficiency_backward", "1", constants.efficiency_backward),
-        ];
         let declared = [
             ("torque_constant", "N m/A", Some(constants.torque_constant_n_m_a)),
             ("amplifier", "A/V", Some(constants.amplifier_a_v)),
             ("gear_ratio", "1", Some(constants.gear_ratio)),
             ("sprocket_radius", "m", Some(constants.sprocket_radius_m)),
+            ("efficiency_forward", "1", constants.efficiency_forward),
+            ("efficiency_backward", "1", constants.efficiency_backward),
         ];
         let mut put = |key: &str, value: String| put(&format!("carriage.rig.{axis}.{key}"), value);
-        for (key, unit, constant) in declared.into_iter().chain(efficiencies) {
+        for (key, unit, constant) in declared {
             if let Some(constant) = constant {
                 put(&format!("{key}.value"), format!("{} {unit}", constant.value));
                 put(&format!("{key}.standard"), format!("{} {unit}", constant.standard_uncertainty));

@@ -70,46 +70,31 @@ impl Dimension {
     /// Product; `None` when an exponent leaves −127..=127.
     #[must_use]
     pub fn checked_mul(self, other: Self) -> Option<Self> {
-        Self {
-            m: self.m.checked_add(other.m)?,
-            kg: self.kg.checked_add(other.kg)?,
-            s: self.s.checked_add(other.s)?,
-            k: self.k.checked_add(other.k)?,
-            a: self.a.checked_add(other.a)?,
-        }
-        .bounded()
+        self.combined(other, i8::checked_add)
     }
 
     /// Quotient; `None` when an exponent leaves −127..=127.
     #[must_use]
     pub fn checked_div(self, other: Self) -> Option<Self> {
-        Self {
-            m: self.m.checked_sub(other.m)?,
-            kg: self.kg.checked_sub(other.kg)?,
-            s: self.s.checked_sub(other.s)?,
-            k: self.k.checked_sub(other.k)?,
-            a: self.a.checked_sub(other.a)?,
-        }
-        .bounded()
+        self.combined(other, i8::checked_sub)
     }
 
     /// Whole power; `None` when an exponent leaves −127..=127.
     #[must_use]
     pub fn checked_powi(self, exponent: i8) -> Option<Self> {
-        Self {
-            m: self.m.checked_mul(exponent)?,
-            kg: self.kg.checked_mul(exponent)?,
-            s: self.s.checked_mul(exponent)?,
-            k: self.k.checked_mul(exponent)?,
-            a: self.a.checked_mul(exponent)?,
-        }
-        .bounded()
+        self.combined(self, |own, _| own.checked_mul(exponent))
     }
 
-    /// −128 has no opposite, so that `1/s^128` could not be written.
-    fn bounded(self) -> Option<Self> {
-        let is_written = [self.m, self.kg, self.s, self.k, self.a].iter().all(|e| *e != i8::MIN);
-        is_written.then_some(self)
+    fn combined(self, other: Self, exponent: impl Fn(i8, i8) -> Option<i8>) -> Option<Self> {
+        // −128 has no opposite, so that `1/s^128` could not be written.
+        let of = |a: i8, b: i8| exponent(a, b).filter(|e| *e != i8::MIN);
+        Some(Self {
+            m: of(self.m, other.m)?,
+            kg: of(self.kg, other.kg)?,
+            s: of(self.s, other.s)?,
+            k: of(self.k, other.k)?,
+            a: of(self.a, other.a)?,
+        })
     }
 
     /// In words with the SI unit, for messages: `a speed (m/s)`.
