@@ -21,6 +21,16 @@ use crate::outcome::{BodyOutcome, Case, not_within};
 use crate::uncertain::with_uncertainty;
 use crate::water::Water;
 
+/// A centre of gravity that nobody gave.
+fn no_gravity(job: &Asked, is_body_file: bool) -> AddedMassError {
+    let why = if is_body_file {
+        "no centre of gravity is known; write centre_of_gravity = [\"0 mm\", \"0 mm\", \"-12 mm\"] in [body], or the point: --at \"0 mm, 0 mm, -12 mm\""
+    } else {
+        "a mesh says nothing of masses; write the point in the axes of the mesh: --at \"0 mm, 0 mm, -12 mm\""
+    };
+    AddedMassError::input(&job.input, format!("--at cg: {why}"))
+}
+
 /// What each mesh would take, with nothing computed.
 ///
 /// # Errors
@@ -53,10 +63,7 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
     let origin_m = match at {
         Point::At(at) => at,
         Point::Buoyancy => measure.centroid_m,
-        Point::Gravity => loaded.centre_of_gravity_m.ok_or_else(|| AddedMassError::NoGravity {
-            path: job.input.clone(),
-            is_body_file: loaded.shape.is_some(),
-        })?,
+        Point::Gravity => loaded.centre_of_gravity_m.ok_or_else(|| no_gravity(job, loaded.shape.is_some()))?,
     };
     let frame = Frame { origin_m, axes: job.axes.vectors(mesh) };
     let (axes, point) = (axes_words(job, mesh, &loaded), at.words(origin_m, job.axes));
@@ -83,21 +90,12 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
             notes.push(facets::IS_POLYHEDRON.to_owned());
         } else {
             progress("the same with facets rounded");
-            match facets::of_mesh(mesh, &cases[0], &job.wanted, &frame, job.is_smooth) {
-                Ok(Some(found)) => {
-                    if job.is_smooth {
-                        notes.push(facets::IS_SMOOTH.to_owned());
-                    } else {
-                        findings.push(facets::finding(found.largest));
-                    }
-                    correct(&mut cases, &found);
-                }
-                Ok(None) => match facets::is_sharp(job.is_smooth) {
-                    Ok(note) => notes.push(note.to_owned()),
-                    Err(finding) => findings.push(finding),
-                },
-                Err(why) => findings.push(facets::not_rounded(why)),
+            let found = facets::of_mesh(mesh, &cases[0], &job.wanted, &frame, job.is_smooth);
+            if let Ok(Some(found)) = &found {
+                correct(&mut cases, found);
             }
+            let largest = found.map(|found| found.map(|found| found.largest));
+            facets::report(largest, job.is_smooth, &mut notes, &mut findings);
         }
     }
     let mut tables = Vec::from(hydrostatics(&cases[0], loaded.shape.is_none(), density_kg_m3, &frame));

@@ -216,8 +216,27 @@ pub(super) fn correct_parts(
     Ok((mean > NONE).then_some(largest))
 }
 
+/// Says which body the facets were taken as, by the largest correction, or why there is none.
+pub(super) fn report(
+    largest: Result<Option<f64>, &'static str>,
+    is_smooth: bool,
+    notes: &mut Vec<String>,
+    findings: &mut Vec<Finding>,
+) {
+    match largest {
+        Ok(Some(_)) if is_smooth => notes.push(IS_SMOOTH.to_owned()),
+        Ok(Some(largest)) => findings.push(finding(largest)),
+        // Nothing could be rounded.
+        Ok(None) if is_smooth => findings.push(not_rounded(
+            "--smooth was given, and no edge belongs to a curve of three turns or more, each of 52° at most; export the body in finer facets",
+        )),
+        Ok(None) => notes.push(IS_SHARP.to_owned()),
+        Err(why) => findings.push(not_rounded(why)),
+    }
+}
+
 /// The mesh does not decide which body is meant.
-pub(super) fn finding(largest: f64) -> Finding {
+fn finding(largest: f64) -> Finding {
     let text = format!(
         "the mesh may be a smooth body or the polyhedron itself, which differ by up to {} in displaced water and in added mass along the axes: the values are those of the smooth body and the intervals \
          contain both; to decide, write --smooth (smooth body, narrower intervals) or --polyhedron",
@@ -227,7 +246,7 @@ pub(super) fn finding(largest: f64) -> Finding {
 }
 
 /// The facets could not be rounded.
-pub(super) fn not_rounded(why: &str) -> Finding {
+fn not_rounded(why: &str) -> Finding {
     let text = format!(
         "the matrix is that of the polyhedron; the faceting error is unknown and not included in the uncertainty: {why}"
     );
@@ -236,20 +255,9 @@ pub(super) fn not_rounded(why: &str) -> Finding {
 
 /// Notes that state which body the facets were taken as.
 pub(super) const IS_POLYHEDRON: &str = "The facets were taken as the body itself.";
-pub(super) const IS_SMOOTH: &str = "The facets were taken as those of a smooth body.";
-pub(super) const IS_SHARP: &str =
+const IS_SMOOTH: &str = "The facets were taken as those of a smooth body.";
+const IS_SHARP: &str =
     "No edge was taken for one of a curve of three turns or more, each of 52° at most: the facets are the body itself.";
-
-/// Nothing could be rounded: a note, or a warning where the body was stated to be smooth.
-pub(super) fn is_sharp(is_smooth: bool) -> Result<&'static str, Finding> {
-    if is_smooth {
-        Err(not_rounded(
-            "--smooth was given, and no edge belongs to a curve of three turns or more, each of 52° at most; export the body in finer facets",
-        ))
-    } else {
-        Ok(IS_SHARP)
-    }
-}
 
 /// What the facets change, entry by entry.
 pub(super) fn table(case: &Case, density_kg_m3: f64, is_smooth: bool) -> Option<ResultTable> {

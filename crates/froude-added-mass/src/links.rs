@@ -21,7 +21,7 @@ use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
 use super::frame::{Orientation, sentence};
-use super::load::is_body_file;
+use super::load::{NO_LINKS, is_body_file};
 use super::options::Asked;
 use super::record::{About, estimate};
 use super::shape::family;
@@ -88,7 +88,7 @@ pub fn links(
     source: &str,
     progress: &dyn Fn(&str),
 ) -> Result<LinksOutcome, AddedMassError> {
-    let not_links = || AddedMassError::NoLinks { path: job.input.clone() };
+    let not_links = || AddedMassError::input(&job.input, NO_LINKS);
     if !is_body_file(&job.input) {
         return Err(not_links());
     }

@@ -15,6 +15,7 @@ use froude_mesh::vector::{norm, sub};
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::family::Family;
 use froude_records::finding::{Finding, Severity};
+use froude_records::text::counted;
 
 use super::frame::Direction;
 use super::options::{Asked, unit_of};
@@ -44,6 +45,11 @@ pub struct Loaded {
 pub(super) const WARP: f64 = 1e-6;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 1 << 30;
+
+/// A number of links where there are none.
+pub(super) const NO_LINKS: &str =
+    "--links counts the links of a body file of shape \"robot\"; leave it out for another shape, or a mesh";
+
 /// Whether a path is a body file and not a mesh.
 #[must_use]
 pub fn is_body_file(path: &Path) -> bool {
@@ -89,7 +95,7 @@ pub(super) fn of_a_mesh_only(job: &Asked) -> Result<(), AddedMassError> {
     } else {
         return Ok(());
     };
-    Err(AddedMassError::OfAMesh { path: job.input.clone(), what })
+    Err(AddedMassError::input(&job.input, what))
 }
 
 /// Reads and checks.
@@ -103,8 +109,11 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
         let body = read_body(&job.input)?;
         let links = match (&body.shape, job.links.first()) {
             (Shape::Robot(_), Some(links)) => *links,
-            (Shape::Robot(_), None) => return Err(AddedMassError::HowManyLinks { path: job.input.clone() }),
-            (_, Some(_)) => return Err(AddedMassError::NoLinks { path: job.input.clone() }),
+            (Shape::Robot(_), None) => {
+                let why = "a robot has links; say how many: --links 3, or --links 1..9 for a table";
+                return Err(AddedMassError::input(&job.input, why));
+            }
+            (_, Some(_)) => return Err(AddedMassError::input(&job.input, NO_LINKS)),
             (_, None) => 0,
         };
         let name = if job.links.is_empty() { body.name } else { format!("{}, H{links}LT", body.name) };
@@ -121,7 +130,7 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
         });
     }
     if !job.links.is_empty() {
-        return Err(AddedMassError::NoLinks { path: job.input.clone() });
+        return Err(AddedMassError::input(&job.input, NO_LINKS));
     }
     let MeshFile { mesh, mut notes, format } = read_mesh(&job.input, job.unit_m)?;
     let mut findings = Vec::new();
@@ -166,14 +175,20 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
                 job.unit_m.map_or_else(String::new, |m| format!(" --unit {}", unit_of(m)))
             ));
         }
-        return Err(AddedMassError::Unfit { path: job.input.clone(), troubles: wrong });
+        let why = format!("potential flow cannot be computed on this mesh:\n{}", wrong.join("\n"));
+        return Err(AddedMassError::input(&job.input, why));
     }
     if let Some(doubt) = too_large(&mesh).filter(|_| job.unit_m.is_none()) {
-        return Err(AddedMassError::TooLarge { path: job.input.clone(), doubt });
+        return Err(AddedMassError::input(&job.input, doubt.to_string()));
     }
     if let Some((panels, up)) = lid(&mesh, job).filter(|_| job.surface_m.is_none()) {
         if matches!(format, Format::Gdf | Format::Nemoh) {
-            return Err(AddedMassError::Lid { path: job.input.clone(), panels, format });
+            let why = format!(
+                "the mesh is closed by {} in the plane z = 0, which is the water's surface in a {format} file: this is a floating hull, and floating \
+                 bodies are not computed here. If the body is submerged, state where the surface is: --surface \"5 m\" puts it 5 m above the origin of the mesh",
+                counted(panels, "panel", "panels")
+            );
+            return Err(AddedMassError::input(&job.input, why));
         }
         let message = format!(
             "{panels} panels lie in the plane {up} = 0 and nothing lies above it: if that plane is the water's surface, the hull floats and these \

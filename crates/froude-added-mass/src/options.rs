@@ -78,7 +78,7 @@ impl Asked {
         let (mut forward, mut up) = (None, None);
         for option in given {
             let text = option.text.as_str();
-            let read = || -> Result<(), String> {
+            let mut read = || -> Result<(), String> {
                 match option.name.as_str() {
                     "links" => out.links = link_numbers(text)?,
                     "density" => out.density_kg_m3 = Some(density(text)?),
@@ -101,7 +101,6 @@ impl Asked {
                 }
                 Ok(())
             };
-            let mut read = read;
             read().map_err(|why| AddedMassError::Option { given: option.clone(), why })?;
         }
         // A chain goes before parts, wherever it stands.
@@ -133,10 +132,12 @@ impl Asked {
                 "polyhedron",
                 "smooth",
             ];
-            return match OF_ONE.into_iter().find(|name| given.iter().any(|option| option.name == *name)) {
-                Some(name) => Err(AddedMassError::OfOne { option: name.replace('_', "-") }),
-                None => Ok(()),
+            let Some(name) = OF_ONE.into_iter().find(|name| given.iter().any(|option| option.name == *name)) else {
+                return Ok(());
             };
+            let option = name.replace('_', "-");
+            let why = format!("--{option} is for one body; give one number of links with it: --links 3");
+            return Err(AddedMassError::Together { why });
         } else if self.apart.is_some() && self.surface_m.is_some() {
             "--surface goes with one rigid body, not with --chain or --apart"
         } else if self.is_smooth && self.is_polyhedron {
@@ -146,7 +147,7 @@ impl Asked {
         } else {
             return Ok(());
         };
-        Err(AddedMassError::Together { why })
+        Err(AddedMassError::Together { why: why.to_owned() })
     }
 }
 
@@ -253,10 +254,9 @@ fn orientation(forward: Option<Direction>, up: Option<Direction>) -> Result<Opti
         return Ok(None);
     }
     let (forward, up) = (forward.unwrap_or(Direction::X), up.unwrap_or(Direction::Z));
-    match Orientation::new(forward, up) {
-        Some(lies) => Ok(Some(lies)),
-        None => Err(AddedMassError::OneAxis { forward, up }),
-    }
+    Orientation::new(forward, up).map(Some).ok_or_else(|| AddedMassError::Together {
+        why: format!("--forward {forward} and --up {up} lie along one axis of the mesh: give both, two different ones"),
+    })
 }
 
 /// `cg`, `cb`, or three lengths.

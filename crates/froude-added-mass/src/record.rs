@@ -5,7 +5,7 @@ use std::path::Path;
 use froude_panel::refine::Refined;
 use froude_records::estimate::{
     Coefficient, Derived, Diagnostics, ErrorKind, Estimate, EstimateFile, Frame, Interval, Law, Measured, MethodUsed,
-    OWN, ReferencePoint, SharedError, Signs, Status, TypeA,
+    OWN, ReferencePoint, SharedError, Signs, TypeA,
 };
 use froude_records::json::read_estimates;
 use indexmap::IndexMap;
@@ -46,11 +46,6 @@ pub struct About {
     pub length_m: f64,
     /// What surrounds the body, in words.
     pub surroundings: String,
-}
-
-/// What the signs of a matrix mean.
-pub(super) fn signs() -> Signs {
-    Signs("loads of the fluid on the body are F = −A·v̇, with A the matrix and v̇ the accelerations".to_owned())
 }
 
 /// The frame of a record, in words.
@@ -182,24 +177,7 @@ pub fn estimate(refined: &Refined, facets: Option<&Facets>, about: &About) -> Es
     let mut coefficients = IndexMap::new();
     for (i, j) in entries() {
         let (value, expanded) = (rho * refined.value[i][j], rho * refined.uncertainty[i][j]);
-        let known = expanded.is_finite();
-        coefficients.insert(
-            entry_name((i, j)),
-            Coefficient {
-                label: None,
-                nuisance: false,
-                value: Some(value),
-                unit: unit(i, j).to_owned(),
-                status: Status::Free,
-                standard_uncertainty: known.then_some(expanded / COVERAGE),
-                type_a: None,
-                type_b: known.then_some(expanded / COVERAGE),
-                interval_95: known.then_some([value - expanded, value + expanded]),
-                effective_dof: None,
-                unconstrained: None,
-                range_95: None,
-            },
-        );
+        coefficients.insert(entry_name((i, j)), entry(value, expanded, unit(i, j)));
     }
     let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
     let refers_to = IndexMap::from([
@@ -210,29 +188,18 @@ pub fn estimate(refined: &Refined, facets: Option<&Facets>, about: &About) -> Es
     let steps = refined.steps.iter().map(|s| s.panels.to_string()).collect::<Vec<_>>().join(", ");
     let covariance = covariance(refined, facets, rho);
     let errors = facets.filter(|_| covariance.is_some()).map(|facets| of_facets(facets, rho));
+    let words = format!(
+        "potential flow, constant-strength panels, direct formulation, {}; meshes of {steps} panels{}",
+        about.surroundings,
+        match (refined.steps.len() > 1, facets) {
+            (_, Some(_)) => ", extrapolated and corrected to the smooth body with the corners of the mesh",
+            (true, None) => ", extrapolated",
+            (false, None) => "",
+        }
+    );
+    let point = about.reference_point.clone();
     Estimate {
-        id: format!("{}/added_mass_6x6", about.source),
-        source: about.source.clone(),
-        kind: "potential".to_owned(),
-        law: Law { name: "added_mass_6x6".to_owned(), version: 1, ..Law::default() },
         refers_to,
-        frame: Frame { words: about.frame.clone(), ..Frame::default() },
-        point: ReferencePoint { words: about.reference_point.clone(), stated: true },
-        signs: signs(),
-        interval: Interval { of: "mesh".to_owned(), ..Interval::default() },
-        method: MethodUsed {
-            name: "panels".to_owned(),
-            version: 1,
-            words: format!(
-                "potential flow, constant-strength panels, direct formulation, {}; meshes of {steps} panels{}",
-                about.surroundings,
-                match (refined.steps.len() > 1, facets) {
-                    (_, Some(_)) => ", extrapolated and corrected to the smooth body with the corners of the mesh",
-                    (true, None) => ", extrapolated",
-                    (false, None) => "",
-                }
-            ),
-        },
         coefficients,
         derived: facets.map(|facets| displacement(refined.volume_m3, facets, rho)).unwrap_or_default(),
         type_a: covariance,
@@ -244,8 +211,45 @@ pub fn estimate(refined: &Refined, facets: Option<&Facets>, about: &About) -> Es
             )],
             ..Diagnostics::default()
         },
+        ..of_panels(&about.source, ("added_mass_6x6", 1), &about.frame, point, words)
+    }
+}
+
+/// An entry in kg with its expanded uncertainty; none is stated where that is not known.
+pub(super) fn entry(value: f64, expanded: f64, unit: &str) -> Coefficient {
+    let known = expanded.is_finite();
+    let standard = known.then_some(expanded / COVERAGE);
+    Coefficient {
+        value: Some(value),
+        unit: unit.to_owned(),
+        standard_uncertainty: standard,
+        type_b: standard,
+        interval_95: known.then_some([value - expanded, value + expanded]),
+        ..Coefficient::default()
+    }
+}
+
+/// What every matrix states of itself: source, law with its version, axes and point, and how it was made.
+pub(super) fn of_panels(
+    source: &str,
+    (law, version): (&str, u32),
+    frame: &str,
+    point: String,
+    words: String,
+) -> Estimate {
+    Estimate {
+        id: format!("{source}/{law}"),
+        source: source.to_owned(),
+        kind: "potential".to_owned(),
+        law: Law { name: law.to_owned(), version, ..Law::default() },
+        frame: Frame { words: frame.to_owned(), ..Frame::default() },
+        point: ReferencePoint { words: point, stated: true },
+        signs: Signs(
+            "loads of the fluid on the body are F = −A·v̇, with A the matrix and v̇ the accelerations".to_owned(),
+        ),
+        interval: Interval { of: "mesh".to_owned(), ..Interval::default() },
+        method: MethodUsed { name: "panels".to_owned(), version: 1, words },
         recommended: true,
-        not_contradicted: Vec::new(),
         reason: Some("the only model of its source".to_owned()),
         ..Estimate::default()
     }

@@ -39,13 +39,13 @@ pub fn repair(
 ) -> Result<Repaired, AddedMassError> {
     let extension = target.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     if !matches!(extension.as_str(), "obj" | "stl") {
-        return Err(AddedMassError::RepairFormat { path: target.to_owned() });
+        return Err(AddedMassError::input(target, "a repaired mesh is written as .obj or .stl"));
     }
     if is_body_file(input) {
-        return Err(AddedMassError::RepairBody { path: input.to_owned() });
+        return Err(AddedMassError::input(input, "--repair is for a mesh; a body file has none"));
     }
     if input == target || (target.exists() && input.canonicalize().ok() == target.canonicalize().ok()) {
-        return Err(AddedMassError::RepairInput { path: target.to_owned() });
+        return Err(AddedMassError::input(target, "name another file than the input; it stays as it is"));
     }
     if target.symlink_metadata().is_ok() {
         return Err(AddedMassError::RepairExists { path: target.to_owned() });

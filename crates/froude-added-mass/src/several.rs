@@ -20,7 +20,7 @@ use froude_panel::problem::{Frame, Problem, Solution};
 use froude_panel::refine::{Levels, RefineError, RefinedParts, Stop, refine_parts};
 use froude_panel::study::Size;
 use froude_records::block::{Block, ResultTable, TableBuilder};
-use froude_records::estimate::{Coefficient, Estimate, Interval, Law, Measured, MethodUsed, ReferencePoint, Status};
+use froude_records::estimate::{Diagnostics, Estimate, Measured};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::text::counted;
@@ -31,7 +31,7 @@ use super::facets;
 use super::frame::{Axes, sentence};
 use super::load::{is_body_file, load, of_a_mesh_only};
 use super::options::Asked;
-use super::record::{MOTIONS, diagonal_head, diagonal_key, entry_name_of_parts, signs, unit};
+use super::record::{MOTIONS, diagonal_head, diagonal_key, entry, entry_name_of_parts, of_panels, unit};
 use crate::error::AddedMassError;
 use crate::files::AddedMassFile;
 use crate::options::Apart;
@@ -98,15 +98,8 @@ pub fn several(
         } else {
             progress("the same with facets rounded");
             let of_mesh = |mesh: &Mesh| given.on(mesh);
-            match facets::correct_parts(&mut refined, &given.mesh, &of_mesh, wanted, job.is_smooth) {
-                Ok(Some(_)) if job.is_smooth => notes.push(facets::IS_SMOOTH.to_owned()),
-                Ok(Some(largest)) => findings.push(facets::finding(largest)),
-                Ok(None) => match facets::is_sharp(job.is_smooth) {
-                    Ok(note) => notes.push(note.to_owned()),
-                    Err(finding) => findings.push(finding),
-                },
-                Err(why) => findings.push(facets::not_rounded(why)),
-            }
+            let largest = facets::correct_parts(&mut refined, &given.mesh, &of_mesh, wanted, job.is_smooth);
+            facets::report(largest, job.is_smooth, &mut notes, &mut findings);
         }
     }
     let RefinedParts { value, uncertainty, panels, finest, .. } = refined;
@@ -285,7 +278,7 @@ const fn own_axes(axes: Axes) -> &'static str {
 }
 
 fn links_of(job: &Asked, angle_rad: f64) -> Result<Several, AddedMassError> {
-    let why = || AddedMassError::NoChain { path: job.input.clone() };
+    let why = || AddedMassError::input(&job.input, "a chain is a body file of shape \"robot\" with --links");
     if !is_body_file(&job.input) {
         return Err(why());
     }
@@ -326,11 +319,12 @@ fn chain(name: &str, robot: Robot, links: usize, angle: f64, job: &Asked) -> Res
 fn parts_of(job: &Asked) -> Result<Several, AddedMassError> {
     let loaded = load(job)?;
     let Family::Mesh(mesh) = loaded.family else {
-        return Err(AddedMassError::NoParts { path: job.input.clone() });
+        return Err(AddedMassError::input(&job.input, "--apart takes a mesh of several closed parts"));
     };
     let found = parts(&mesh);
     if found.len() < 2 {
-        return Err(AddedMassError::OnePart { path: job.input.clone() });
+        let why = "the mesh hangs together, it has one part; leave --apart out";
+        return Err(AddedMassError::input(&job.input, why));
     }
     let tags = tags(&mesh);
     let frames: Vec<Frame> =
@@ -453,58 +447,22 @@ fn record(
     for i in 0..value.len() {
         for j in i..value.len() {
             let (a, u) = (density_kg_m3 * value[i][j], density_kg_m3 * uncertainty[i][j]);
-            let known = u.is_finite();
-            coefficients.insert(
-                entry_name_of_parts((i, j)),
-                Coefficient {
-                    label: None,
-                    nuisance: false,
-                    value: Some(a),
-                    unit: unit(i % 6, j % 6).to_owned(),
-                    status: Status::Free,
-                    standard_uncertainty: known.then_some(0.5 * u),
-                    type_a: None,
-                    type_b: known.then_some(0.5 * u),
-                    interval_95: known.then_some([a - u, a + u]),
-                    effective_dof: None,
-                    unconstrained: None,
-                    range_95: None,
-                },
-            );
+            coefficients.insert(entry_name_of_parts((i, j)), entry(a, u, unit(i % 6, j % 6)));
         }
     }
+    let point = format!("each part's own point; rows and columns six a part: {}", parts.join(", "));
+    let words = format!(
+        "potential flow, constant-strength panels, direct formulation, unbounded water; meshes of {} panels{}; numerical uncertainty of each \
+         entry alone, 95 %",
+        panels.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+        if panels.len() > 1 { ", extrapolated" } else { "" }
+    );
+    let density = Measured { value: density_kg_m3, unit: "kg/m^3".to_owned() };
     Estimate {
-        id: format!("{name}/added_mass_parts"),
-        source: name.to_owned(),
-        kind: "potential".to_owned(),
-        law: Law { name: "added_mass_parts".to_owned(), version: 2, ..Law::default() },
-        refers_to: IndexMap::from([(
-            "density".to_owned(),
-            Measured { value: density_kg_m3, unit: "kg/m^3".to_owned() },
-        )]),
-        frame: froude_records::estimate::Frame { words: frame.to_owned(), ..Default::default() },
-        point: ReferencePoint {
-            words: format!("each part's own point; rows and columns six a part: {}", parts.join(", ")),
-            stated: true,
-        },
-        signs: signs(),
-        interval: Interval { of: "mesh".to_owned(), ..Interval::default() },
-        method: MethodUsed {
-            name: "panels".to_owned(),
-            version: 1,
-            words: format!(
-                "potential flow, constant-strength panels, direct formulation, unbounded water; meshes of {} panels{}; numerical uncertainty of each \
-                 entry alone, 95 %",
-                panels.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
-                if panels.len() > 1 { ", extrapolated" } else { "" }
-            ),
-        },
+        refers_to: IndexMap::from([("density".to_owned(), density)]),
         coefficients,
-        diagnostics: froude_records::estimate::Diagnostics { notes: notes.to_vec(), ..Default::default() },
-        recommended: true,
-        not_contradicted: Vec::new(),
-        reason: Some("the only model of its source".to_owned()),
-        ..Estimate::default()
+        diagnostics: Diagnostics { notes: notes.to_vec(), ..Diagnostics::default() },
+        ..of_panels(name, ("added_mass_parts", 2), frame, point, words)
     }
 }
 

@@ -36,20 +36,30 @@ pub(super) fn surroundings(job: &Asked, mesh: &Mesh) -> Result<Vec<Surrounding>,
     let up = job.orientation.unwrap_or_default().up();
     let (axis, at_m) = (up.axis, up.sign() * surface_m);
     let letter = ["x", "y", "z"][axis];
+    let refuse = |why: String| Err(AddedMassError::input(&job.input, why));
     if let Some(crossing) = crosses(mesh, axis, at_m) {
-        return Err(AddedMassError::Pierces { path: job.input.clone(), crossing });
+        return refuse(format!(
+            "{crossing}: the body pierces the water's surface; bodies that float are not computed here, submerge it"
+        ));
     }
     let is_above = mesh.vertices.iter().any(|v| up.coordinate(*v) > surface_m);
     if is_above {
-        return Err(AddedMassError::Above { path: job.input.clone(), letter, at_m });
+        return refuse(format!(
+            "the body lies above the water's surface at {letter} = {at_m} m; give --surface the height of the surface over the origin of the mesh, \
+             and --up the axis of the mesh that points up, as --up -z"
+        ));
     }
     let slack_m = ROUNDING * extent(mesh);
     let touching = mesh.panels.iter().position(|p| mesh.corners(*p).all(|c| (c[axis] - at_m).abs() <= slack_m));
     if let Some(panel) = touching {
-        return Err(AddedMassError::Touches { path: job.input.clone(), panel, letter, at_m });
+        return refuse(format!(
+            "panel {panel} lies in the water's surface at {letter} = {at_m} m: bodies that float are not computed here, submerge it"
+        ));
     }
     if job.tank_m.is_some() && up != Direction::Z {
-        return Err(AddedMassError::TankUp { path: job.input.clone(), up });
+        return refuse(format!(
+            "in a tank the z axis of the mesh must point up, and here {up} does; export the mesh with z up"
+        ));
     }
     let place = match job.tank_m {
         Some([l, b, d]) => {

@@ -27,7 +27,12 @@ impl Water {
             (None, Some(t)) => Some(AtRest::at(t, self.fluid.salinity_g_kg.unwrap_or(0.0))?.density_kg_m3),
             (stated, _) => stated,
         };
-        let none = || AddedMassError::NoDensity { path: asked.input.clone(), is_campaign: self.is_campaign };
+        let advice = if self.is_campaign {
+            "density = \"1025 kg/m^3\" in [fluid] of the campaign"
+        } else {
+            "--density \"1025 kg/m^3\", or [fluid] density in the body file"
+        };
+        let none = || AddedMassError::input(&asked.input, format!("no density of the water; write {advice}"));
         asked.density_kg_m3.or(stated).or(of_file).ok_or_else(none)
     }
 }
