@@ -193,7 +193,7 @@ fn what_three_dimensions_do_not_have_is_refused_and_what_is_odd_is_said() {
     assert!(usr.contains("robot.toml:20:14") && usr.contains("plane only"), "{usr}");
     let flat = changed(folder.path(), &[PITCH, ("\"3d\"", "\"planar\"")]);
     let pitch = ["--pitch-amplitude", "10 deg"];
-    assert!(refused(&flat, &pitch).contains("is of the plane"));
+    assert!(refused(&flat, &pitch).contains("is a planar model"));
     assert!(refused(&changed(folder.path(), &[PITCH]), &pitch).contains("no joint that pitches"));
     let servo = ("limit = \"90 deg\"", "limit = \"90 deg\"\nkp = \"40 N m/rad\"\nkd = \"1 N m s/rad\"");
     assert!(refused(&changed(folder.path(), &[servo]), &[]).contains("follow their gait exactly"));

@@ -283,6 +283,6 @@ fn a_sweep_that_is_killed_goes_on_and_is_the_same_to_the_byte() {
     assert!(killed(ranges, out.path(), 5));
     let other = swept("amplitude=15..45 deg:3, phase=20..70 deg:2", out.path());
     assert_eq!(other["resumed_rows"], 0);
-    assert!(other["remarks"].to_string().contains("never came to its end"), "{other}");
+    assert!(other["remarks"].to_string().contains("holds an unfinished sweep"), "{other}");
     assert!(parts(out.path()).is_some());
 }

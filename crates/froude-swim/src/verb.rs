@@ -118,7 +118,7 @@ pub fn swim(job: &Job, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Outcome, 
         return space::swim(&file, job);
     }
     if job.pitching != Pitching::default() {
-        let problem = "is of the plane, and the pitch options are of joints that pitch: write space = \"3d\" in [model], or leave them out";
+        let problem = "is a planar model; the pitch options need space = \"3d\" in [model]";
         return Err(VerbError::input(&job.robot, problem));
     }
     plane::swim(&file, job, tell)
@@ -128,7 +128,7 @@ pub fn swim(job: &Job, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Outcome, 
 fn planar(path: &Path) -> Result<RobotFile, VerbError> {
     let file = read_robot(path)?;
     if file.model.is_3d {
-        let problem = "is of three dimensions, and this is of the plane: write space = \"planar\" in [model]";
+        let problem = "is a 3-D model; sweeps, draws and sensitivities need space = \"planar\" in [model]";
         return Err(VerbError::input(path, problem));
     }
     Ok(file)

@@ -86,7 +86,7 @@ pub enum RobotError {
     },
     /// A robot of three dimensions.
     #[error(
-        "the robot is of three dimensions (space = \"3d\" in [model]), and this is of the plane: write space = \"planar\""
+        "the robot is a 3-D model (space = \"3d\" in [model]), and this needs a planar one: write space = \"planar\""
     )]
     Space,
     /// An added mass of sway for three dimensions.

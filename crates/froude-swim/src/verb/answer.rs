@@ -88,12 +88,14 @@ impl Figures<'_> {
         };
         vec![
             f.number("speed_m_s", speed, |f| f.means.speed_m_s),
-            f.number("cost_of_transport_j_m", "cost of transport [J/m]", |f| f.means.cost_j_m()),
-            f.number("cost_of_transport_positive_j_m", "the same by positive power [J/m]", |f| {
+            f.number("cost_of_transport_j_m", "energy per distance, net power/U [J/m]", |f| f.means.cost_j_m()),
+            f.number("cost_of_transport_positive_j_m", "energy per distance, positive power/U [J/m]", |f| {
                 f.means.cost_positive_j_m()
             }),
-            f.number("cost_of_transport", "cost of transport over m g U [1]", |f| f.repeats.as_ref().map(|r| r.cost))
-                .significant(3),
+            f.number("cost_of_transport", "cost of transport, net power/(m g U) [1]", |f| {
+                f.repeats.as_ref().map(|r| r.cost)
+            })
+            .significant(3),
             f.number("power_net_w", net, |f| f.means.net_w),
             f.number("power_positive_w", "positive power: drives without recovery [W]", |f| f.means.positive_w),
             f.number("power_absolute_w", "power in both directions [W]", |f| f.means.absolute_w),
@@ -103,7 +105,7 @@ impl Figures<'_> {
             }),
             f.number("power_lifting_w", "", |f| f.space.as_ref().map(|s| s.periodic.lifting_w)),
             f.number("power_electric_w", "power from the battery [W]", |f| f.effort.electric_w),
-            f.number("cost_of_transport_electric_j_m", "cost of transport from the battery [J/m]", |f| {
+            f.number("cost_of_transport_electric_j_m", "energy per distance from the battery [J/m]", |f| {
                 f.effort.electric_w.map(|electric| electric / f.means.speed_m_s)
             }),
         ]
@@ -190,18 +192,18 @@ impl Figures<'_> {
         for (share, what) in self.effort.extrapolated.iter().zip(["speed", "angle to the flow"]) {
             if share.is_none() {
                 out.push(format!(
-                    "the record does not say at what {what} its drag was fitted: how far it is stretched here is not known"
+                    "the record does not say at what {what} its drag was fitted: the extrapolation cannot be assessed"
                 ));
             }
             if let Some(share) = share.filter(|share| *share > 0.0) {
                 out.push(format!(
-                    "extrapolated: {} of the loss is of links whose {what} lies outside of what the drag was fitted at",
+                    "extrapolated: {} of the loss is of links whose {what} lies outside the fitted range",
                     percent(share)
                 ));
             }
         }
         out.push(format!(
-            "half of the loss is at angles to the flow below {}, and {} of it by the forces along the links",
+            "half of the loss occurs at flow angles below {}; axial forces account for {} of the total loss",
             degrees(self.effort.median_angle_rad),
             percent(self.effort.along)
         ));

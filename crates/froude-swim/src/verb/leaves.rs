@@ -40,14 +40,11 @@ impl Repeating {
     /// Of an unstable motion that the figures are of; `was_followed` says whether another was looked for.
     fn stays(&self, was_followed: bool) -> String {
         let other = if was_followed {
-            "no other that repeats each period was reached"
+            "no stable periodic motion was found"
         } else {
             "no other was looked for, because nothing rights the robot"
         };
-        format!(
-            "unstable: {}, and the swimmer leaves this motion; {other}, and all figures are those of the unstable motion",
-            self.grows()
-        )
+        format!("unstable: {}; {other}, so all figures are for the unstable one", self.grows())
     }
 
     /// Of an unstable motion, and the settled one that the figures are of.
@@ -62,7 +59,7 @@ impl Repeating {
             "another motion".to_owned()
         };
         format!(
-            "unstable: the swimmer settles into {into}, at {} m/s and {} W, and all figures are those of this motion; it leaves the motion at {} m/s and {} W, in which {}",
+            "unstable: the swimmer settles into {into}, at {} m/s and {} W, and all figures are those of this motion. The unstable motion has {} m/s and {} W; in it {}",
             significant(settled.speed_m_s, 4),
             significant(settled.net_w, 4),
             significant(left.speed_m_s, 4),

@@ -143,24 +143,27 @@ impl Look {
             f.text("added_mass", "", |l| l.robot.estimates.1.clone()),
             f.number("mass_kg", "mass [kg]", |_| mass),
             f.number("displaced_kg", "mass of the water displaced [kg]", Self::displaced_kg),
-            f.number("mass_ahead_of_buoyancy_m", "centre of mass ahead of that of buoyancy [mm]", |_| {
+            f.number("mass_ahead_of_buoyancy_m", "centre of mass ahead of centre of buoyancy [mm]", |_| {
                 trim.map(|t| t.ahead_m)
             })
             .places(1),
-            f.number("mass_below_buoyancy_m", "and below it [mm]", |_| trim.map(|t| t.below_m)).places(1),
+            f.number("mass_below_buoyancy_m", "centre of mass below centre of buoyancy [mm]", |_| {
+                trim.map(|t| t.below_m)
+            })
+            .places(1),
             f.number("restoring_n_m_rad", "restoring moment of a roll [N m/rad]", |_| {
                 trim.map(|t| mass * GRAVITY_M_S2 * t.below_m)
             }),
-            f.number("added_mass_surge_kg", "added mass along, straight [kg]", |_| surge),
-            f.number("added_mass_sway_kg", "added mass across, straight [kg]", |_| sway),
-            f.number("force_along_at_0.3_m_s_n", "force along at 0.3 m/s [N]", |_| along[0]),
-            f.number("force_across_at_0.3_m_s_n", "force across at 0.3 m/s [N]", |_| across[1]),
+            f.number("added_mass_surge_kg", "added mass, surge [kg]", |_| surge),
+            f.number("added_mass_sway_kg", "added mass, sway [kg]", |_| sway),
+            f.number("force_along_at_0.3_m_s_n", "axial force at 0.3 m/s [N]", |_| along[0]),
+            f.number("force_across_at_0.3_m_s_n", "transverse force at 0.3 m/s [N]", |_| across[1]),
         ])
     }
 
     /// A row per kind of module: its body, and the water that it takes along.
     fn bodies(&self) -> ResultTable {
-        let t = TableBuilder::new("kinds", "bodies and the water that they take along", &self.kinds);
+        let t = TableBuilder::new("kinds", "modules and their added mass", &self.kinds);
         let below = |m: &ModuleFile| m.centre_of_mass_m[2] - m.centre_of_buoyancy_m[2];
         t.build(vec![
             t.text("", "module", Kind::numbers),
@@ -174,28 +177,30 @@ impl Look {
             t.number("mass_below_buoyancy_m", "mass below buoyancy [mm]", |k| below(&k.file)).places(1),
             t.numbers("center_of_mass_m", "", |k| k.file.centre_of_mass_m.to_vec()),
             t.numbers("center_of_buoyancy_m", "", |k| k.file.centre_of_buoyancy_m.to_vec()),
-            t.number("added_mass/surge_kg", "added surge [kg]", |k| k.link.added.x),
-            t.number("added_mass/sway_kg", "sway [kg]", |k| k.link.added.y),
-            t.number("added_mass/yaw_kg_m2", "yaw [kg m²]", |k| k.link.added.turn),
+            t.number("added_mass/surge_kg", "added mass, surge [kg]", |k| k.link.added.x),
+            t.number("added_mass/sway_kg", "added mass, sway [kg]", |k| k.link.added.y),
+            t.number("added_mass/yaw_kg_m2", "added inertia, yaw [kg m²]", |k| k.link.added.turn),
             t.number("added_mass/sway_yaw_kg_m", "", |k| k.link.added.turn_y),
         ])
     }
 
     /// The same for its drag.
     fn drag(&self) -> ResultTable {
-        let caption =
-            format!("drag of {}: −(c₁ + c₂|v|) v; by flow across, against the motion along", self.robot.estimates.0);
+        let caption = format!(
+            "drag of {}: −(c₁ + c₂|v|) v; the cross-flow term acts along the axis, against the axial motion",
+            self.robot.estimates.0
+        );
         let t = TableBuilder::new("kinds", caption, &self.kinds);
         let cross = |k: &Kind, i: usize| k.link.drag.cross.map(|c| c.of_speed[i]);
         t.build(vec![
             t.text("", "module", Kind::numbers),
             t.text("", "name", |k| k.file.name.clone()),
-            t.number("drag/along_kg_s", "along c₁ [kg/s]", |k| k.link.drag.along[0]),
-            t.number("drag/along_kg_m", "c₂ [kg/m]", |k| k.link.drag.along[1]),
-            t.number("drag/across_kg_s", "across c₁ [kg/s]", |k| k.link.drag.across[0]),
-            t.number("drag/across_kg_m", "c₂ [kg/m]", |k| k.link.drag.across[1]),
-            t.number("drag/by_flow_across_kg_s", "by flow across c₁ [kg/s]", |k| cross(k, 0)),
-            t.number("drag/by_flow_across_kg_m", "c₂ [kg/m]", |k| cross(k, 1)),
+            t.number("drag/along_kg_s", "axial c₁ [kg/s]", |k| k.link.drag.along[0]),
+            t.number("drag/along_kg_m", "axial c₂ [kg/m]", |k| k.link.drag.along[1]),
+            t.number("drag/across_kg_s", "transverse c₁ [kg/s]", |k| k.link.drag.across[0]),
+            t.number("drag/across_kg_m", "transverse c₂ [kg/m]", |k| k.link.drag.across[1]),
+            t.number("drag/by_flow_across_kg_s", "axial from cross-flow c₁ [kg/s]", |k| cross(k, 0)),
+            t.number("drag/by_flow_across_kg_m", "axial from cross-flow c₂ [kg/m]", |k| cross(k, 1)),
         ])
     }
 

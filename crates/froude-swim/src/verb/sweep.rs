@@ -122,7 +122,7 @@ pub enum SweepError {
         other: usize,
     },
     /// Another process makes the same.
-    #[error("{}: another process is at this sweep; wait for it, or name another folder with --out", .folder.display())]
+    #[error("{}: another process is running this sweep; wait for it, or name another folder with --out", .folder.display())]
     Busy {
         /// The folder of its parts.
         folder: PathBuf,

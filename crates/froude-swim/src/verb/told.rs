@@ -40,7 +40,7 @@ impl Figures<'_> {
     fn servos(&self, drives: &Drives, out: &mut Vec<String>) {
         let Some(stiffness) = self.effort.stiffness else { return };
         out.push(format!(
-            "servos follow the gait in steps of which the longest that is stable is {} s (largest eigenvalue of k_d over the inertia of the joints: {} 1/s)",
+            "largest stable time step of the servo loop: {} s (largest eigenvalue of k_d over the inertia of the joints: {} 1/s)",
             significant(stiffness.longest_step_s, 3),
             significant(stiffness.damping_per_s, 3)
         ));

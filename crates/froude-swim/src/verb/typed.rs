@@ -116,7 +116,9 @@ pub fn ranges(text: &str) -> Result<Ranges, NotUnderstood> {
             "phase" => (&mut found.phase, swept_angle),
             "turn" => (&mut found.turn, swept_angle),
             other => {
-                return Err(wrong(format!("begins with {other:?}; swept are amplitude, frequency, phase and turn")));
+                return Err(wrong(format!(
+                    "begins with {other:?}; only amplitude, frequency, phase and turn can be swept"
+                )));
             }
         };
         if place.is_some() {

@@ -197,7 +197,7 @@ fn of_sensitivities(found: &Sensitivities) -> Section {
     let mut paragraphs = Vec::new();
     match found.standard {
         None => paragraphs.push(
-            "the records state no uncertainty: elasticities are said, and not which coefficient to measure next"
+            "the records state no uncertainty: only elasticities are given; what to measure next cannot be ranked"
                 .to_owned(),
         ),
         Some(standard) => {
@@ -206,7 +206,7 @@ fn of_sensitivities(found: &Sensitivities) -> Section {
                 let most = found.each.iter().filter_map(|s| Some((known(s)?, &s.number.name)));
                 if let Some((part, name)) = most.max_by(|a, b| a.0.total_cmp(&b.0)) {
                     paragraphs.push(format!(
-                        "{of}: standard uncertainty {} {unit} by the coefficients; measure {name} next: known exactly, it would take {} of the variance away",
+                        "{of}: standard uncertainty {} {unit} by the coefficients; measure {name} next: knowing it exactly would remove {} of the variance",
                         significant(standard[k], 2),
                         percent(part)
                     ));
@@ -219,7 +219,8 @@ fn of_sensitivities(found: &Sensitivities) -> Section {
         f.number("speed_m_s", "", |f| f.standard.map(|[speed, _]| speed)),
         f.number("cost_of_transport_j_m", "", |f| f.standard.map(|[_, cost]| cost)),
     ]);
-    let caption = "what speed and cost owe to each coefficient, and the part of their variance that goes when it is known exactly";
+    let caption =
+        "sensitivity of speed and cost to each coefficient, and the share of variance removed if it were known exactly";
     let t = TableBuilder::new("coefficients", caption, &found.each);
     let effect = |s: &Sensitivity, k: usize, of: fn(&Effect) -> Option<f64>| s.effects.as_ref().and_then(|e| of(&e[k]));
     let elasticity = |e: &Effect| Some(e.elasticity);
@@ -228,12 +229,12 @@ fn of_sensitivities(found: &Sensitivities) -> Section {
         t.number("value", "value", |s| s.number.value),
         t.text("unit", "unit", |s| s.number.unit.clone()),
         t.number("standard_uncertainty", "standard uncertainty", |s| s.number.standard).significant(3),
-        t.number("speed/elasticity", "% of speed per %", |s| effect(s, 0, elasticity)).significant(3),
+        t.number("speed/elasticity", "speed elasticity", |s| effect(s, 0, elasticity)).significant(3),
         t.number("speed/derivative", "", |s| effect(s, 0, |e| Some(e.derivative))),
-        t.number("speed/variance_gone_if_known", "of the speed's variance", |s| effect(s, 0, |e| e.known)).percent(),
-        t.number("cost_of_transport/elasticity", "% of cost per %", |s| effect(s, 1, elasticity)).significant(3),
+        t.number("speed/variance_gone_if_known", "share of speed variance", |s| effect(s, 0, |e| e.known)).percent(),
+        t.number("cost_of_transport/elasticity", "cost elasticity", |s| effect(s, 1, elasticity)).significant(3),
         t.number("cost_of_transport/derivative", "", |s| effect(s, 1, |e| Some(e.derivative))),
-        t.number("cost_of_transport/variance_gone_if_known", "of the cost's variance", |s| effect(s, 1, |e| e.known))
+        t.number("cost_of_transport/variance_gone_if_known", "share of cost variance", |s| effect(s, 1, |e| e.known))
             .percent(),
     ]);
     let blocks = vec![standard.into(), coefficients.into(), Block::text("", paragraphs)];

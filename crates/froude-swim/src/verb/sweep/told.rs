@@ -131,11 +131,11 @@ impl Swept {
         }
         out.extend(self.drawn.iter().flat_map(|(drawing, laws, beyond)| bodies(drawing.n * laws, *beyond)));
         if self.resumed > 0 {
-            out.push(format!("{} were there from an earlier start", counted(self.resumed, "row", "rows")));
+            out.push(format!("{} were resumed from an earlier run", counted(self.resumed, "row", "rows")));
         }
         for folder in &self.others {
             out.push(format!(
-                "{} holds parts of a sweep of another robot, record or gaits that never came to its end: remove it when that is not to go on",
+                "{} holds an unfinished sweep of another robot, record or gait set; delete it if you will not resume it",
                 folder.display()
             ));
         }
