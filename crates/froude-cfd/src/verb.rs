@@ -40,7 +40,7 @@ pub use self::status::status;
 pub use self::suggest::suggest;
 pub use self::swing::{Planned, SwungRun, swing};
 
-/// Why a campaign of flow computations does not go on.
+/// Errors of `froude cfd`.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VerbError {

@@ -318,8 +318,8 @@ impl Collected {
         let t = TableBuilder::new("loads", caption, &loads);
         t.build(vec![
             t.text("load", "load", |k| LOADS[*k].to_owned()),
-            t.number("least", "least", |k| end(*k, f64::min, f64::INFINITY)),
-            t.number("largest", "largest", |k| end(*k, f64::max, f64::NEG_INFINITY)),
+            t.number("least", "min", |k| end(*k, f64::min, f64::INFINITY)),
+            t.number("largest", "max", |k| end(*k, f64::max, f64::NEG_INFINITY)),
             t.text("unit", "unit", |k| unit(*k).to_owned()),
         ])
     }

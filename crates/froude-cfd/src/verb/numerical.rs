@@ -64,7 +64,7 @@ pub(super) fn sentences(numerical: &Numerical, rows: &[Row]) -> Vec<String> {
         }
     }
     if rows.first().is_some_and(|row| numerical.endless(&row.case).is_some()) {
-        out.push(format!("an endless domain would change loads by {}", at_most(&|case| numerical.endless(case))));
+        out.push(format!("an unbounded domain would change loads by {}", at_most(&|case| numerical.endless(case))));
     }
     if !numerical.alone.is_empty() {
         out.push(format!(
@@ -80,7 +80,7 @@ fn of_study(study: &Study, loads: &[usize]) -> Section {
     let f = facts("", "", study);
     let mut blocks: Vec<Block> = vec![f.build(vec![f.text("case", "", |study| study.first.case.id.clone())]).into()];
     if study.grids.len() > 1 {
-        blocks.push(Block::text("", vec!["An order is claimed where all grids approach a limit from one side by steps above their iterative error, and it lies between 0.5 and 3. Digits in brackets behind a load are the standard deviation of its iterative error.".to_owned()]));
+        blocks.push(Block::text("", vec!["An observed order is given if the loads converge monotonically, with changes above the iterative error, and 0.5 ≤ p ≤ 3. Digits in brackets behind a load are the standard deviation of its iterative error.".to_owned()]));
         blocks.push(grid_table(study, loads).into());
         blocks.push(error_table(study, loads).into());
         blocks.extend(grid_chart(study, loads).map(Block::Chart));
@@ -145,22 +145,24 @@ fn grid_table(study: &Study, loads: &[usize]) -> ResultTable {
 fn error_table(study: &Study, loads: &[usize]) -> ResultTable {
     let found: Vec<(usize, Result<GridError, String>)> =
         loads.iter().map(|k| (*k, study.error(*k).map_err(|why| why.to_string()))).collect();
-    let caption = format!("{}: half-widths of the intervals by the grids alone", setting(&study.first.case));
+    let caption = format!("{}: 95 % half-widths from the grid study alone", setting(&study.first.case));
     let t = TableBuilder::new("error", caption, &found);
     let of =
         |row: &(usize, Result<GridError, String>), of: &dyn Fn(&GridError) -> Option<f64>| of(row.1.as_ref().ok()?);
     t.build(vec![
         t.text("load", "load", |(k, _)| LOADS[*k].to_owned()),
         t.text("unit", "unit", |(k, _)| unit(*k).to_owned()),
-        t.number("value", "the campaign's grid", |(k, _)| study.first.loads[*k]),
-        t.number("order", "order", |row| of(row, &|e| e.order)).places(2),
+        t.number("value", "value, campaign grid", |(k, _)| study.first.loads[*k]),
+        t.number("order", "observed order", |row| of(row, &|e| e.order)).places(2),
         t.numbers("orders", "", |(_, found)| found.as_ref().ok().map(orders)),
-        t.number("extrapolated", "limit", |row| of(row, &|e| e.extrapolated)),
-        t.number("expanded_of_campaign", "its 95 %", |row| of(row, &|e| Some(e.at(size(study, &study.first)))))
+        t.number("extrapolated", "extrapolated value", |row| of(row, &|e| e.extrapolated)),
+        t.number("expanded_of_campaign", "U95, campaign grid", |row| {
+            of(row, &|e| Some(e.at(size(study, &study.first))))
+        })
+        .significant(2),
+        t.number("expanded_of_finest", "U95, finest grid", |row| of(row, &|e| e.of_grids.first().copied()))
             .significant(2),
-        t.number("expanded_of_finest", "95 % of the finest", |row| of(row, &|e| e.of_grids.first().copied()))
-            .significant(2),
-        t.text("reason", "because", |(_, found)| found.as_ref().map_or_else(Clone::clone, |e| e.reason.clone())),
+        t.text("reason", "reason", |(_, found)| found.as_ref().map_or_else(Clone::clone, |e| e.reason.clone())),
     ])
 }
 
@@ -210,7 +212,7 @@ fn grid_chart(study: &Study, loads: &[usize]) -> Option<Chart> {
         let at = size(study, &study.first);
         let expanded = found.at(at);
         let interval = Series {
-            name: "95 % of the campaign's grid".to_owned(),
+            name: "U95, campaign grid".to_owned(),
             mark: Mark::Points,
             x: vec![at],
             y: vec![own],
@@ -225,7 +227,7 @@ fn grid_chart(study: &Study, loads: &[usize]) -> Option<Chart> {
     (!panels.is_empty()).then(|| Chart {
         name: format!("grids-{}", study.first.case.id),
         title: format!("Loads of {} over the size of cells", setting(&study.first.case)),
-        caption: "Cell size over that of the finest grid; dashed: the law of the claimed order, to its limit at 0."
+        caption: "Cell size over that of the finest grid; dashed: the law of the observed order, to its extrapolated value at 0."
             .to_owned(),
         x_label: "cell size [1]".to_owned(),
         panels,
@@ -277,7 +279,7 @@ fn of_fine(numerical: &Numerical, loads: &[usize]) -> Vec<Block> {
     let chart = Chart {
         name: "fine-less-campaign".to_owned(),
         title: "What the finer mesh changes".to_owned(),
-        caption: "Fine less the campaign's mesh, over ½ρU²A and for moments the length: what loads are corrected by, between the angles.".to_owned(),
+        caption: "Fine minus campaign mesh, over ½ρU²A and for moments the length: what loads are corrected by, between the angles.".to_owned(),
         x_label: "angle [deg]".to_owned(),
         panels: loads.iter().map(panel).collect(),
         ..Chart::default()
@@ -289,7 +291,7 @@ fn of_fine(numerical: &Numerical, loads: &[usize]) -> Vec<Block> {
     let table = t.build(vec![
         t.text("load", "load", |k| LOADS[*k].to_owned()),
         t.number("largest", "largest difference [1]", |k| largest(*k)).significant(2),
-        t.number("missed_where_left_out", "missed where left out [1]", |k| left_out[*k]).significant(2),
+        t.number("missed_where_left_out", "leave-one-out error [1]", |k| left_out[*k]).significant(2),
     ]);
     let said = vec!["Differences over ½ρU²A are averaged over speeds and linear between angles, per configuration; absolute, as a force that changes sign has no ratio.".to_owned()];
     let blocks = vec![Block::text("", said), table.into(), Block::Chart(chart)];

@@ -247,10 +247,10 @@ impl Planned {
             t.interval("reynolds", "Re of the width", |c| c.reynolds).range(),
             t.count("cases", "cases", |c| c.cases),
             t.count("open", "to compute", |c| c.open),
-            t.number("cpu_s", "time", |c| c.cpu_s).duration(),
+            t.number("cpu_s", "CPU time", |c| c.cpu_s).duration(),
             t.number("bytes", "disk", |c| c.bytes).bytes(),
         ]);
-        let caption = "meshes; y+ is what the friction of a plate lets expect at the highest speed";
+        let caption = "meshes; y+ is estimated from flat-plate friction at the highest speed";
         let t = TableBuilder::new("configurations", caption, all);
         let of = |c: &PlannedConfiguration, of: fn(&Made) -> f64| c.ready.cubes.as_ref().map(of);
         let meshes = t.build(vec![
@@ -262,14 +262,15 @@ impl Planned {
             .places(0),
             t.number("max_skewness", "skewness", |c| c.ready.quality.max_skewness).significant(2),
             t.number("layers/mean", "mean layers", |c| of(c, |made| made.layers)).significant(3),
-            t.count("layers/asked", "requested", |c| c.ready.cubes.as_ref().map(|made| made.layers_asked)),
+            t.count("layers/asked", "layers requested", |c| c.ready.cubes.as_ref().map(|made| made.layers_asked)),
             t.number("layers/coverage", "", |c| of(c, |made| made.coverage)),
-            t.number("layers/area_coverage", "of the area", |c| of(c, |made| made.area_coverage)).percent(),
+            t.number("layers/area_coverage", "layer coverage of the area", |c| of(c, |made| made.area_coverage))
+                .percent(),
             t.number("layers/thickness_m", "", |c| of(c, |made| made.layers_m)),
             t.number("y_plus_expected", "y+", |c| c.y_plus).significant(2),
-            t.number("blockage", "blocks", |c| c.blockage).percent(),
+            t.number("blockage", "blockage", |c| c.blockage).percent(),
         ]);
-        let caption = "lengths that numbers refer to, the area of the side, and the point of the moments, x forward, y to starboard, z down";
+        let caption = "reference lengths, area and moment reference point, x forward, y to starboard, z down";
         let t = TableBuilder::new("configurations", caption, all);
         let lengths = t.build(vec![
             t.text("", "body", PlannedConfiguration::name),
@@ -282,7 +283,7 @@ impl Planned {
         let cpu_s = sum(|c| c.cpu_s);
         let how = if self.is_measured { "measured here" } else { "assumed until a case has run here" };
         let price = format!(
-            "{} to compute: {} of a processor, {} on {}, {} of disk; {} µs a cell and iteration, {how}",
+            "{} to compute: {} CPU time, {} on {}, {} of disk; {} µs per cell and iteration, {how}",
             counted(sum(|c| c.open as f64) as usize, "case", "cases"),
             duration(cpu_s),
             duration(cpu_s / processors as f64),

@@ -214,9 +214,9 @@ fn cases(shown: &[Shown], unshown: usize) -> Vec<Block> {
     let t = TableBuilder::new("cases", "Single cases: those that are shown, and those that failed or diverged.", shown);
     let mut columns: Vec<ResultColumn> = vec![
         t.text("case", "case", |s| s.id.clone()),
-        t.text("is", "is", |s| s.status.to_owned()),
+        t.text("is", "status", |s| s.status.to_owned()),
         t.count("iterations", "iterations", |s| s.iterations),
-        t.text("reason", "because", |s| s.reason.clone()),
+        t.text("reason", "reason", |s| s.reason.clone()),
     ];
     columns.extend(Convergence::columns(&t));
     columns.extend(Pictures::columns(&t));

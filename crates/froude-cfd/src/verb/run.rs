@@ -146,11 +146,8 @@ impl State {
         let all = done + p.running + p.waiting + p.left;
         let bad: usize = p.done.iter().filter(|(s, _)| !s.is_usable()).map(|(_, n)| n).sum();
         let failing = if bad > 0 { format!(", {bad} failing") } else { String::new() };
-        let left = if p.left_cpu_s > 0.0 {
-            format!(", {} left of a processor", duration(p.left_cpu_s))
-        } else {
-            String::new()
-        };
+        let left =
+            if p.left_cpu_s > 0.0 { format!(", {} CPU time left", duration(p.left_cpu_s)) } else { String::new() };
         let now: Vec<String> = self.iterations.iter().take(3).map(|(id, n)| format!("{id} at {n}")).collect();
         format!("{done} of {all} cases done{failing}{left}; {}", now.join(", "))
     }
@@ -165,7 +162,10 @@ fn outcome(ran: &Ran, job: &Job, folder: &Path) -> Outcome {
         said.push(format!("{} no result yet", counted(open, "case has", "cases have")));
     }
     if p.done.iter().any(|(status, n)| !status.is_usable() && *n > 0) {
-        said.push("what diverged or failed reaches no fit; froude cfd status says why of each, froude cfd retry lets the next run compute them again".to_owned());
+        said.push(
+            "diverged and failed cases are not fitted; froude cfd status shows why, froude cfd retry queues them again"
+                .to_owned(),
+        );
     }
     let f = facts("", "", ran);
     let about = f.build(vec![

@@ -66,16 +66,16 @@ impl Standings {
         let t = TableBuilder::new("cases", format!("cases in {}", self.folder.display()), &f.rows);
         let mut cases = t.build(vec![
             t.text("case", "case", |row| row.id.clone()),
-            t.text("is", "is", |row| row.standing.word().to_owned()),
+            t.text("is", "status", |row| row.standing.word().to_owned()),
             t.count("iterations", "iterations", |row| row.iterations),
-            t.number("cpu_s", "time", |row| row.cpu_s).duration(),
+            t.number("cpu_s", "CPU time", |row| row.cpu_s).duration(),
             t.count("attempts", "attempts", |row| row.attempts),
             t.text("start_from", "starts from", |row| row.start_from.clone().unwrap_or_else(|| "inflow".to_owned())),
-            t.text("reason", "because", |row| row.reason.clone()),
+            t.text("reason", "reason", |row| row.reason.clone()),
         ]);
         cases.shown_rows = Some((0..shown).collect());
         let mut said = vec![format!(
-            "{}; {} of a processor spent, {} left at {} µs a cell and iteration, {} on disk",
+            "{}; {} CPU time used, {} remaining at {} µs per cell and iteration, {} on disk",
             self.counts(),
             duration(f.cpu_s),
             duration(f.left_cpu_s),

@@ -61,9 +61,9 @@ impl Suggested {
         let said = match (self.misses.is_empty(), self.next.is_empty()) {
             (true, _) => "no setting lies between others at its speed: plan five angles or five speeds at least",
             (_, true) => {
-                "no setting is foretold worse than by a hundredth or twice the uncertainty of its iterations, or what lies beside it is planned already: more settings tell nothing new"
+                "no further settings needed: each is predicted within 1 % or twice its iterative uncertainty, or its neighbours are already planned"
             }
-            _ => "put these blocks under those of the source, and run it again; cases that are there are kept",
+            _ => "put these blocks under those of the source and re-run froude cfd run; existing cases are kept",
         };
         let caption = "settings with the largest error of a cubic through the two neighbours on each side, as part of the largest value of that load on that body";
         let t = TableBuilder::new("misses", caption, &self.misses);
