@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Command, Parser, Subcommand};
 use froude::records::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
 
-const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input; 130 stopped by Ctrl-C, where the same command goes on.";
+const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input; 130 stopped by Ctrl-C; re-run the same command to resume.";
 
 /// Froude turns tank tests, tows and potential flow into drag and added-mass coefficients with realistic uncertainties, and drives the towing carriage.
 #[derive(Debug, Parser)]
@@ -14,7 +14,7 @@ pub struct Cli {
     /// Print the result as JSON on standard output.
     #[arg(long, global = true)]
     pub json: bool,
-    /// Print the tables of the result as CSV on standard output, in SI and with all digits.
+    /// Print the tables of the result as CSV on standard output, in SI units at full precision.
     #[arg(long, global = true, conflicts_with = "json")]
     pub csv: bool,
     #[command(subcommand)]
@@ -149,7 +149,7 @@ pub enum Verb {
     /// Print the JSON Schema of estimate.json, or of what a verb prints with --json.
     #[command(after_help = "Examples:\n  froude schema > estimate.schema.json\n  froude schema plan")]
     Schema {
-        /// The verb.
+        /// Verb whose output to describe; hyphenate subcommands (`cfd-plan` for `froude cfd plan`).
         #[arg(default_value = "identify", value_parser = froude::records::schema::RESULTS.map(|(verb, _)| verb))]
         verb: String,
     },
@@ -185,7 +185,7 @@ pub enum CfdJob {
         #[arg(long, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
         jobs: Option<usize>,
     },
-    /// Compute what has no result yet; run again, it goes on where it was, however it ended.
+    /// Compute the cases that have no result; re-run to resume, even after a crash.
     #[command(
         after_help = "Examples:\n  froude cfd run campaign.toml --jobs 2\n  froude cfd run campaign.toml --engine slurm --time 60"
     )]
@@ -226,7 +226,7 @@ pub enum CfdJob {
         #[command(flatten)]
         of: CfdCampaign,
     },
-    /// Say which settings to compute next: those beside settings that the others foretell worst, as blocks of a plan.
+    /// Suggest settings to compute next, as plan blocks: those next to settings that interpolation from their neighbours predicts worst.
     #[command(after_help = "Example: froude cfd suggest campaign.toml --count 8")]
     Suggest {
         #[command(flatten)]
@@ -235,7 +235,7 @@ pub enum CfdJob {
         #[arg(long, default_value_t = 6, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000))]
         count: usize,
     },
-    /// Compute the planned runs of a forced oscillation, as logs that identify takes like those of a tank; run again, it goes on with those that have none.
+    /// Compute the planned runs of a forced oscillation, as logs that `froude identify` reads like tank logs; re-run to resume.
     #[command(after_help = "Example: froude cfd swing campaign.toml && froude identify campaign.toml")]
     Swing {
         #[command(flatten)]
@@ -370,7 +370,7 @@ pub struct SwimArgs {
     /// lateral: the amplitude alike at all joints; eel: growing to the tail; or a gait file (.toml).
     #[arg(long, value_name = "KIND|FILE", default_value = "lateral")]
     pub gait: String,
-    /// Amplitude of a joint; of the eel that of joint n+1, one behind the last. Stands before that of a gait file, like the next three.
+    /// Joint amplitude (eel: amplitude at a virtual joint n+1 behind the last). Overrides the gait file, as do --frequency, --phase and --turn.
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
     pub amplitude: Option<String>,
     /// Angular frequency, or cycles a second: '80 deg/s', '0.22 Hz'.
@@ -385,7 +385,7 @@ pub struct SwimArgs {
     /// Amplitude of the joints that pitch, of a robot of three dimensions [default: 0 deg].
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, conflicts_with_all = ["sweep", "track"])]
     pub pitch_amplitude: Option<String>,
-    /// By how much the wave of the joints that pitch is ahead of that of the others: at 90 deg the body is a helix [default: 90 deg].
+    /// Phase lead of the pitch wave over the yaw wave; 90 deg gives a helix [default: 90 deg].
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, conflicts_with_all = ["sweep", "track"])]
     pub pitch_ahead: Option<String>,
     /// Mean angle of every joint that pitches: bow up or down [default: 0 deg].
@@ -394,16 +394,16 @@ pub struct SwimArgs {
     /// Recorded joint angles instead of a gait: a table (.csv, .parquet) with time and phi_1, phi_2, … from the head.
     #[arg(long, value_name = "TABLE", conflicts_with_all = ["gait", "amplitude", "frequency", "phase", "turn", "periods"])]
     pub track: Option<PathBuf>,
-    /// Many gaits instead of one: 'amplitude=10..50 deg:9, phase=10..80 deg:8'; also frequency and turn. Writes sweep.parquet; started again after a kill it goes on.
+    /// Many gaits instead of one: 'amplitude=10..50 deg:9, phase=10..80 deg:8'; also frequency and turn. Writes sweep.parquet; re-run to resume.
     #[arg(long, value_name = "RANGES", requires = "out", conflicts_with_all = ["track", "periods"])]
     pub sweep: Option<String>,
-    /// Gaits of the ranges of --sweep that no other beats in both: two of speed, power, cost. Refines between the grid's points and writes front.parquet.
+    /// Pareto-optimal gaits within the ranges of --sweep for two objectives: two of speed, power, cost. Refines between the grid's points and writes front.parquet.
     #[arg(long, value_name = "A,B", requires = "sweep", value_delimiter = ',', num_args = 1, value_parser = ["speed", "power", "cost"])]
     pub optimise: Vec<String>,
-    /// Draw the coefficients so many times from the covariance of their record: 95 % intervals of speed, powers and cost; in a sweep, a row for each draw.
+    /// Number of coefficient draws from the covariance of their record: 95 % intervals of speed, powers and cost; in a sweep, a row for each draw.
     #[arg(long, value_name = "N", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(100..=100_000))]
     pub draws: Option<u32>,
-    /// Seed of the draws: the same gives the same.
+    /// Seed of the draws: same seed, same result.
     #[arg(long, default_value_t = 1, requires = "draws")]
     pub seed: u64,
     /// What speed and cost of transport owe to each coefficient, and which to measure next.
@@ -412,10 +412,10 @@ pub struct SwimArgs {
     /// Motor of the joints (.toml): largest torque over speed, efficiency.
     #[arg(long, value_name = "FILE")]
     pub motor: Option<PathBuf>,
-    /// The longest step in time, of a loop that drives servos: '2 ms' [default: as short as waves, drag and servos need].
+    /// Largest time step of the servo loop: '2 ms' [default: as short as waves, drag and servos need].
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     pub step: Option<String>,
-    /// Folder of trajectory.parquet, report.html, animation.html and result.json, or of sweep.parquet; without it nothing is written. The trajectory begins with the motion that repeats or, where the robot file has a section of its start, there.
+    /// Folder of trajectory.parquet, report.html, animation.html and result.json, or of sweep.parquet; without it nothing is written. The trajectory starts on the periodic motion, or at the robot file's initial state if it gives one.
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Periods of the trajectory.

@@ -45,7 +45,7 @@ pub fn job(job: CarriageJob, form: Form) -> Result<(), Failure> {
         CarriageJob::Identify { input, sidecar, validate, out } => {
             let is_same = |path: &PathBuf| validate.as_ref().is_some_and(|other| same_file(path, other));
             if let Some(path) = input.iter().find(|path| is_same(path)) {
-                let why = "the log that is fitted says nothing of another motion; name another log";
+                let why = "this is the fitted log itself; name a log of a different motion";
                 return Err(Failure::refused(format_args!("--validate {}: {why}", path.display())));
             }
             let job = Job { sidecar, validation: validate, purpose: Some(Purpose::Servo), ..servo(&input, out)? };

@@ -39,7 +39,7 @@ impl Failure {
 
     /// What the program needs of the system is not to be had.
     pub fn system(error: std::io::Error) -> Self {
-        Self::refused(format_args!("the system does not give what is needed: {error}"))
+        Self::refused(format_args!("a system call failed: {error}"))
     }
 
     /// 2 where the input is at fault, 1 where the machine is, and 130 of what was stopped as asked, as a shell has it after Ctrl-C.

@@ -29,7 +29,7 @@ use crate::units::Unit;
 pub enum Block {
     /// Sentences; with a key, a program reads them as a list.
     Text {
-        /// Their place in JSON; empty: people alone read them.
+        /// Their place in JSON; empty: not in JSON.
         key: String,
         /// One a paragraph.
         texts: Vec<String>,
@@ -44,7 +44,7 @@ pub enum Block {
     Field(Field),
     /// Blocks under a heading.
     Section(Section),
-    /// Estimates as records have them: programs alone read them, at the key `estimates`.
+    /// Estimates as records have them: JSON only, at the key `estimates`.
     Estimates(Vec<Estimate>),
 }
 
@@ -67,7 +67,7 @@ pub struct Section {
 /// key are one list, of which each holds some columns.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ResultTable {
-    /// Its place in JSON; empty: a table of facts adds them to what it lies in, and another table is for people alone.
+    /// Its place in JSON; empty: a table of facts adds them to what it lies in, and another table is not in JSON.
     pub key: String,
     /// Caption.
     pub caption: String,
@@ -86,9 +86,9 @@ pub struct ResultTable {
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultColumn {
-    /// Its place in the object of a row; empty: people alone read it.
+    /// Its place in the object of a row; empty: not in JSON.
     pub key: String,
-    /// What people read above it, without its unit; empty: programs alone read it.
+    /// What people read above it, without its unit; empty: JSON only.
     pub head: String,
     /// The unit that people read, where there is one.
     pub unit: Option<Unit>,
@@ -122,11 +122,11 @@ pub enum Cells {
 /// How a number is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Digits {
-    /// So many digits that count.
+    /// n significant digits.
     Significant(u8),
-    /// As a person would type it, with at most so many digits that count.
+    /// As a person would type it, with at most n significant digits.
     Plain(u8),
-    /// So many places behind the point.
+    /// Decimal places.
     Places(u8),
     /// A part of the whole in percent.
     Percent,
@@ -136,7 +136,7 @@ pub enum Digits {
     Range,
     /// A time as a person says it.
     Duration,
-    /// A size on a disk.
+    /// A size in bytes.
     Bytes,
     /// A normalised difference E_n, which a page marks where it is beyond 1.
     Normalised,
@@ -151,7 +151,7 @@ impl Block {
         Self::Text { key: key.to_owned(), texts }
     }
 
-    /// Sentences for people alone.
+    /// Sentences that are not in JSON.
     pub fn words(texts: impl IntoIterator<Item = String>) -> Self {
         Self::text("", texts.into_iter().collect())
     }

@@ -56,7 +56,7 @@ fn shifted(x: f64, shift: i32) -> f64 {
     x * 10f64.powi(half) * 10f64.powi(shift - half)
 }
 
-/// A finite number with `decimals` places behind the point, or rounded to a power
+/// A finite number with `decimals` decimal places, or rounded to a power
 /// of ten before it when `decimals` is negative.
 fn decimals(x: f64, decimals: i32) -> String {
     let text = if decimals >= 0 {
@@ -312,7 +312,7 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// A size on a disk, in the decimal units of disks.
+/// A size in bytes, as MB or GB (decimal).
 #[must_use]
 pub fn bytes(n: f64) -> String {
     if n < 1e9 { format!("{} MB", significant(n / 1e6, 2)) } else { format!("{} GB", significant(n / 1e9, 2)) }

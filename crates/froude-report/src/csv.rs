@@ -1,4 +1,4 @@
-//! The tables of an outcome as CSV, for spreadsheets: a column for each key, in SI and with all digits.
+//! The tables of an outcome as CSV, for spreadsheets: a column for each key, in SI units at full precision.
 //!
 //! Where there are several tables, each stands below a line with its name, with a blank line before the next.
 

@@ -6,11 +6,11 @@ use froude_records::campaign::{Campaign, Source};
 
 /// What a method of the tank is called, what it needs, and what does it.
 pub struct TankMethod {
-    /// Its names, …
+    /// Names that a campaign selects it by.
     pub names: &'static [&'static str],
-    /// … and what each of them does.
+    /// What each of them does, one text per name.
     pub words: &'static [&'static str],
-    /// What it needs.
+    /// Files that it needs.
     pub needs: &'static [Need],
     /// The method that runs must be of.
     pub runs: &'static str,

@@ -23,12 +23,12 @@ impl Draws {
         self.0.sample(StandardNormal)
     }
 
-    /// A number as it may be where it is known so well.
+    /// Draws from N(value, standard²).
     pub(crate) fn about(&mut self, known: Uncertain) -> f64 {
         known.value + known.standard * self.normal()
     }
 
-    /// A gain that errs by a part of it.
+    /// Draws a gain from N(1, part²).
     pub(crate) fn gain(&mut self, part: f64) -> f64 {
         1.0 + part * self.normal()
     }

@@ -96,19 +96,19 @@ impl ResultColumn {
         Self { key: key.to_owned(), head: head.to_owned(), unit, cells, standard: None, digits: Digits::Significant(4) }
     }
 
-    /// Its numbers have so many digits that count.
+    /// Its numbers have that many significant digits.
     #[must_use]
     pub fn significant(self, digits: u8) -> Self {
         Self { digits: Digits::Significant(digits), ..self }
     }
 
-    /// Its numbers are written as a person would type them, with at most so many digits that count.
+    /// Its numbers are written as a person would type them, with at most that many significant digits.
     #[must_use]
     pub fn plain(self, digits: u8) -> Self {
         Self { digits: Digits::Plain(digits), ..self }
     }
 
-    /// Its numbers have so many places behind the point.
+    /// Its numbers have that many decimal places.
     #[must_use]
     pub fn places(self, places: u8) -> Self {
         Self { digits: Digits::Places(places), ..self }

@@ -97,7 +97,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// What has no key is for people alone.
+    /// What has no key is not in JSON.
     fn put(&mut self, key: &'a str, value: Value<'a>) {
         if !key.is_empty() {
             self.at(key).value = Some(value);

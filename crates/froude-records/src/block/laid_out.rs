@@ -14,7 +14,7 @@ pub struct LaidOut {
     pub rows: Vec<Vec<String>>,
 }
 
-/// A table as people read it; `None` where programs alone read it.
+/// A table as people read it; `None` where it is JSON only.
 #[must_use]
 pub fn laid_out(table: &ResultTable) -> Option<LaidOut> {
     let shown: Vec<&ResultColumn> = table.shown().collect();
