@@ -620,7 +620,7 @@ fn a_servo_is_held_against_a_log_that_it_was_not_fitted_to() {
         "{cross:?}"
     );
     let report = std::fs::read_to_string(folder.path().join("first-servo/report.html")).unwrap();
-    assert!(report.contains("second.csv: held against the fits") && report.contains("for this excitation"));
+    assert!(report.contains("second.csv: validation against the fits") && report.contains("for this excitation"));
 
     let campaign = folder.path().join("axis.toml");
     let source = |name: &str, more: &str| {

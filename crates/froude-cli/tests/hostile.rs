@@ -72,7 +72,7 @@ fn a_load_that_no_test_has_is_refused_with_its_line() {
     assert_eq!(ended.code, Some(2));
     assert_eq!(
         ended.told.trim_end(),
-        "froude: t.csv:5: column `f_x [N]`: `-1e308` is beyond 1e50 in SI, as no quantity of a test is; correct it or delete the row"
+        "froude: t.csv:5: column `f_x [N]`: `-1e308` exceeds the limit of 1e50 (SI); correct it or delete the row"
     );
 }
 
@@ -85,7 +85,7 @@ fn a_fixed_coefficient_of_absurd_size_is_refused_with_its_place() {
     assert_eq!(ended.code, Some(2));
     assert_eq!(
         ended.told.trim_end(),
-        "froude: c.toml:9:19: `D_x_I` is 1e300; no number of a test is beyond 1e50 in SI: correct it"
+        "froude: c.toml:9:19: `D_x_I` is 1e300, which exceeds the limit of 1e50 (SI): correct it"
     );
 }
 

@@ -89,7 +89,7 @@ fn numbers_end_at_ten_to_the_fiftieth() {
     for n in ["9.9e49", "1e50", "-1e50"] {
         reads("t.csv", table(n), &["identify", "t.csv"]);
     }
-    let told = "froude: t.csv:2: column `u [N]`: `1.1e50` is beyond 1e50 in SI, as no quantity of a test is; correct it or delete the row";
+    let told = "froude: t.csv:2: column `u [N]`: `1.1e50` exceeds the limit of 1e50 (SI); correct it or delete the row";
     refuses("t.csv", table("1.1e50"), &["identify", "t.csv"], told);
 }
 

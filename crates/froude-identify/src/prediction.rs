@@ -404,13 +404,13 @@ impl Prediction {
         let outside = predicted.rows.iter().filter(|row| !row.outside.is_empty()).count();
         if outside > 0 {
             out.push(format!(
-                "{} outside of the ranges of the record: extrapolated, and counted in no error and in no χ²",
+                "{} outside of the ranges of the record: extrapolated; excluded from errors and χ²",
                 counted(outside, "load lies", "loads lie")
             ));
         }
         if predicted.rows.iter().any(|row| row.u_law.is_none()) {
             out.push(
-                "the record states no covariance, so that there is no band and E_n holds the scatter alone".to_owned(),
+                "the record states no covariance, so there is no band, and E_n includes only the scatter".to_owned(),
             );
         }
         if predicted.rows.iter().any(|row| row.measured.is_some() && row.scatter.is_none()) {
@@ -462,11 +462,12 @@ fn of_loads(loads: &[OfLoad], caption: &str) -> ResultTable {
         t.count("rows", "rows", |of| of.rows),
         t.count("outside", "outside", |of| of.outside),
         t.number("u_law_rms", "u of the law", |of| of.u_law).significant(3),
-        t.number("mean_error", "mean error", |of| of.errors.map(|[mean, _]| mean)).significant(3),
+        t.number("mean_error", "mean error (measured − predicted)", |of| of.errors.map(|[mean, _]| mean))
+            .significant(3),
         t.number("rms_error", "rms error", |of| of.errors.map(|[_, root]| root)).significant(3),
-        t.number("of_rms_load", "of the rms load", |of| of.errors.map(|[_, root]| root / of.size)).percent(),
-        t.count("beyond", "|E_n| > 1", |of| (of.measured > 0).then_some(of.beyond)),
-        t.count("measured", "of", |of| (of.measured > 0).then_some(of.measured)),
+        t.number("of_rms_load", "rms error / rms load", |of| of.errors.map(|[_, root]| root / of.size)).percent(),
+        t.count("beyond", "rows with |E_n| > 1", |of| (of.measured > 0).then_some(of.beyond)),
+        t.count("measured", "rows measured", |of| (of.measured > 0).then_some(of.measured)),
     ])
 }
 

@@ -292,10 +292,10 @@ impl RecordError {
     /// A cell with NaN, an infinity, or a number beyond what is taken for a measurement.
     pub(crate) fn not_finite(place: Place, column: &str, found: &str) -> Self {
         let what = match found.parse::<f64>() {
-            Ok(x) if x.is_finite() => format!("beyond {LARGEST_SI:e} in SI, as no quantity of a test is"),
-            _ => "not a finite number".to_owned(),
+            Ok(x) if x.is_finite() => format!("exceeds the limit of {LARGEST_SI:e} (SI)"),
+            _ => "is not a finite number".to_owned(),
         };
-        Self::column(place, column, format!(": `{found}` is {what}; correct it or delete the row"))
+        Self::column(place, column, format!(": `{found}` {what}; correct it or delete the row"))
     }
 
     /// A file that is larger than its kind should ever be.

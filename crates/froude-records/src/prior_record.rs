@@ -117,7 +117,7 @@ fn value(prior: &PriorSpec, from: &PriorRecord, density_kg_m3: Option<f64>) -> R
         let names = |e: &Estimate| e.coefficients.keys().cloned().collect::<Vec<_>>().join(", ");
         let there: Vec<String> = file.estimates.iter().map(|e| format!("{} with {}", e.id, names(e))).collect();
         let (path, there) = (from.path.display(), there.join("; "));
-        wrong("entry", format!("is {:?}, which {path} has not; it has {there}", from.entry))
+        wrong("entry", format!("is {:?}, which {path} does not contain; it contains {there}", from.entry))
     })?;
     let Some((entry, found)) = estimate.coefficients.get(&from.entry).and_then(|c| Some((c, c.value?))) else {
         return Err(wrong("entry", format!("is {:?}, which {} does not determine", from.entry, estimate.id)));

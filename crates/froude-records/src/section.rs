@@ -234,7 +234,7 @@ impl<'a> Section<'a> {
         match text.replace('_', "").parse::<f64>() {
             Ok(x) if is_plausible(x) => Ok(x),
             Ok(x) if x.is_finite() => {
-                let problem = format!("is {text}; no number of a test is beyond {LARGEST_SI:e} in SI: correct it");
+                let problem = format!("is {text}, which exceeds the limit of {LARGEST_SI:e} (SI): correct it");
                 Err(self.wrong(key, value, problem))
             }
             _ => Err(self.wrong(key, value, format!("is {text}; expected a finite number"))),

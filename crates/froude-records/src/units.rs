@@ -200,7 +200,7 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
     }
     let value: f64 = number.parse().map_err(|_| no_number())?;
     let not_finite = || {
-        let problem = format!("is not a finite number, or beyond {LARGEST_SI:e} in SI, as no quantity of a test is");
+        let problem = format!("is not a finite number, or exceeds the limit of {LARGEST_SI:e} (SI)");
         UnitError::Other(format!("`{}` {problem}", shorten(text)))
     };
     if !value.is_finite() {

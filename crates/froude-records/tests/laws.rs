@@ -251,7 +251,7 @@ fn units_say_what_is_wrong_with_them() {
     let cases = [
         ("fast", "`fast` does not begin with a number; write a quantity as `0.4 m/s`"),
         ("0.4", "`0.4` has no unit; write for example `0.4 m/s`, or `0.4 1` for a pure number"),
-        ("1e999 m", "`1e999 m` is not a finite number, or beyond 1e50 in SI, as no quantity of a test is"),
+        ("1e999 m", "`1e999 m` is not a finite number, or exceeds the limit of 1e50 (SI)"),
         ("nan m", "`nan m` does not begin with a number; write a quantity as `0.4 m/s`"),
     ];
     for (text, message) in cases {

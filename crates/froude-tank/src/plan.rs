@@ -37,7 +37,7 @@ impl Expected {
 /// The intervals to expect; `law` names it in the caption.
 pub(crate) fn intervals(expected: &[Expected], law: &str) -> ResultTable {
     let caption = format!(
-        "Intervals to expect{law}: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it."
+        "Intervals to expect{law}: true value, half-width of the 95 % interval (U95), and the largest of the standard uncertainties (u) behind it."
     );
     let t = TableBuilder::new("expected", caption, expected);
     t.build(vec![
@@ -46,14 +46,14 @@ pub(crate) fn intervals(expected: &[Expected], law: &str) -> ResultTable {
         t.text("unit", "unit", |e| e.unit.clone()),
         t.number("value", "value", |e| e.value),
         t.number("standard_uncertainty", "", |e| e.combined.standard),
-        t.number("half_width_95", "U", |e| e.combined.arms[1]).significant(2),
-        t.number("relative_half_width_95", "U, relative", |e| {
+        t.number("half_width_95", "U95", |e| e.combined.arms[1]).significant(2),
+        t.number("relative_half_width_95", "relative U95", |e| {
             (e.value != 0.0).then(|| (e.combined.arms[1] / e.value).abs())
         })
         .percent(),
         t.text("mostly_from", "", |e| e.mostly.0.clone()),
         t.number("mostly_from_standard", "", |e| e.mostly.1),
-        t.text("", "mostly from", |e| format!("{} ({})", e.mostly.0, significant(e.mostly.1, 2))),
+        t.text("", "dominant uncertainty (u)", |e| format!("{} ({})", e.mostly.0, significant(e.mostly.1, 2))),
     ])
 }
 

@@ -85,7 +85,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Identified, Error>
         gathered.take(source, &campaign, &mut files, job, progress)?;
     }
     for source in campaign.sources.iter().filter(|source| source.is_validation) {
-        progress(&format!("{}: held against the fits", source.name));
+        progress(&format!("{}: validation against the fits", source.name));
         gathered.validate(source, &campaign, job.purpose)?;
     }
     origins::inherit(&campaign, &gathered.sources, &mut files)?;

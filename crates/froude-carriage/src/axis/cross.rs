@@ -81,5 +81,5 @@ pub fn held_against(
         t.number("own", "where it was fitted", |cross| cross.own).percent(),
         t.number("cross", "cross force error", |cross| cross.other).percent(),
     ]);
-    Ok((findings, Section::new(format!("{name}: held against the fits"), [table.into()])))
+    Ok((findings, Section::new(format!("{name}: validation against the fits"), [table.into()])))
 }

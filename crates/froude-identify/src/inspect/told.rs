@@ -98,7 +98,7 @@ fn of_source(s: &SourceFacts) -> Section {
     let t = TableBuilder::new("budget", "", &s.budget);
     let budget = t.build(vec![
         t.text("quantity", "budget", |b| b.quantity.clone()),
-        t.text("standard", "standard", |b| b.standard.clone()),
+        t.text("standard", "standard uncertainty", |b| b.standard.clone()),
         t.text("shared", "shared by", |b| b.shared.clone()),
         t.number("dof", "", |b| b.dof),
         t.text("", "dof", |b| number::dof(b.dof.unwrap_or(f64::INFINITY))),

@@ -154,7 +154,7 @@ impl Counts {
                 "{load} points along {motion} {of}: a drag must oppose the motion; if the sensor is mounted the other \
                  way round, write sign = -1 for its column, or remove it if it is there{}",
                 if motion == "v_y" && data.channels.contains_key("angle") {
-                    "; if the angle is counted in the opposite sense (as beta of a ship's drift test is), write it for the angle's"
+                    "; if the angle is counted in the opposite sense (as beta of a ship's drift test is), write sign = -1 for the angle column instead"
                 } else {
                     ""
                 }

@@ -122,7 +122,7 @@ fn coefficient_table(coefficients: &[&Validation]) -> Option<Block> {
         t.number("u_data", "", |v| v.u_data),
         t.text("", "u_D", |v| data_uncertainty(v)),
         t.number("u_validation", "u_val", |v| v.u_validation).significant(2),
-        t.text("verdict", "E is", verdict),
+        t.text("verdict", "verdict", verdict),
         t.text("unit", "unit", |v| v.unit.clone()),
     ];
     (!coefficients.is_empty()).then(|| t.build(columns).into())

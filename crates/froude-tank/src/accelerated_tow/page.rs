@@ -62,7 +62,7 @@ fn masses(reduced: &Reduced, setup: &Setup) -> ResultTable {
     t.build(vec![
         t.text("configuration", "configuration", |(body, _)| body.name.clone()),
         t.uncertain(["mass_kg", "mass_standard_kg"], "mass [kg]", |(_, m)| m.value_kg, |(_, m)| m.standard_kg),
-        t.text("from", "from", |(_, m)| if m.is_weighed { "by runs in air" } else { "declared" }.to_owned()),
+        t.text("from", "source", |(_, m)| if m.is_weighed { "by runs in air" } else { "declared" }.to_owned()),
         t.number("reference_volume_m3", "reference volume [m³]", |(body, _)| body.volume_m3).plain(5),
     ])
 }

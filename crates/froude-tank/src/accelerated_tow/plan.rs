@@ -282,7 +282,7 @@ fn matrix(planned: &[Planned], setup: &Setup) -> ResultTable {
     t.build(vec![
         t.text("run", "run", |run| run.id.clone()),
         t.text("configuration", "configuration", |run| setup.bodies[run.body].name.clone()),
-        t.text("in", "in", |run| if run.is_dry { "air" } else { "water" }.to_owned()),
+        t.text("in", "medium", |run| if run.is_dry { "air" } else { "water" }.to_owned()),
         t.number("speed_m_s", "speed [m/s]", |run| run.profile.speed_m_s).significant(3),
         t.number("acceleration_m_s2", "acceleration [m/s²]", |run| run.profile.acceleration_m_s2).significant(3),
         t.number("duration_s", "duration [s]", |run| run.profile.duration_s()).places(1),
@@ -307,7 +307,7 @@ fn coefficients(law: &str, found: &Forecast) -> ResultTable {
         t.number("correlation", "", |most| most.map(|(_, r)| r)),
     ]);
     let caption = format!(
-        "Intervals to expect, with the law {law} of [simulate]: true value, half-width U at 95 %, the largest of the standard uncertainties behind it, and the coefficient that it is \
+        "Intervals to expect, with the law {law} of [simulate]: true value, half-width of the 95 % interval (U95), the largest of the standard uncertainties (u) behind it, and the coefficient that it is \
          most correlated with."
     );
     ResultTable { caption, ..table }

@@ -409,7 +409,7 @@ fn clipped(run: &TowRun<'_>, begins_s: f64, ends_s: f64) -> Result<(), TankError
         let found = part(value);
         if found >= CLIPPED && low < high && repeats <= REPEATS {
             let what = format!(
-                "force stands at {value} N in {:.0} % of its moving part: the cell is clipped; widen its range, or accelerate less",
+                "force saturates at {value} N in {:.0} % of its moving part: the cell is clipped; widen its range, or accelerate less",
                 1e2 * found
             );
             return Err(TankError::of_run(run.id, what));

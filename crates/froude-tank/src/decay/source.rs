@@ -142,9 +142,9 @@ fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> Section {
     let table = t.build(vec![
         t.text("release", "release", |r| r.id.clone()),
         t.count("half_cycles", "half cycles", |r| r.half_cycles),
-        t.number("from_s", "from [s]", |r| r.from_s).plain(4),
-        of("position", "position there", |r| r.start[0]).plain(4),
-        t.number(&format!("speed_{unit}_s"), &format!("speed there [{unit}/s]"), |r| r.start[1]).plain(3),
+        t.number("from_s", "fit starts at [s]", |r| r.from_s).plain(4),
+        of("position", "initial position", |r| r.start[0]).plain(4),
+        t.number(&format!("speed_{unit}_s"), &format!("initial speed [{unit}/s]"), |r| r.start[1]).plain(3),
         of("rest", "rest", |r| r.rest).plain(3),
         of("noise", "noise of a sample", |r| r.noise).significant(2),
         t.number(left[0], left[1], |r| r.residual_rms).significant(2),

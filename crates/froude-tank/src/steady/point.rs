@@ -180,7 +180,7 @@ fn clipped(run: &str, name: &str, values: &[f64], window: &Window) -> Result<(),
         let part = values[rows.clone()].iter().filter(|x| **x == value).count() as f64 / rows.len() as f64;
         if part >= CLIPPED {
             let what = format!(
-                "{name} stands at {value} in {:.0} % of its steady window: the sensor is clipped; widen its range, or tow more slowly",
+                "{name} saturates at {value} in {:.0} % of its steady window: the sensor is clipped; widen its range, or tow more slowly",
                 1e2 * part
             );
             return Err(TankError::of_run(run, what));
@@ -226,7 +226,7 @@ mod tests {
         };
         let found = reduced(&noisy.iter().map(|f| f.max(-0.6)).collect::<Vec<f64>>());
         let refused = found.unwrap_err().to_string();
-        assert!(refused.contains("f_x stands at -0.6 in 100 % of its steady window"), "{refused}");
+        assert!(refused.contains("f_x saturates at -0.6 in 100 % of its steady window"), "{refused}");
         let coarse = reduced(&noisy.iter().map(|f| (f / 0.05).round() * 0.05).collect::<Vec<f64>>()).unwrap();
         assert!((coarse.loads[0].value + 0.8).abs() < 1e-9);
     }

@@ -51,7 +51,9 @@ fn table(rows: &[Row], reduced: &[Reduced]) -> ResultTable {
             |(_, found)| found.track.standard_m_s,
         ),
         t.number("change", "change over the window [%]", |(_, found)| found.track.change[0]).places(1),
-        t.text("", "reached", |(_, found)| found.reached().map_or_else(|| "steady".to_owned(), number::percent)),
+        t.text("", "fraction of terminal speed", |(_, found)| {
+            found.reached().map_or_else(|| "steady".to_owned(), number::percent)
+        }),
         t.number("reached", "", |(_, found)| found.reached()),
     ];
     let loads = rows.first().map_or(&[] as &[_], |row| &row.point.loads);

@@ -154,7 +154,9 @@ fn matrix(runs: &[Simulated], reduced: &[Reduced], plan: &Plan) -> ResultTable {
         t.number("weight_n", "weight [N]", |(_, (run, _))| run.weight_n).significant(3),
         t.number("angle_rad", "angle [deg]", |(_, (run, _))| run.angle_rad).plain(4),
         t.number("speed_m_s", "speed at the end [m/s]", |(_, (_, found))| found.track.speed_m_s).significant(3),
-        t.text("", "reached", |(_, (_, found))| found.reached().map_or_else(|| "steady".to_owned(), number::percent)),
+        t.text("", "fraction of terminal speed", |(_, (_, found))| {
+            found.reached().map_or_else(|| "steady".to_owned(), number::percent)
+        }),
         t.number("reached", "", |(_, (_, found))| found.reached()),
         t.number("terminal_m_s", "terminal speed [m/s]", |(i, _)| terminal?.get(*i).copied()).significant(3),
         t.number("duration_s", "duration [s]", |(_, (run, _))| duration_s(run)).places(1),

@@ -72,7 +72,7 @@ pub fn track(run: &str, time_s: &[f64], position_m: &[f64], window_m: f64) -> Re
     let moved_m = way.abs();
     if moved_m.is_nan() || moved_m < window_m {
         let what = format!(
-            "the mark moves {moved_m:.3} m, and the last {window_m:.3} m of its way are looked at; check the scale, or state a shorter window in [source.weight_tow]"
+            "the mark moves {moved_m:.3} m, less than the {window_m:.3} m evaluated; check the scale, or shorten the window in [source.weight_tow]"
         );
         return Err(TankError::of_run(run, what));
     }

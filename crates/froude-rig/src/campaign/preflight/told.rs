@@ -133,7 +133,10 @@ impl Prepared {
             "One wet-minus-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs show it)."
         )];
         if self.runs().zip(&self.forecasts).any(|(_, f)| !f.margin_m.is_finite()) {
-            out.push("A run without a margin is held where it stands.".to_owned());
+            out.push(
+                "Runs without a margin (—) are pulses and jogs; the controller's soft limits keep them inside."
+                    .to_owned(),
+            );
         }
         if !self.is_shaped() {
             out.push(
