@@ -412,7 +412,9 @@ fn numbers(estimate: &Estimate) -> Vec<(String, f64)> {
     }
     if let Some(TypeA { names: _, matrix, dof, kind: _ }) = type_a {
         matrix.iter().flatten().for_each(|number| put("type_a.matrix".to_owned(), Some(*number)));
-        dof.iter().for_each(|number| put("type_a.dof".to_owned(), *number));
+        for number in dof {
+            put("type_a.dof".to_owned(), *number);
+        }
     }
     for (key, error) in errors {
         let SharedError { name: _, quantity: _, kind: _, covariance, dof, limits, sensitivity } = error;

@@ -142,18 +142,18 @@ pub(crate) fn log(
 struct Servo {
     asked: Swing,
     /// Natural frequency, rad/s, and damping ratio.
-    servo: (f64, f64),
+    natural_and_damping: (f64, f64),
     time_s: f64,
     state: [f64; 2],
 }
 
 impl Servo {
-    fn new(asked: Swing, servo: (f64, f64)) -> Self {
-        Self { asked, servo, time_s: f64::NEG_INFINITY, state: [0.0; 2] }
+    fn new(asked: Swing, natural_and_damping: (f64, f64)) -> Self {
+        Self { asked, natural_and_damping, time_s: f64::NEG_INFINITY, state: [0.0; 2] }
     }
 
     fn second(&self, t: f64, [angle, rate]: [f64; 2]) -> f64 {
-        let (natural, damping) = self.servo;
+        let (natural, damping) = self.natural_and_damping;
         let asked = self.asked.amplitude_rad * libm::sin(self.asked.omega_rad_s * (t - self.asked.still_s));
         natural * natural * (asked - angle) - 2.0 * damping * natural * rate
     }
@@ -165,7 +165,7 @@ impl Servo {
             return [0.0; 3];
         }
         let from = self.time_s.max(begins);
-        let (natural, _) = self.servo;
+        let (natural, _) = self.natural_and_damping;
         let steps = libm::ceil((time_s - from) * natural / STEP_RAD).clamp(1.0, 1e6) as u32;
         let h = (time_s - from) / f64::from(steps);
         for i in 0..steps {

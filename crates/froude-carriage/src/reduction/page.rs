@@ -128,7 +128,7 @@ fn methods_table(report: &DragReport, setup: &DragSetup) -> ResultTable {
         t.text("", "method", |c| format!("{} ({})", c.method.words(), c.method.name())),
         t.number("d_d_n_s2_m2", "D_d [N s²/m²]", |c| c.value).plain(5),
         t.interval("d_d_interval_95_n_s2_m2", "D_d, 95 % interval", |c| c.interval_95),
-        t.number("d_d_relative_half_width", "D_d, relative half-width", |c| c.relative_half_width()).percent(),
+        t.number("d_d_relative_half_width", "D_d, relative half-width", Coefficient::relative_half_width).percent(),
         t.number("c_d", "C_D [1]", |c| drag(c).map(|(value, _)| value)).plain(4),
         t.interval("c_d_interval_95", "C_D, 95 % interval", |c| drag(c).and_then(|(_, interval)| interval)),
         t.number("ratio", "ratio to reference", |c| c.value / report.reference_n_s2_m2.unwrap_or(f64::NAN)).plain(4),

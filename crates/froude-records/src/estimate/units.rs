@@ -151,7 +151,9 @@ fn estimate_to_si(e: &mut Estimate) -> Result<(), BadUnit> {
     }
     for error in e.errors.values_mut() {
         for (row, f) in error.sensitivity.iter_mut().zip(&factors) {
-            row.iter_mut().for_each(|entry| *entry *= f);
+            for entry in row.iter_mut() {
+                *entry *= f;
+            }
         }
     }
     Ok(())

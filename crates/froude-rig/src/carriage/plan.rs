@@ -137,7 +137,7 @@ impl PlannedRun {
         match self.drive {
             Drive::Profile { speed_m_s, .. }
             | Drive::Excitation { excitation: Excitation::Sweep { speed_m_s, .. }, .. } => Some(speed_m_s),
-            _ => None,
+            Drive::Excitation { .. } => None,
         }
     }
 }

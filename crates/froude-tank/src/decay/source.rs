@@ -38,7 +38,7 @@ pub const DECAY: TankMethod = TankMethod {
     words: &[DecayMethod::ALL[0].words(), DecayMethod::ALL[1].words()],
     needs: &[Need::of(&[RELEASE], &[])],
     runs: FREE_DECAY,
-    identify: identify,
+    identify,
     simulate: |campaign, source| {
         let (setup, blocks) = planning(source)?;
         releases::files(campaign, &blocks, &setup)

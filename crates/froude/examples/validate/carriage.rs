@@ -320,7 +320,7 @@ fn variants(claims: &mut Claims, d: f64, seeds: usize) {
         ("one direction only", false, false),
         ("out and back, viscous friction changes from run to run too", true, true),
     ] {
-        let scenario = Scenario { out_and_back, viscous_changes, ..Scenario::pinned(d) };
+        let scenario = Scenario { viscous_changes, out_and_back, ..Scenario::pinned(d) };
         let reports = campaigns(&scenario, seeds, |_| {});
         let text = of(&reports, Method::Mcd, d).text();
         claims.add(SECTION, &format!("D_d {d}, {seeds} campaigns, {name}: MCD"), "–", text, Verdict::Measured);
