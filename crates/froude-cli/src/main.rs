@@ -112,7 +112,6 @@ fn identify(job: Job, form: Form, all: bool) -> Result<(), Failure> {
     print::answer_with(&identified(job)?.outcome(), form, all)
 }
 
-/// The same, not yet printed.
 fn identified(job: Job) -> Result<Identified, Failure> {
     let bar = Spinner::new();
     Ok(pipeline::identify(&Job { date: Some(today()), ..job }, &|step| bar.set_message(step.to_owned()))?)

@@ -6,9 +6,8 @@ use froude::records::text::visible_json;
 use froude::report::{csv, terminal};
 
 use crate::failure::Failure;
-use crate::out::say;
+use crate::out::{note, say};
 
-/// How a result is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// For people.
@@ -17,12 +16,10 @@ pub enum Form {
     Csv,
 }
 
-/// What a verb returns.
 pub fn answer(answer: &Outcome, form: Form) -> Result<(), Failure> {
     answer_with(answer, form, false)
 }
 
-/// The same; `has_details` where a person asks for details too.
 pub fn answer_with(answer: &Outcome, form: Form, has_details: bool) -> Result<(), Failure> {
     match form {
         Form::Json => {
@@ -30,7 +27,12 @@ pub fn answer_with(answer: &Outcome, form: Form, has_details: bool) -> Result<()
             // As JSON's own escapes: what a program reads is the same.
             say!("{}", visible_json(&serde_json::to_string_pretty(&answer.json()).map_err(unwritten)?));
         }
-        Form::Csv => say!("{}", csv::tables(answer).trim_end()),
+        Form::Csv => {
+            say!("{}", csv::tables(answer).trim_end());
+            for line in answer.findings.iter().flat_map(|found| terminal::findings(found)) {
+                note!("{line}");
+            }
+        }
         Form::Lines => told(answer, has_details),
     }
     match &answer.exit {
@@ -55,7 +57,6 @@ fn told(answer: &Outcome, has_details: bool) {
     }
 }
 
-/// Blocks before an answer is whole.
 pub fn blocks(all: &[Block], has_details: bool) {
     lines(&terminal::blocks(all, has_details));
 }

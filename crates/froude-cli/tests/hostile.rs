@@ -205,7 +205,7 @@ fn two_masses_that_cannot_be_found_cost_their_method_and_not_the_report() {
     let ended = froude(folder.path(), &["carriage", "drag", "c-runs"]);
     assert_eq!(ended.code, Some(0), "{}", ended.told);
     assert!(ended.said.contains("motor current difference of wet and dry"), "{}", ended.said);
-    assert!(ended.said.contains("[two-mass]") || ended.said.contains("two-mass model"), "{}", ended.said);
+    assert!(ended.said.contains("[two-mass]") || ended.said.contains("(mbdp_flexible)"), "{}", ended.said);
     assert!(folder.path().join("c-runs-drag/report.html").exists());
 
     // A sidecar that says there are more samples in a second than a computer counts.

@@ -473,3 +473,33 @@ fn a_tare_that_was_removed_before_is_restored_as_an_error_of_all_rows() {
     );
     assert!(has("the body blocks 9.7 % of the tank's cross-section"), "{findings:?}");
 }
+
+/// What a spreadsheet reads has the numbers of the record, and what speaks against them is not kept back.
+#[test]
+fn csv_has_the_coefficients_and_what_speaks_against_them_is_on_standard_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = "speed [m/s],f_x [N]\n0.2,0.32\n0.4,1.29\n0.6,2.87\n0.8,5.13\n1.0,7.98\n1.2,11.54\n";
+    std::fs::write(folder.path().join("tow.csv"), rows).unwrap();
+    let output = froude(folder.path(), &["identify", "tow.csv", "--csv"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    // Behind a line with its name where other tables follow.
+    let table = printed[printed.find("estimate,").unwrap()..].split("\n\n").next().unwrap();
+    let mut read = csv::Reader::from_reader(table.as_bytes());
+    let heads = read.headers().unwrap().clone();
+    let all: Vec<csv::StringRecord> = read.records().map(Result::unwrap).collect();
+    let record: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("tow-results/estimate.json")).unwrap()).unwrap();
+    let first = &record["estimates"][0]["coefficients"]["D_x_II"];
+    let cell = |head: &str| {
+        let row = all.iter().find(|row| &row[2] == "D_x_II").unwrap();
+        row[heads.iter().position(|name| name == head).unwrap()].parse::<f64>().unwrap()
+    };
+    assert_eq!(Some(cell("value")), first["value"].as_f64());
+    assert_eq!(Some(cell("interval_95_high")), first["interval_95"][1].as_f64());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("force-along-motion"), "{said}");
+    // A comparison has no coefficients of its own: its tables are printed as people see them.
+    let both = froude(folder.path(), &["compare", "tow-results/estimate.json", "tow-results/estimate.json", "--csv"]);
+    assert!(String::from_utf8(both.stdout).unwrap().contains("D_x_II"));
+}

@@ -2,12 +2,12 @@
 //!
 //! Where there are several tables, each stands below a line with its name, with a blank line before the next.
 
-use froude_records::block::{Block, Cells, ResultColumn, ResultTable, TableBuilder};
+use froude_records::block::{Block, Cells, LaidOut, ResultColumn, ResultTable, TableBuilder, laid_out};
 use froude_records::csv_table::{guarded, quoted};
 use froude_records::estimate::{Coefficient, Estimate, EstimateFile};
 use froude_records::outcome::Outcome;
 
-/// The coefficients of its records, and every table that a program can read, in order.
+/// The coefficients of its records, and every table that a program can read, in order; where there is none, the tables as people see them.
 #[must_use]
 pub fn tables(outcome: &Outcome) -> String {
     let mut all = Vec::new();
@@ -15,6 +15,9 @@ pub fn tables(outcome: &Outcome) -> String {
         gather(&[coefficients(&outcome.records).into()], "", &mut all);
     }
     gather(&outcome.blocks, "", &mut all);
+    if all.is_empty() {
+        gather_shown(&outcome.blocks, &mut all);
+    }
     match &all[..] {
         [(_, one)] => one.clone(),
         several => several.iter().map(|(name, table)| format!("{name}\n{table}")).collect::<Vec<_>>().join("\n"),
@@ -49,6 +52,24 @@ fn gather(blocks: &[Block], place: &str, all: &mut Vec<(String, String)>) {
             _ => {}
         }
     }
+}
+
+fn gather_shown(blocks: &[Block], all: &mut Vec<(String, String)>) {
+    for block in blocks {
+        match block {
+            Block::Table(table) => {
+                let lines =
+                    |shown: LaidOut| (shown.caption, std::iter::once(shown.head).chain(shown.rows).map(line).collect());
+                all.extend(laid_out(table).map(lines));
+            }
+            Block::Section(section) => gather_shown(&section.blocks, all),
+            _ => {}
+        }
+    }
+}
+
+fn line(cells: Vec<String>) -> String {
+    format!("{}\n", cells.into_iter().map(|cell| quoted(guarded(cell))).collect::<Vec<_>>().join(","))
 }
 
 fn named(place: &str, key: &str) -> String {

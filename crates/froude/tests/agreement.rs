@@ -106,9 +106,11 @@ fn identify_and_what_reads_its_records() {
 fn campaigns_planned_and_simulated() {
     let folder = tempfile::tempdir().unwrap();
     let (mut plans, mut twins) = (Vec::new(), Vec::new());
-    for name in ["mamba-decay", "mamba-oscillation", "mamba-steady", "mamba-weights"] {
-        let to = folder.path().join(name);
-        copy(&example(name), &to);
+    for name in
+        ["accelerated", "decay", "oscillation", "rotation", "steady", "weights"].map(|name| format!("mamba-{name}"))
+    {
+        let to = folder.path().join(&name);
+        copy(&example(&name), &to);
         plans.push(plan(&to.join("campaign.toml")).unwrap());
         twins.push(simulate(&to.join("campaign.toml"), false).unwrap());
     }
