@@ -11,7 +11,7 @@
 //! What differs from run to run ([`Spread`]): friction and K_T by a factor each, the sensor's zero. What wanders within a run:
 //! the load's friction (Ornstein–Uhlenbeck).
 //!
-//! Not here: coupling between axes ([`crate::planar`] has it), waves and wake, temperature, torque ripple, quadrature below one count.
+//! Not here: coupling between axes, waves and wake, temperature, torque ripple, quadrature below one count.
 
 use crate::amplifier::{Amplifier, AmplifierConfig, AmplifierFault};
 use crate::encoder::{Encoder, EncoderFault};
