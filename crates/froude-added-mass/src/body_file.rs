@@ -12,7 +12,7 @@
 //! link = { major_semi_axis = "58.8 mm", minor_semi_axis = "39.4 mm", half_length = "90 mm" }
 //! joint = { length = "60 mm", scale = 0.7, ramp = "4 mm" }   # without it the chain is smooth
 //! ends = { length = "31 mm" }
-//! centre_of_gravity = ["0 mm", "0 mm", "-12 mm"]             # may be left out: moments about it are asked for by name
+//! centre_of_gravity = ["0 mm", "0 mm", "-12 mm"]             # optional; `--at cg` takes moments about it
 //! ```
 //!
 //! The x axis runs along the body with the head to +x, y is lateral, z vertical; the origin is in the middle. The words are those of a
@@ -48,7 +48,7 @@ pub struct BodyFile {
 /// A shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// A modular robot: head, links, tail; their number is asked for elsewhere.
+    /// A modular robot: head, links and tail; `--links` gives the number of links.
     Robot(Robot),
     /// An ellipsoid: semi-axes along x, y, z, m.
     Ellipsoid {

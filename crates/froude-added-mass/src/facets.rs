@@ -216,7 +216,7 @@ pub(super) fn correct_parts(
     Ok((mean > NONE).then_some(largest))
 }
 
-/// Says which body the facets were taken as, by the largest correction, or why there is none.
+/// Adds a note or a finding: whether the facets were taken as a smooth body, how large the largest correction is, or why there is none.
 pub(super) fn report(
     largest: Result<Option<f64>, &'static str>,
     is_smooth: bool,

@@ -46,7 +46,7 @@ pub(super) const WARP: f64 = 1e-6;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 1 << 30;
 
-/// A number of links where there are none.
+/// The message about `--links` for a body without links.
 pub(super) const NO_LINKS: &str =
     "--links counts the links of a body file of shape \"robot\"; leave it out for another shape, or a mesh";
 

@@ -323,7 +323,7 @@ fn parts_of(job: &Asked) -> Result<Several, AddedMassError> {
     };
     let found = parts(&mesh);
     if found.len() < 2 {
-        let why = "the mesh hangs together, it has one part; leave --apart out";
+        let why = "the mesh is one connected part; omit --apart";
         return Err(AddedMassError::input(&job.input, why));
     }
     let tags = tags(&mesh);

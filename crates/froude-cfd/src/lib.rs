@@ -109,7 +109,7 @@ mod foam {
     pub mod warm;
 }
 
-// Whether forces may be believed, and how far.
+// Convergence, grid error and status of computed forces.
 mod judging {
     pub mod grid_error;
     pub mod judge;

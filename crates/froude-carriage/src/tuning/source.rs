@@ -109,8 +109,8 @@ impl Method for Resonance {
     }
 }
 
-/// What `reduce` makes of the runs of a source in these roles, given what its results are called after: estimates with their files, and how
-/// they are told.
+/// Reduces the runs of a source in these roles: estimates with their files, and the section that reports them. `reduce` receives the name that
+/// the estimates begin with.
 fn found(
     source: &Source,
     what: &str,

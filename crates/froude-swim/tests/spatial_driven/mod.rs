@@ -5,6 +5,7 @@
 //!
 //! **Units.** SI.
 
+// Each test program uses a part of it.
 #![allow(dead_code)]
 
 use froude_swim::drive::Drive;
