@@ -5,7 +5,7 @@ use std::path::Path;
 
 use froude::Error;
 use froude::pipeline::check_sections;
-use froude::records::campaign::parse_campaign;
+use froude::records::campaign_file::parse_campaign;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

@@ -10,6 +10,7 @@ use froude_records::csv_table::parse_csv;
 use froude_records::run::run_of_table;
 use froude_records::sidecar::parse_sidecar;
 use froude_tank::conditioning::condition;
+use froude_tank::log::TankLog;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -26,7 +27,8 @@ fuzz_target!(|bytes: &[u8]| {
     };
     let Ok(table) = parse_csv(Path::new("run.csv"), log, Some(&sidecar)) else { return };
     for method in ["steady", "forced_oscillation", "another"] {
-        let Ok(mut run) = run_of_table(&table, Some(&sidecar)) else { return };
+        let Ok(run) = run_of_table(&table, Some(&sidecar)) else { return };
+        let mut run = TankLog::from(run);
         if condition(&mut run, method).is_err() {
             continue;
         }

@@ -6,6 +6,8 @@ use std::str::FromStr;
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
+use crate::cycles::{self, Modules};
+
 /// Counts of one crate.
 #[derive(Default)]
 struct Count {
@@ -17,6 +19,8 @@ struct Count {
     source: usize,
     /// All lines of its tests, benches and examples, and of test modules with a file of their own.
     tests: usize,
+    /// Its modules, and what they name.
+    modules: Modules,
 }
 
 impl Count {
@@ -36,12 +40,15 @@ impl Count {
 pub fn lines(root: &Path) -> Result<(), String> {
     println!("{:24} {:>8} {:>9} {:>10} {:>8}", "crate", "code", "tokens", "src, all", "tests");
     let mut total = Count::default();
+    let mut circles = Vec::new();
     for folder in folders(root)? {
         let count = of_crate(&folder)?;
         println!("{}", count.row(&folder.strip_prefix(root).unwrap_or(&folder).display().to_string()));
         total.add(&count);
+        circles.extend(cycles::cycles(&count.modules));
     }
     println!("{}", total.row("total"));
+    println!("files of a crate that name each other in a circle: {circles:?}");
     Ok(())
 }
 
@@ -93,6 +100,12 @@ fn of_crate(folder: &Path) -> Result<Count, String> {
         if tests.iter().any(|module| path.with_extension("") == *module || path.starts_with(module)) {
             count.tests += all;
         } else {
+            let module = path.strip_prefix(folder.join("src")).unwrap_or(&path).with_extension("");
+            let mut module: Vec<String> = module.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+            module.pop_if(|name| matches!(name.as_str(), "lib" | "main" | "mod"));
+            if !module.is_empty() {
+                count.modules.insert(module, seen.paths);
+            }
             count.source += all;
             count.code += seen.lines.len();
             count.tokens += seen.tokens;
@@ -120,6 +133,8 @@ struct Seen {
     lines: BTreeSet<usize>,
     tokens: usize,
     test_modules: Vec<String>,
+    /// Paths inside of the crate.
+    paths: Vec<Vec<String>>,
 }
 
 impl Seen {
@@ -134,6 +149,7 @@ impl Seen {
                     at += self.test_item(&trees[at..]);
                 }
                 _ => {
+                    cycles::paths(&trees, at, &mut self.paths);
                     self.see(&trees[at]);
                     at += 1;
                 }
@@ -166,6 +182,14 @@ impl Seen {
         }
         end
     }
+}
+
+/// The paths that a file names.
+#[cfg(test)]
+pub fn named(text: &str) -> Vec<Vec<String>> {
+    let mut seen = Seen::default();
+    seen.walk(TokenStream::from_str(text).unwrap_or_default());
+    seen.paths
 }
 
 /// The words of an attribute that begins here, and how many trees it takes.
@@ -201,6 +225,14 @@ mod tests {
         for (name, most) in [("crates/froude", 1_600), ("crates/froude-cli", 2_000)] {
             let lines = of_crate(&root.join(name)).map(|count| count.source);
             assert!(lines.as_ref().is_ok_and(|lines| *lines <= most), "{name}: {lines:?} of {most} lines");
+        }
+    }
+
+    #[test]
+    fn no_files_of_a_crate_name_each_other_in_a_circle() {
+        for folder in folders(&Path::new(env!("CARGO_MANIFEST_DIR")).join("..")).unwrap() {
+            let circles = cycles::cycles(&of_crate(&folder).unwrap().modules);
+            assert!(circles.is_empty(), "{}: {circles:?}", folder.display());
         }
     }
 }

@@ -4,6 +4,7 @@
 //! short validation. The firmware needs a cross linker and an emulator, the tests need strace; they are installed when they are absent.
 //! What takes longer or needs more programs has its own task, which installs what it needs.
 
+mod cycles;
 mod firmware;
 mod lines;
 

@@ -10,7 +10,7 @@ use froude_mesh::sections::SectionError;
 use froude_panel::chain::ChainError;
 use froude_panel::refine::RefineError;
 use froude_records::RecordError;
-use froude_records::added_mass_options::GivenOption;
+use froude_records::given_option::GivenOption;
 
 use crate::files::FileError;
 

@@ -21,6 +21,7 @@ use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 
+use super::facet_correction::{Facets, Matrix, uncertain};
 use super::frame::inertia_m5;
 use super::load::WARP;
 use super::record::{diagonal_name, unit};
@@ -36,25 +37,6 @@ const NONE: f64 = 1e-9;
 
 /// Solutions with a larger residual are rejected.
 const LOOSE: f64 = 1e-6;
-
-type Matrix = [[f64; 6]; 6];
-
-/// What facets change, over ρ.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Facets {
-    /// Smooth body minus polyhedron: it is in the value of the case.
-    pub correction: Matrix,
-    /// Expanded uncertainty of the facets; with that of the panels, in squares, it gives that of the case.
-    pub uncertainty: Matrix,
-    /// Smooth body minus polyhedron, volume, m³: it is in that of the case.
-    pub volume_m3: f64,
-    /// Expanded uncertainty of the volume of the case, m³.
-    pub volume_uncertainty_m3: f64,
-    /// Largest correction of displaced water and of added mass along the axes, as part of each.
-    pub largest: f64,
-    /// Part of the correction that is uncertain.
-    pub part: f64,
-}
 
 /// The facets of the body in one surrounding; `None` where all edges are edges of the body, otherwise why the correction is not known.
 pub(super) fn of_mesh(
@@ -120,13 +102,6 @@ fn solved(problem: &Problem, wanted: &Wanted) -> Result<Solution, &'static str> 
     Ok(solution)
 }
 
-/// Expanded uncertainty of the facets of an entry, of which `panels` is that of the panels: their sum in squares is the sum itself, since the
-/// polyhedron is the end of an interval and not a draw. `volume` is the uncertainty of the volume, `part` that of the correction.
-fn uncertain([value, correction]: [f64; 2], volume: f64, part: f64, panels: f64) -> f64 {
-    let facets = (part * correction.abs()).max(volume * (value + correction).abs());
-    if panels.is_finite() { (facets * (facets + 2.0 * panels)).sqrt() } else { facets }
-}
-
 /// Displaced water and added mass of each motion, over ρ.
 fn sizes(refined: &Refined, frame: &Frame) -> [f64; 6] {
     let turned = refined.steps.last().map_or([0.0; 3], |step| {
@@ -134,28 +109,6 @@ fn sizes(refined: &Refined, frame: &Frame) -> [f64; 6] {
         inertia_m5(m.inertia_m5(), m.volume_m3, m.centroid_m, frame)
     });
     core::array::from_fn(|i| refined.value[i][i] + if i < 3 { refined.volume_m3 } else { turned[i - 3] })
-}
-
-impl Facets {
-    /// Of the polyhedron's matrix with the uncertainty of its panels.
-    fn uncertainty_of(&self, refined: &Refined) -> Matrix {
-        let volume = self.volume_uncertainty_m3 / (refined.volume_m3 + self.volume_m3);
-        core::array::from_fn(|i| {
-            core::array::from_fn(|j| {
-                uncertain([refined.value[i][j], self.correction[i][j]], volume, self.part, refined.uncertainty[i][j])
-            })
-        })
-    }
-
-    /// The same in another surrounding, where the body has more or less added mass.
-    fn beside(&self, here: &Refined, there: &Refined) -> Self {
-        let root = |i: usize| (there.value[i][i] / here.value[i][i]).max(0.0).sqrt();
-        let part = |i: usize| if here.value[i][i] > 0.0 { root(i) } else { 1.0 };
-        let correction = core::array::from_fn(|i| core::array::from_fn(|j| self.correction[i][j] * part(i) * part(j)));
-        let mut out = Self { correction, ..self.clone() };
-        out.uncertainty = out.uncertainty_of(there);
-        out
-    }
 }
 
 /// Corrects all surroundings by the facets of the first.

@@ -3,6 +3,7 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`source`] | the method: a mesh of a campaign, its estimates, page and exports |
+//! | [`option_list`] | the flags of the verb, which are the keys of a campaign |
 //! | [`options`] | what is asked for, as flags or keys of a campaign say it |
 //! | [`body_file`] | a shape by its dimensions, in TOML |
 //! | [`load`], [`shape`] | a body file or a mesh, read and checked; the meshes of a shape |
@@ -23,12 +24,14 @@ pub mod body_file;
 mod cross_checks;
 mod error;
 mod exports;
+mod facet_correction;
 mod facets;
 pub mod files;
 pub mod frame;
 pub mod limits;
 pub mod links;
 pub mod load;
+pub mod option_list;
 pub mod options;
 pub mod outcome;
 pub mod page;

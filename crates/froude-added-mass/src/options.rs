@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use froude_panel::refine::Wanted;
-use froude_records::added_mass_options::GivenOption;
+use froude_records::campaign::Source;
+use froude_records::given_option::GivenOption;
 use froude_records::plausible;
 use froude_records::units::{Dimension, parse_quantity, parse_unit};
 
 use crate::error::AddedMassError;
 use crate::frame::{Axes, Direction, Orientation, Point};
+use crate::option_list::given;
 
 /// Links at most: more are a slip of the keyboard.
 const MOST_LINKS: usize = 100;
@@ -47,6 +49,15 @@ pub struct Asked {
 }
 
 impl Asked {
+    /// What a source asks of a body or a mesh.
+    ///
+    /// # Errors
+    ///
+    /// As [`Asked::read`]; a section of the source that is wrong.
+    pub fn of_source(input: &Path, source: &Source) -> Result<Self, AddedMassError> {
+        Self::read(input, &given(source)?)
+    }
+
     /// Nothing but the input.
     #[must_use]
     pub fn of(input: &Path) -> Self {

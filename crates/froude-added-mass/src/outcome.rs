@@ -7,7 +7,7 @@ use froude_records::block::Block;
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 
-use crate::facets::Facets;
+use crate::facet_correction::Facets;
 
 /// A matrix in one surrounding.
 #[derive(Debug, Clone)]

@@ -2,11 +2,12 @@
 
 use froude_panel::refine::{Refined, Step};
 use froude_records::block::{Block, ResultTable, Section, TableBuilder, facts};
+use froude_records::estimate::words;
 use froude_records::estimate::{Coefficient, Estimate};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 
-use super::facets::Facets;
+use super::facet_correction::Facets;
 use super::limits;
 use super::links::{Configuration, LinksOutcome, no_fits};
 use super::record::{MOTIONS, diagonal_head, diagonal_key, diagonal_name, entry_name};
@@ -193,7 +194,7 @@ pub fn fits_table(fits: &[Estimate]) -> ResultTable {
         t.text("coefficient", "coefficient", |(_, name, _)| (*name).clone()),
         t.text("unit", "unit", |(_, _, c)| c.unit.clone()),
         t.uncertain(["value", "standard_uncertainty"], "", |(_, _, c)| c.value, |(_, _, c)| c.standard_uncertainty),
-        t.text("", "value", |(_, _, c)| number::coefficient(c)),
+        t.text("", "value", |(_, _, c)| words::coefficient(c)),
         t.text("", "choice", |(e, _, _)| if e.recommended { "recommended" } else { "" }.to_owned()),
         t.flag("recommended", "", |(e, _, _)| e.recommended),
     ])

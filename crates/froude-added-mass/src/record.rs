@@ -10,7 +10,7 @@ use froude_records::estimate::{
 use froude_records::json::read_estimates;
 use indexmap::IndexMap;
 
-use crate::facets::Facets;
+use crate::facet_correction::Facets;
 
 /// Coverage factor of a numerical uncertainty: it is stated as an interval of 95 %.
 const COVERAGE: f64 = 2.0;

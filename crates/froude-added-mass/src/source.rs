@@ -3,11 +3,13 @@
 use froude_identify::answer::{Answer, Made};
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::source::{ReadFile, SourceResult};
+use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Input, Source, SourceKind};
 use froude_records::estimate::Estimate;
 
 use super::body::body;
 use super::links::links;
+use super::option_list::given;
 use super::options::Asked;
 use super::page;
 use super::several::several;
@@ -18,6 +20,7 @@ use crate::water::Water;
 const MESH: &str = "mesh";
 
 /// Added mass from potential flow.
+#[derive(Debug)]
 pub struct AddedMass;
 
 impl Method for AddedMass {
@@ -37,6 +40,10 @@ impl Method for AddedMass {
         ""
     }
 
+    fn check(&self, source: &Source) -> Result<(), RecordError> {
+        given(source).map(drop)
+    }
+
     fn identify(
         &self,
         campaign: &Campaign,
@@ -45,7 +52,7 @@ impl Method for AddedMass {
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
         let Input::Mesh(path) = &source.input else { return Ok(Found::default()) };
-        let asked = Asked::read(path, &source.added_mass)?;
+        let asked = Asked::of_source(path, source)?;
         Ok(found(&asked, &Water::of(campaign), source, progress)?)
     }
 }

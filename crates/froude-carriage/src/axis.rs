@@ -14,7 +14,7 @@ use froude_records::estimate::{Estimate, OWN};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::run::{BodyState, Declared, ImportedRun, Role, RunLog, import_run};
-use froude_records::table::sidecar_of;
+use froude_records::table_file::sidecar_of;
 use froude_records::units::Dimension;
 
 use crate::drag::steady::{SteadySettings, window};
@@ -34,8 +34,6 @@ mod long;
 pub mod page;
 pub mod source;
 
-pub use cross::held_against;
-
 /// A model of an axis that can be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AxisModel {
@@ -52,6 +50,8 @@ pub enum AxisModel {
 impl AxisModel {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Symmetric, Self::Asymmetric, Self::OverPosition, Self::TwoMass];
+    /// Names of the models that can be fitted to a log without a known rig.
+    const OF_LOGS: [&'static str; 2] = [Self::Symmetric.name(), Self::Asymmetric.name()];
 
     /// Its name in files, which is that of its law.
     #[must_use]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use froude_records::campaign::Campaign;
-use froude_records::run::{BodyState, LAST_RUN, Role, RunMeta, STOPPED_EARLY, read_run};
+use froude_records::run::{BodyState, Role, RunMeta, read_run};
 use froude_records::write::write_atomically;
 use froude_rig::carriage::plan::PlannedRun;
 use froude_rig::carriage::{CarriageCampaign, CarriagePlan, Directions, DrivenCampaign};
@@ -15,6 +15,7 @@ use crate::drag::online::OnLine;
 use crate::drag::setup::DragSetup;
 use crate::reduction::{calibration_from, setup_of};
 use crate::runs::for_drag;
+use crate::runs::whole::{LAST_RUN, STOPPED_EARLY};
 
 /// D_d while the campaign runs: every wet run with its dry partner gives a point.
 pub struct Live {

@@ -10,7 +10,7 @@ use froude_identify::method::MethodError;
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::{sha256_of_file, short_key};
 use froude_records::number;
-use froude_records::run::{AxisConstants, Role, RunLog, STOPPED_EARLY};
+use froude_records::run::{AxisConstants, Role, RunLog};
 use froude_records::text::counted;
 use froude_rig::carriage::DrivenCampaign;
 
@@ -20,6 +20,7 @@ use crate::drag::point::Method;
 use crate::drag::report::{DragReport, drag_by};
 use crate::drag::run::{self as drag_run, DragRun};
 use crate::drag::setup::{Ballast, DragSetup, Efficiency, ErrorKeys, SensorBudget};
+use crate::runs::whole::STOPPED_EARLY;
 use crate::runs::{Runs, density_kg_m3, for_drag};
 use crate::two_masses::{relative_errors, two_masses};
 

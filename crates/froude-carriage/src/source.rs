@@ -14,6 +14,7 @@ use crate::reduction::{Reduction, reduce};
 use crate::runs::{Runs, read};
 
 /// The five methods of the towing carriage: one reduction, one setup.
+#[derive(Debug)]
 pub struct Carriage;
 
 /// Their names.

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, Parser, Subcommand};
-use froude::records::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
+use froude::methods::added_mass::option_list::ADDED_MASS_OPTIONS;
+use froude::records::given_option::GivenOption;
 
 const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input; 130 stopped by Ctrl-C; re-run the same command to resume.";
 
@@ -485,7 +486,6 @@ impl clap::FromArgMatches for AddedMassOptions {
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
+        Self::from_arg_matches(matches).map(|given| *self = given)
     }
 }

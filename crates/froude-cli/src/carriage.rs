@@ -6,7 +6,8 @@ use froude::carriage::drive::{DriveJob, drive, prepare};
 use froude::carriage::scale::scale;
 use froude::carriage::tune::{find_resonance, tune};
 use froude::fit::budget::Uncertain;
-use froude::pipeline::{Input, Job, Purpose};
+use froude::methods::carriage::{axis::source::Servo, drag::calibration::source::KnownWeights};
+use froude::pipeline::{Input, Job};
 use froude::records::block::Block;
 use froude::records::outcome::Outcome;
 use froude::records::units::{Dimension, parse_quantity};
@@ -48,7 +49,7 @@ pub fn job(job: CarriageJob, form: Form) -> Result<(), Failure> {
                 let why = "this is the fitted log itself; name a log of a different motion";
                 return Err(Failure::refused(format_args!("--validate {}: {why}", path.display())));
             }
-            let job = Job { sidecar, validation: validate, purpose: Some(Purpose::Servo), ..servo(&input, out)? };
+            let job = Job { sidecar, validation: validate, method: Some(&Servo), ..servo(&input, out)? };
             mistaken::SERVO.or(crate::identify(job, form, false), &input)
         }
         CarriageJob::Drag { runs, campaign, out } => {
@@ -58,8 +59,8 @@ pub fn job(job: CarriageJob, form: Form) -> Result<(), Failure> {
         CarriageJob::Calibrate { runs, campaign, out, measured, measured_standard, counted } => {
             let scale = measured.map(|measured| encoder_scale(&runs, &measured, &measured_standard, &counted));
             let scale = mistaken::CALIBRATE.or(scale.transpose(), &runs)?;
-            let input = Input::Runs { paths: runs.clone(), campaign };
-            let job = Job { out, purpose: Some(Purpose::Calibration), ..Job::of(input) };
+            let job =
+                Job { out, method: Some(&KnownWeights), ..Job::of(Input::Runs { paths: runs.clone(), campaign }) };
             let mut outcome = mistaken::CALIBRATE.or(crate::identified(job), &runs)?.outcome();
             outcome.blocks.splice(0..0, scale);
             print::answer(&outcome, form)
@@ -76,8 +77,7 @@ pub fn job(job: CarriageJob, form: Form) -> Result<(), Failure> {
 }
 
 fn same_file(a: &Path, b: &Path) -> bool {
-    let real = |path: &Path| std::fs::canonicalize(path);
-    real(a).is_ok_and(|a| real(b).is_ok_and(|b| a == b))
+    std::fs::canonicalize(a).is_ok_and(|a| std::fs::canonicalize(b).is_ok_and(|b| a == b))
 }
 
 /// Folders of runs and runs, or one log of another program, whose results lie beside it.

@@ -18,7 +18,7 @@ use froude::panel::family::Family;
 use froude::panel::matrix::{AddedMass, congruent};
 use froude::panel::problem::Frame;
 use froude::panel::refine::{Wanted, refine};
-use froude::records::table::read_table;
+use froude::records::table_file::read_table;
 use froude::records::units::Dimension;
 use serde_json::Value;
 use small_disk::SmallDisk;

@@ -3,12 +3,15 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::atomic::AtomicBool;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
 mod bench;
+#[path = "../../froude/tests/held/mod.rs"]
+mod held;
 use bench::has_openfoam;
 
 const BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
@@ -331,6 +334,7 @@ fn a_swing_is_computed_and_identified_as_a_tank_s() {
     assert_eq!((found["runs"].as_array().unwrap().len(), found["open"].as_u64()), (3, Some(0)), "{found}");
     let again = json(&["cfd", "swing", text(&path)]);
     assert!(again["runs"][0]["cpu_s"].is_null() && again["open"].as_u64() == Some(0), "{again}");
+    held::of_verb("cfd-swing", &[&froude::swing::swing(&path, None, 2, &AtomicBool::new(false), &|_| ()).unwrap()]);
 
     let estimate = &json(&["identify", text(&path)])["estimates"][0];
     let added = estimate["coefficients"]["C_A"]["value"].as_f64().unwrap();

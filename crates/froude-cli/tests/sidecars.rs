@@ -8,7 +8,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use froude::records::run::{ChannelSpec, Frame, Kind, Layout, Meaning, Packing, Recorder, Role, RunMeta, RunStatus};
-use froude::records::table::{Column, ColumnData, Table, prepare_table};
+use froude::records::table::{Column, ColumnData, Table};
+use froude::records::table_file::prepare_table;
 use froude::records::units::parse_unit;
 use serde_json::Value;
 use tank::{froude, refused, replace_in, said};

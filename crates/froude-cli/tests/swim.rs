@@ -6,7 +6,7 @@ mod bench;
 use std::path::{Path, PathBuf};
 
 use bench::{froude, text};
-use froude::records::table::read_table;
+use froude::records::table_file::read_table;
 use froude::records::units::Dimension;
 use serde_json::Value;
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use bench::{froude, text};
 use froude::records::estimate::{Coefficient, Measured};
 use froude::records::json::{read_estimates, write_estimates};
-use froude::records::table::read_table;
+use froude::records::table_file::read_table;
 use froude::records::units::Dimension;
 use serde_json::Value;
 

@@ -10,7 +10,7 @@ use std::time::Duration;
 use bench::{froude, text};
 use froude::records::estimate::TypeA;
 use froude::records::json::{read_estimates, write_estimates};
-use froude::records::table::read_table;
+use froude::records::table_file::read_table;
 use froude::records::units::Dimension;
 use serde_json::Value;
 

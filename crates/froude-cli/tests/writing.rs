@@ -224,7 +224,7 @@ fn a_name_of_any_characters_is_written_as_toml() {
     // Rust would write the first as \u{80}, which is no TOML.
     write(at, "body.toml", &ROBOT.replace("\"snake\"", r#""s\u0080n\u202e\"a\\k\u0007e'''""#));
     succeeds(at, &["added-mass", "body.toml", "--links", "1,2", "--tolerance", "50 %", "--out", "links"]);
-    let campaign = froude::records::campaign::read_campaign(&at.join("links/campaign.toml")).unwrap();
+    let campaign = froude::records::campaign_file::read_campaign(&at.join("links/campaign.toml")).unwrap();
     assert_eq!(campaign.name, "s\u{80}n\u{202e}\"a\\k\u{7}e'''");
 }
 
@@ -386,7 +386,7 @@ fn cells_of_observations_are_no_formulas_and_read_back_as_they_were() {
         let cell = row.unwrap()[column].to_owned();
         assert!(!cell.starts_with(['=', '+', '-', '@', '\t', '＝']), "{cell}");
     }
-    let back = froude::records::table::read_table(&path, None).unwrap();
+    let back = froude::records::table_file::read_table(&path, None).unwrap();
     // A numeral that begins with a sign stays a number.
     let forces = back.number("f_x", froude::records::units::Dimension::FORCE).unwrap();
     let named: Vec<&String> = back.text("run").unwrap().iter().collect();

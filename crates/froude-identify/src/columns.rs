@@ -11,9 +11,9 @@
 
 use froude_records::campaign::{Campaign, KeepValue, Source};
 use froude_records::finding::{Finding, Severity};
+use froude_records::known_columns::known_dimension;
 use froude_records::nearest::nearest;
 use froude_records::number::plain;
-use froude_records::table::known_dimension;
 use froude_records::units::Dimension;
 use indexmap::IndexSet;
 

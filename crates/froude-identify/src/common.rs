@@ -14,7 +14,7 @@ use froude_fit::budget::{Kind, OUTSIDE_95, Part, combine};
 use froude_records::estimate::{Coefficient, Estimate, OWN, SharedError, Status, TypeA};
 use froude_records::finding::{Finding, Severity};
 
-use crate::compare::Stated;
+use crate::compare::stated::Stated;
 
 /// Relative difference of two covariances under one key that rounding does not make.
 const DIFFERS: f64 = 1e-9;

@@ -17,11 +17,11 @@
 
 mod coefficients;
 mod contradiction;
-mod independence;
+pub(crate) mod independence;
 mod joint;
 mod named;
 mod prediction;
-mod stated;
+pub(crate) mod stated;
 #[cfg(test)]
 mod tests;
 mod unmatched;
@@ -41,7 +41,6 @@ use crate::common::{self, Common};
 use crate::verdict::verdicts;
 
 pub use crate::compare::named::{Named, named};
-pub(crate) use crate::compare::stated::Stated;
 pub use coefficients::SAME_DATA;
 pub use unmatched::{left_out, nothing_compared, too_many};
 

@@ -4,12 +4,14 @@ mod told;
 
 use std::path::Path;
 
-use froude_records::campaign::{BudgetEntry, Campaign, Input, Source, read_campaign};
+use froude_records::campaign::{BudgetEntry, Campaign, Input, Source};
+use froude_records::campaign_file::read_campaign;
 use froude_records::estimate::Estimate;
 use froude_records::finding::Finding;
 use froude_records::json::read_estimates;
 use froude_records::run::{Meaning, is_servo_log};
-use froude_records::table::{ColumnData, Table, read_table, read_table_with_blanks};
+use froude_records::table::{ColumnData, Table};
+use froude_records::table_file::{read_table, read_table_with_blanks};
 
 use crate::error::IdentifyError;
 use crate::reduce::{Observations, reduce};

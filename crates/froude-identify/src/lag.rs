@@ -160,7 +160,7 @@ mod tests {
                         [[identify.model]]\nname = \"free\"\nf_x = \"-A*v_x_dot - D*v_x - Q*v_x*abs(v_x)\"\n";
         std::fs::write(folder.path().join("t.csv"), table).unwrap();
         std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
-        let campaign = froude_records::campaign::read_campaign(&folder.path().join("c.toml")).unwrap();
+        let campaign = froude_records::campaign_file::read_campaign(&folder.path().join("c.toml")).unwrap();
         let found = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
         found.findings.into_iter().filter(|f| f.code == "lag").map(|f| f.message).collect()
     }

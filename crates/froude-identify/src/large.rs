@@ -40,8 +40,9 @@ use crate::reduce::{Observations, files_of, kept_rows, left_out, motion_and_zero
 use crate::regression::{Condensed, ModelFit, Scatter, Settings, regress};
 use crate::result::SourceResult;
 use crate::seam::{Choice, Reduced, conclude};
+use crate::source::asked::{Asked, reduced, with_recommended};
 use crate::source::handed::{TABLE, merges_motions, scatter};
-use crate::source::{Asked, laws, reduced, with_recommended};
+use crate::source::models::laws;
 
 pub use crate::large::limits::MOST_KEPT;
 pub(crate) use crate::large::limits::{SAMPLE, refused_above};

@@ -4,11 +4,13 @@
 //! the common regression with the common budget ([`crate::seam`]), or makes its estimates by a fit of its own; it gives [`Found`]: an [`Answer`]
 //! for each name, and what it states about all of them. After it there is one comparison, one record, one page and one writer.
 
-use std::path::PathBuf;
+use std::fmt::Debug;
+use std::path::{Path, PathBuf};
 
 use froude_records::RecordError;
 use froude_records::block::Section;
 use froude_records::campaign::{Campaign, Source};
+use froude_records::estimate::Estimate;
 use froude_records::finding::Finding;
 use froude_records::text::counted;
 
@@ -16,7 +18,7 @@ use crate::answer::Answer;
 use crate::error::IdentifyError;
 
 /// A way from a source to estimates.
-pub trait Method: Sync {
+pub trait Method: Debug + Sync {
     /// Names that a campaign may ask for, in the order of their results; several where they share one reduction.
     fn names(&self) -> &'static [&'static str];
 
@@ -60,6 +62,11 @@ pub trait Method: Sync {
         Ok(None)
     }
 
+    /// Which tables are logs for this method; `None` if it reads none.
+    fn logs(&self) -> Option<Logs> {
+        None
+    }
+
     /// Reads the sections of a source that are the method's own ([`Source::section`]), used or not.
     ///
     /// # Errors
@@ -68,6 +75,21 @@ pub trait Method: Sync {
     fn check(&self, _: &Source) -> Result<(), RecordError> {
         Ok(())
     }
+}
+
+/// Tables that are logs of a method.
+#[derive(Debug, Clone, Copy)]
+pub struct Logs {
+    /// What such a table is, in words.
+    pub words: &'static str,
+    /// What its sidecar names, by which it differs from a table of loads.
+    pub told_by: &'static str,
+    /// Whether a table is one, as its sidecar says.
+    pub is_one: fn(&Path, Option<&Path>) -> Result<bool, RecordError>,
+    /// Which of the method's names such a log allows.
+    pub names: &'static [&'static str],
+    /// Validates estimates against a log that none of them was fitted to; returns findings and a section of the page.
+    pub hold_against: fn(&Source, &[&Estimate]) -> Result<(Vec<Finding>, Section), MethodError>,
 }
 
 /// Files that a method needs: those of any one of some roles.

@@ -9,7 +9,8 @@ use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Sou
 use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::meant;
 use froude_records::plausible;
-use froude_records::table::{Column, ColumnData, Table, links_of_configuration, read_table, read_table_with_blanks};
+use froude_records::table::{Column, ColumnData, Table, links_of_configuration};
+use froude_records::table_file::{read_table, read_table_with_blanks};
 use froude_records::text::counted;
 use froude_records::texts::Texts;
 use froude_records::units::Dimension;

@@ -8,6 +8,7 @@ mod job;
 pub(crate) mod known;
 mod problem;
 pub(crate) mod runs;
+mod settings;
 pub(crate) mod uncertain;
 
 use faer::Mat;
@@ -28,7 +29,8 @@ use crate::{dissipation, eiv};
 
 pub(crate) use crate::regression::fitted_weights::Variance;
 
-pub use crate::regression::fitted::{Condensed, ModelFit, Scatter, Settings, Weight};
+pub use crate::regression::fitted::ModelFit;
+pub use crate::regression::settings::{Condensed, Scatter, Settings, Weight};
 
 /// Fits `law` to `data`.
 ///

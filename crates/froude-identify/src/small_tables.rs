@@ -22,7 +22,7 @@ pub(crate) fn identified_of(table: &str, method: &str, keys: &str) -> SourceResu
     let campaign =
         format!("schema = 1\nname = \"a\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"t.csv\"\n{keys}");
     std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
-    let campaign = froude_records::campaign::read_campaign(&folder.path().join("c.toml")).unwrap();
+    let campaign = froude_records::campaign_file::read_campaign(&folder.path().join("c.toml")).unwrap();
     let source = &campaign.sources[0];
     identify_observations(&campaign, source, reduce(&campaign, source).unwrap(), method, &|_| {}).unwrap()
 }

@@ -1,5 +1,6 @@
 //! One source from its table to its estimates: reduce, lint, and the laws that its channels allow.
 
+pub(crate) mod asked;
 pub(crate) mod handed;
 pub(crate) mod models;
 
@@ -8,15 +9,15 @@ use froude_records::finding::{Finding, Severity};
 
 use crate::error::IdentifyError;
 use crate::large;
-use crate::law::ForceLaw;
 use crate::lint::counts::Counts;
+use crate::motions;
 use crate::reduce::{Observations, reduce};
-use crate::regression::Scatter;
-use crate::seam::{Choice, Reduced, fit};
-use crate::source::handed::{TABLE, merges_motions, no_budget, of_table, scatter};
-use crate::{columns, diagnosis, lint, motions, validity, zero};
+use crate::seam::{Choice, fit};
+use crate::source::asked::{reduced, with_recommended};
+use crate::source::handed::{TABLE, merges_motions, scatter};
 
 pub use crate::result::{NotFitted, ReadFile, SourceResult};
+pub use crate::source::asked::Asked;
 pub use crate::source::models::{asked_models, check_budget, laws};
 
 /// Identifies one source that has a table; `progress` receives each model before it is fitted.
@@ -74,21 +75,6 @@ pub fn identify_observations(
     )
 }
 
-/// What is asked of observations.
-#[derive(Debug, Clone)]
-pub struct Asked<'a> {
-    /// Name of the method that made them.
-    pub method: &'a str,
-    /// The laws that are fitted.
-    pub laws: Vec<ForceLaw>,
-    /// Where their scatter comes from.
-    pub scatter: Scatter,
-    /// Which of the laws is recommended.
-    pub choice: Choice,
-    /// Whether the method states errors of its instruments itself.
-    pub has_budget: bool,
-}
-
 /// The same with laws, scatter and choice that the method states.
 ///
 /// # Errors
@@ -104,37 +90,6 @@ pub fn identify_laws(
     let counts = Counts::of(&observations.data);
     let reduced = reduced(campaign, source, observations, &counts, asked)?;
     Ok(with_recommended(fit(reduced, &campaign.identify, progress)?, campaign))
-}
-
-/// What is wrong with one of many models belongs to that model; the report shows the recommended one's.
-pub(crate) fn with_recommended(mut result: SourceResult, campaign: &Campaign) -> SourceResult {
-    if let Some(i) = result.recommendation.as_ref().map(|r| r.index) {
-        let found = diagnosis::findings(&result.models[i], &result.data, campaign, &result.estimates[i].diagnostics);
-        result.findings.extend(found.into_iter().map(|f| f.of_source(&result.name)));
-    }
-    result
-}
-
-/// The rows with the laws that are asked for; `counts` are those of all rows, of which the observations may be few.
-pub(crate) fn reduced(
-    campaign: &Campaign,
-    source: &Source,
-    observations: Observations,
-    counts: &Counts,
-    asked: Asked<'_>,
-) -> Result<Reduced, IdentifyError> {
-    let Observations { data, n_read, mut findings, shared_errors, files } = observations;
-    let (mut validity, found) = validity::ranges(&data, campaign);
-    findings.extend(found);
-    let Asked { method, laws, scatter, choice, has_budget } = asked;
-    validity.extend(validity::of_laws(&data, &laws));
-    findings.extend(lint::of_counted(counts, &data, campaign, &laws));
-    findings.extend(no_budget(campaign, source, &shared_errors).filter(|_| !has_budget));
-    check_budget(source, &data)?;
-    findings.extend(columns::unused(&data, campaign, source, &laws));
-    let beside_zero = if method == TABLE { zero::laws(source, &data) } else { Vec::new() };
-    let out = of_table(campaign, source, method, data, laws);
-    Ok(Reduced { beside_zero, n_read, scatter, choice, errors: shared_errors, validity, findings, files, ..out })
 }
 
 /// A finding that a published source carries no data.

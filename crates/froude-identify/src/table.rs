@@ -6,6 +6,7 @@ use crate::method::{Found, Method, MethodError, Need};
 use crate::source::identify_source;
 
 /// The rows of a table, fitted with every law that the campaign asks for.
+#[derive(Debug)]
 pub struct Table;
 
 impl Method for Table {

@@ -17,6 +17,7 @@ use froude_records::hash::short_key;
 use froude_records::json::read_estimates;
 use setting::{Use, own_errors};
 
+use crate::compare::independence::data_of;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
@@ -139,7 +140,7 @@ fn errors(file: &EstimateFile, estimate: &Estimate, law: &ForceLaw, slopes: &Mat
 
 /// What an estimate came from: the same numbers made of the same files are one tare, wherever their record lies.
 fn origin(file: &EstimateFile, estimate: &Estimate) -> String {
-    let mut of: Vec<String> = file.data_of(estimate).map(|data| data.sha256.clone()).collect();
+    let mut of: Vec<String> = data_of(file, estimate).map(|data| data.sha256.clone()).collect();
     if of.is_empty() {
         // An old record does not say which of its files an estimate came from.
         of = file.data.values().map(|data| data.sha256.clone()).collect();

@@ -225,7 +225,7 @@ fn settings(data: &Dataset) -> Vec<Vec<usize>> {
 }
 
 fn known(name: &str) -> bool {
-    froude_records::table::known_dimension(name).is_some()
+    froude_records::known_columns::known_dimension(name).is_some()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use froude_identify::source::identify_source;
-use froude_records::campaign::read_campaign;
+use froude_records::campaign_file::read_campaign;
 use froude_records::finding::{Finding, Severity};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;

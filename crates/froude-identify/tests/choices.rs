@@ -6,7 +6,7 @@ use std::path::Path;
 
 use froude_identify::IdentifyError;
 use froude_identify::source::{SourceResult, identify_source};
-use froude_records::campaign::read_campaign;
+use froude_records::campaign_file::read_campaign;
 use froude_records::estimate::{Coefficient, Status};
 
 const HEAD: &str = "schema = 1\nname = \"x\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n";
@@ -162,7 +162,7 @@ fn f4_campaign(kind: &str, source: &str, identify: &str, simulate: &str) -> (tem
     let mut data = froude_identify::simulate::observations(&campaign, &campaign.sources[0], 0).unwrap();
     data.setup = vec!["mount".to_owned(); data.rows].into();
     let table = froude_identify::simulate::table(&data, &campaign.sources[0]).unwrap();
-    froude_records::csv_table::write_csv(&table, &folder.path().join("t.csv")).unwrap();
+    froude_records::table_file::prepare_table(&table, &folder.path().join("t.csv")).unwrap().take_place().unwrap();
     (folder, text)
 }
 
@@ -236,7 +236,7 @@ fn errors_in_speed_and_angle_are_fitted_at_broadside_too_and_counted_once() {
         let with_noise = read_campaign(&folder.path().join("c.toml")).unwrap();
         let data = froude_identify::simulate::observations(&with_noise, &with_noise.sources[0], 0).unwrap();
         let table = froude_identify::simulate::table(&data, &with_noise.sources[0]).unwrap();
-        froude_records::csv_table::write_csv(&table, &folder.path().join("t.csv")).unwrap();
+        froude_records::table_file::prepare_table(&table, &folder.path().join("t.csv")).unwrap().take_place().unwrap();
         let r = run(folder.path(), &campaign).unwrap();
         let e = &r.estimates[0];
         for line in F4.lines() {

@@ -7,7 +7,8 @@ use std::path::Path;
 
 use froude_identify::source::SourceResult;
 use froude_identify::source::identify_source;
-use froude_records::campaign::{Campaign, read_campaign};
+use froude_records::campaign::Campaign;
+use froude_records::campaign_file::read_campaign;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 

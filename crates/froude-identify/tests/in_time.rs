@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use froude_identify::source::{SourceResult, identify_source};
-use froude_records::campaign::read_campaign;
+use froude_records::campaign_file::read_campaign;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use froude_identify::source::{SourceResult, identify_source};
-use froude_records::campaign::read_campaign;
+use froude_records::campaign_file::read_campaign;
 use froude_records::estimate::{Coefficient, Estimate, EstimateFile, Status, TypeA};
 use froude_records::json::write_estimates;
 use rand::SeedableRng;
@@ -161,7 +161,7 @@ fn an_angle_offset_is_found_from_pairs_of_opposite_angle_and_taken_out_of_the_cr
     // The sensor is mounted once: one setup.
     data.setup = vec!["mount".to_owned(); data.rows].into();
     let table = froude_identify::simulate::table(&data, &campaign.sources[0]).unwrap();
-    froude_records::csv_table::write_csv(&table, &folder.path().join("t.csv")).unwrap();
+    froude_records::table_file::prepare_table(&table, &folder.path().join("t.csv")).unwrap().take_place().unwrap();
     let result = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
     let c = &result.estimates[0].coefficients;
     // One seeded draw: four standard uncertainties hold all but one in 10⁴.

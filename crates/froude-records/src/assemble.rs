@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::error::{Place, RecordError, decimal_comma};
+use crate::known_columns::{is_text_column, known_dimension, usual_unit};
 use crate::nearest::suggestion;
 use crate::raw_column::{
     FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, TWICE, check_dimension, check_numbers, check_texts, in_light_of,
     unit_of_column,
 };
 use crate::sidecar::{Mapping, Sidecar};
-use crate::table::{Column, ColumnData, Table, is_text_column, known_dimension, usual_unit};
+use crate::table::{Column, ColumnData, Table};
 use crate::units::{Unit, parse_unit};
 use crate::{header, memory};
 

@@ -11,17 +11,19 @@ use std::path::{Path, PathBuf};
 use froude_hydro::Link;
 use indexmap::IndexMap;
 
-use crate::added_mass_options::GivenOption;
-use crate::campaign_toml::ROOT_KEYS;
 use crate::document::Document;
 use crate::error::{Place, RecordError};
 use crate::estimate::ErrorKind;
+use crate::given_option::GivenOption;
 use crate::section::Section;
 use crate::units::{Dimension, Unit};
 
 pub use crate::body_axis::BodyAxis;
-pub use crate::campaign_toml::{parse_campaign, read_campaign};
 pub use crate::keep::{Comparison, Keep, KeepClause, KeepValue};
+
+/// The sections and keys of a campaign.
+pub(crate) const ROOT_KEYS: [&str; 11] =
+    ["schema", "name", "cite", "fluid", "body", "tank", "source", "identify", "simulate", "rig", "carriage"];
 
 /// A whole campaign.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -130,8 +132,8 @@ pub struct Source {
     pub tare: Option<Tare>,
     /// What its methods read of it themselves; `None` where no campaign names it.
     pub own: Option<OwnSections>,
-    /// What is asked of its mesh.
-    pub added_mass: Vec<GivenOption>,
+    /// Options given as flags, where no campaign names the mesh.
+    pub given: Vec<GivenOption>,
     /// What is to be run, where no method has a form of its own for it.
     pub plan: Vec<PlanBlock>,
     /// Where it stands in the campaign.
@@ -151,76 +153,9 @@ pub struct OwnSections {
 
 impl OwnSections {
     fn source(&self) -> Result<Option<Section<'_>>, RecordError> {
-        self.document.root().section_at("source", self.index)
-    }
-}
-
-/// A motion of a rigid body, in the order of a 6 × 6 matrix.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Motion {
-    /// Along x.
-    Surge,
-    /// Along y.
-    Sway,
-    /// Along z.
-    Heave,
-    /// About x.
-    Roll,
-    /// About y.
-    Pitch,
-    /// About z.
-    Yaw,
-}
-
-impl Motion {
-    /// Each of them.
-    pub const ALL: [Self; 6] = [Self::Surge, Self::Sway, Self::Heave, Self::Roll, Self::Pitch, Self::Yaw];
-    /// Their names.
-    pub const NAMES: [&'static str; 6] = ["surge", "sway", "heave", "roll", "pitch", "yaw"];
-
-    /// As written in a campaign.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-
-    /// Whether it turns the body.
-    #[must_use]
-    pub const fn is_rotation(self) -> bool {
-        matches!(self, Self::Roll | Self::Pitch | Self::Yaw)
-    }
-
-    /// As it stands in the names of coefficients: `x` … `rz`.
-    #[must_use]
-    pub const fn letters(self) -> &'static str {
-        match self {
-            Self::Surge => "x",
-            Self::Sway => "y",
-            Self::Heave => "z",
-            Self::Roll => "rx",
-            Self::Pitch => "ry",
-            Self::Yaw => "rz",
-        }
-    }
-
-    /// Names of added mass, linear and quadratic damping: `A11`, `D_x_I`, `D_x_II`.
-    #[must_use]
-    pub fn decay_names(self) -> [String; 3] {
-        let number = self as usize + 1;
-        let letters = self.letters();
-        [format!("A{number}{number}"), format!("D_{letters}_I"), format!("D_{letters}_II")]
-    }
-
-    /// Units of the three: kg, N s/m, N s²/m², or those of a rotation.
-    #[must_use]
-    pub const fn decay_units(self) -> [&'static str; 3] {
-        if self.is_rotation() { ["kg*m^2", "N*m*s", "N*m*s^2"] } else { ["kg", "kg/s", "kg/m"] }
-    }
-
-    /// Unit of the position.
-    #[must_use]
-    pub const fn position_unit(self) -> &'static str {
-        if self.is_rotation() { "rad" } else { "m" }
+        let root = self.document.root();
+        let list = root.get("source").and_then(|value| value.get_ref().as_array());
+        list.and_then(|list| list.get(self.index)).map(|value| root.as_listed("source", value)).transpose()
     }
 }
 
@@ -569,9 +504,9 @@ impl Campaign {
 
     /// The campaign that a mesh or a body file stands for: one source, called as the body is.
     #[must_use]
-    pub fn of_mesh(path: &Path, added_mass: Vec<GivenOption>) -> Self {
+    pub fn of_mesh(path: &Path, given: Vec<GivenOption>) -> Self {
         let bare = Source::bare(String::new(), Input::Mesh(path.to_owned()));
-        let source = Source { kind: SourceKind::Potential, added_mass, ..bare };
+        let source = Source { kind: SourceKind::Potential, given, ..bare };
         Self { path: path.to_owned(), sources: vec![source], ..Self::default() }
     }
 
@@ -687,7 +622,7 @@ impl Source {
             uncertainty: Vec::new(),
             tare: None,
             own: None,
-            added_mass: Vec::new(),
+            given: Vec::new(),
             plan: Vec::new(),
         }
     }

@@ -11,11 +11,12 @@ use std::path::Path;
 
 use crate::assemble::Want;
 use crate::csv_table::{Head, Records};
-use crate::error::{Place, RecordError, utf8};
+use crate::error::RecordError;
 use crate::fast_csv::{Layout, Lines, Memory, Reader};
 use crate::parquet_table;
 use crate::raw_column::Raw;
 use crate::read;
+use crate::read::utf8;
 use crate::sidecar::Sidecar;
 use crate::table::Table;
 use crate::table_file::{Format, sidecar_of};
@@ -89,7 +90,7 @@ fn csv<E: From<RecordError>>(
     }
     // The headers are whole; a letter of a later row may be cut in two.
     let end = memchr::memrchr(b'\n', &start).map_or(start.len(), |end| end + 1);
-    let mut records = Records::new(path, utf8(path, &start[..end])?, 1);
+    let mut records = Records::new(path, utf8(path, 1, &start[..end])?, 1);
     let head = Head::read(&mut records, sidecar)?;
     let (at, line) = (records.at, records.line);
     reader.go_on(start.split_off(at), line);
@@ -123,11 +124,7 @@ fn chunk(
             |column: Option<&[f64]>| column.map_or(Raw::Texts(Vec::new()), |column| Raw::Numbers(column.to_vec()));
         return head.table(columns.into_iter().map(raw).collect(), (first..first + lines.count).collect());
     }
-    let text = std::str::from_utf8(&memory.text[..lines.bytes]).map_err(|error| {
-        let before = memchr::memchr_iter(b'\n', &memory.text[..error.valid_up_to()]).count();
-        let problem = "the text is not UTF-8; save the file as UTF-8".to_owned();
-        RecordError::syntax(Place::line(path, first + before), problem)
-    })?;
+    let text = utf8(path, first, &memory.text[..lines.bytes])?;
     let (raws, lines) = head.rows(&mut Records::new(path, text, first), None)?;
     head.table(raws, lines)
 }
@@ -185,7 +182,7 @@ mod tests {
             assert!(n > 1, "{n}");
             assert_eq!(all, read_table(&path, None).unwrap());
             let parquet = folder.path().join("long.parquet");
-            crate::parquet_table::write_parquet(&all, &parquet).unwrap();
+            crate::table_file::prepare_table(&all, &parquet).unwrap().take_place().unwrap();
             let (from_parquet, n) = together(&parquet).unwrap();
             assert!(n > 1, "{n}");
             assert_eq!(from_parquet, read_table(&parquet, None).unwrap());

@@ -20,9 +20,10 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::assemble::{Room, Want, assemble, number, plan};
-use crate::error::{Place, RecordError, read_bytes, utf8};
+use crate::error::{Place, RecordError};
 use crate::memory;
 use crate::raw_column::Raw;
+use crate::read;
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
 use crate::text::counted;
@@ -41,8 +42,7 @@ const MOST_COLUMNS: usize = 10_000;
 ///
 /// See [`RecordError`].
 pub fn read_csv(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    let bytes = read_bytes(path, LARGEST_BYTES, "a table")?;
-    parse_csv(path, utf8(path, &bytes)?, sidecar)
+    parse_csv(path, &read::text(path, LARGEST_BYTES, "a table")?, sidecar)
 }
 
 /// The same with empty cells of loads and of motions along axes, which [`Table::blank`] lists.
@@ -51,9 +51,9 @@ pub fn read_csv(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordE
 ///
 /// See [`RecordError`].
 pub fn read_csv_with_blanks(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    let bytes = read_bytes(path, LARGEST_BYTES, "a table")?;
+    let text = read::text(path, LARGEST_BYTES, "a table")?;
     let mut blank = Vec::new();
-    let table = parse(path, utf8(path, &bytes)?, sidecar, Some(&mut blank))?;
+    let table = parse(path, &text, sidecar, Some(&mut blank))?;
     Ok(Table { blank, ..table })
 }
 
@@ -270,16 +270,7 @@ impl<'p, 'a> Records<'p, 'a> {
     }
 }
 
-/// Writes a table as CSV, whole or not at all; numbers in the units of their columns, in full precision.
-///
-/// # Errors
-///
-/// A file that cannot be written, or a number that is not finite.
-pub fn write_csv(table: &Table, path: &Path) -> Result<(), RecordError> {
-    prepare_csv(table, path)?.take_place()
-}
-
-/// The same as bytes, for a file that lies among others.
+/// A table as CSV, for a file that lies among others: numbers in the units of their columns, in full precision.
 ///
 /// # Errors
 ///
@@ -291,7 +282,7 @@ pub fn csv_bytes(table: &Table) -> Result<Vec<u8>, RecordError> {
     Ok(out)
 }
 
-/// The same, up to taking its place.
+/// The same as a file, written but not yet moved into place.
 pub(crate) fn prepare_csv(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
     all_finite(table, path)?;
     Prepared::new(path, |file| write_rows(table, file))

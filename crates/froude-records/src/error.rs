@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use crate::memory::{Exhausted, reserve};
+use crate::memory::Exhausted;
 use crate::units::LARGEST_SI;
 
 /// Where in a file something stands.
@@ -324,34 +324,6 @@ pub(crate) fn reason(error: &std::io::Error) -> String {
         }
         _ => error.to_string(),
     }
-}
-
-/// Read a whole file, refusing what is larger than its kind should be.
-pub(crate) fn read_bytes(path: &Path, limit: u64, what: &'static str) -> Result<Vec<u8>, RecordError> {
-    use std::io::Read as _;
-    let failed = |error: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&error) };
-    let file = crate::read::open(path)?;
-    let bytes = file.metadata().map_err(failed)?.len();
-    if bytes > limit {
-        return Err(RecordError::too_large(path, bytes, limit, what));
-    }
-    let mut content = Vec::new();
-    reserve(&mut content, bytes as usize + 1).map_err(|e| RecordError::memory(path, e))?;
-    // A growing file, or one of /proc, has no honest length: stop one byte past the limit.
-    file.take(limit + 1).read_to_end(&mut content).map_err(failed)?;
-    if content.len() as u64 > limit {
-        return Err(RecordError::too_large(path, content.len() as u64, limit, what));
-    }
-    Ok(content)
-}
-
-/// UTF-8 text without a byte order mark, or the line of the first byte that is not.
-pub(crate) fn utf8<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, RecordError> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    std::str::from_utf8(bytes).map_err(|error| {
-        let line = 1 + memchr::memchr_iter(b'\n', &bytes[..error.valid_up_to()]).count();
-        RecordError::syntax(Place::line(path, line), "the text is not UTF-8; save the file as UTF-8")
-    })
 }
 
 /// A number that may have three hundred digits.

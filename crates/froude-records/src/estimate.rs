@@ -15,8 +15,11 @@ use crate::comparison::Comparison;
 use crate::finding::Finding;
 use crate::run::step::Step;
 
+pub use crate::measured::Measured;
+
 mod units;
 pub mod v1;
+pub mod words;
 
 pub(crate) use units::{BadUnit, to_si};
 
@@ -61,15 +64,6 @@ pub struct DataFile {
     /// What was done to its data, in order; empty where that is not stated, or nothing was done.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub steps: Vec<Step>,
-}
-
-/// A number with its unit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Measured {
-    /// The number, in `unit`.
-    pub value: f64,
-    /// SI unit text, `1` for a pure number.
-    pub unit: String,
 }
 
 /// Scatter of a row that is a run: its variance is `constant`² + (`part` · load)².
@@ -286,16 +280,10 @@ impl Frame {
             words: "x along the chain; f_x of the fluid on the body".to_owned(),
         }
     }
-
-    /// Whether this is [`Frame::chain`].
-    #[must_use]
-    pub fn is_chain(&self) -> bool {
-        self.name == CHAIN
-    }
 }
 
 /// Name of [`Frame::chain`].
-const CHAIN: &str = "chain";
+pub const CHAIN: &str = "chain";
 
 /// The point that moments are about.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -496,14 +484,6 @@ pub struct Estimate {
     pub not_contradicted: Vec<String>,
 }
 
-impl Coefficient {
-    /// Its range, where other laws make that wider than its interval.
-    #[must_use]
-    pub fn wider_range(&self) -> Option<[f64; 2]> {
-        self.range_95.filter(|range| self.interval_95.is_none_or(|own| range[0] < own[0] || own[1] < range[1]))
-    }
-}
-
 impl Estimate {
     /// Density of the water that they refer to.
     #[must_use]
@@ -561,11 +541,6 @@ impl EstimateFile {
     #[must_use]
     pub fn of(estimates: Vec<Estimate>) -> Self {
         Self { schema: ESTIMATE_SCHEMA.to_owned(), estimates, ..Self::default() }
-    }
-
-    /// The files that an estimate's observations came from.
-    pub fn data_of<'a>(&'a self, estimate: &'a Estimate) -> impl Iterator<Item = &'a DataFile> {
-        estimate.data.iter().filter_map(|key| self.data.get(key))
     }
 }
 

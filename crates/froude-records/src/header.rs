@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use crate::run::sidecar::key_word;
-use crate::table::{is_text_column, known_dimension};
+use crate::known_columns::{is_text_column, known_dimension};
+use crate::toml_text::key_word;
 use crate::units::{Dimension, parse_unit};
 
 /// A header with its unit in round parentheses.

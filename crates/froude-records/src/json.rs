@@ -15,13 +15,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::checksum;
 use crate::comparison::Comparison;
-use crate::error::{Place, RecordError, read_bytes, utf8};
+use crate::error::{Place, RecordError};
 use crate::estimate::{
     BadUnit, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Interval, Law,
     NamedCorrelation, RunScatter, SharedError, Status, TypeA, to_si, v1,
 };
 use crate::finding::Finding;
 use crate::hash::sha256_of_file;
+use crate::read;
 use crate::write::write_atomically;
 
 /// The largest record that is read; a thousand estimates with covariances have a few megabytes.
@@ -41,8 +42,7 @@ const NEWEST: u64 = 2;
 /// square, a negative uncertainty, a value where the status says undetermined; [`RecordError::Checksum`] where the content is not
 /// the one that its checksum was written for; a unit that cannot be read or does not fit. All numbers are in SI when they are returned. A record without a checksum is read as it is.
 pub fn read_estimates(path: &Path) -> Result<EstimateFile, RecordError> {
-    let bytes = read_bytes(path, LARGEST_BYTES, "an estimate record")?;
-    parse_estimates(path, utf8(path, &bytes)?)
+    parse_estimates(path, &read::text(path, LARGEST_BYTES, "an estimate record")?)
 }
 
 /// The same from text; `path` is for messages.

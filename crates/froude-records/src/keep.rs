@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use crate::known_columns::{expected, is_text_column, usual_unit_for};
 use crate::plausible;
-use crate::table::{expected, is_text_column, usual_unit_for};
 use crate::units::{Quantity, parse_quantity};
 
 /// Clauses that must all hold.

@@ -5,7 +5,8 @@
 //!
 //! | file            | module                                     |
 //! |-----------------|--------------------------------------------|
-//! | campaign (TOML) | [`campaign`]; its options of added mass [`added_mass_options`]; sections of methods and of the carriage are read by the crates that use them |
+//! | campaign (TOML) | [`campaign`], read by [`campaign_file`]; sections of methods and of the carriage are read by the crates that use them |
+//! | table           | [`table`], read and written by [`table_file`] |
 //! | table (CSV)     | [`csv_table`], in memory; [`chunks`], some rows at a time |
 //! | table (Parquet) | [`parquet_table`]                          |
 //! | sidecar (TOML)  | [`sidecar`]                                |
@@ -14,13 +15,12 @@
 //! | list of results (JSON) | [`manifest`]                            |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-pub mod added_mass_options;
 mod assemble;
 pub mod block;
 pub mod body;
 mod body_axis;
 pub mod campaign;
-mod campaign_toml;
+pub mod campaign_file;
 mod checksum;
 pub mod chunks;
 pub mod comparison;
@@ -32,11 +32,14 @@ mod fast_csv;
 pub mod finding;
 pub mod folder;
 pub mod folder_lock;
+pub mod given_option;
 pub mod hash;
 mod header;
 pub mod json;
 pub mod keep;
+pub mod known_columns;
 pub mod manifest;
+pub mod measured;
 pub mod memory;
 pub mod nearest;
 pub mod number;
@@ -57,9 +60,10 @@ pub mod section;
 pub mod section_values;
 pub mod sidecar;
 pub mod table;
-mod table_file;
+pub mod table_file;
 pub mod text;
 pub mod texts;
+mod toml_text;
 pub mod unfinished;
 pub mod units;
 pub mod write;

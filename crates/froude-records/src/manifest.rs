@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Place, RecordError, read_bytes, reason, utf8};
+use crate::error::{Place, RecordError, reason};
 use crate::hash::sha256_of_file;
+use crate::read;
 use crate::write::{Prepared, write_atomically};
 
 /// Its name.
@@ -156,8 +157,7 @@ fn split(path: &Path) -> (PathBuf, String) {
 }
 
 fn read(path: &Path) -> Result<Manifest, RecordError> {
-    let bytes = read_bytes(path, LARGEST_BYTES, "a list of results")?;
-    let text = utf8(path, &bytes)?;
+    let text = &read::text(path, LARGEST_BYTES, "a list of results")?;
     let bad = |line: usize, problem: String| {
         RecordError::syntax(Place::line(path, line), format!("{problem}; move the folder away, or name another one"))
     };

@@ -18,7 +18,6 @@
 //! A number that is not finite is printed as [`MISSING`], in every function. The
 //! minus sign is U+2212, as in print.
 
-use crate::estimate::{Coefficient, Status};
 use crate::units::SUPERSCRIPTS;
 
 /// What stands for a number that does not exist.
@@ -182,7 +181,7 @@ pub fn plus_minus(value: f64, expanded: f64) -> String {
 const SYMMETRIC: f64 = 0.01;
 
 /// Half of an interval that is symmetric about the value.
-fn half_width(value: f64, [low, high]: [f64; 2]) -> Option<f64> {
+pub(crate) fn half_width(value: f64, [low, high]: [f64; 2]) -> Option<f64> {
     let half = high / 2.0 - low / 2.0;
     let offset = (low / 2.0 + high / 2.0 - value).abs();
     (half.is_finite() && half > 0.0 && offset <= SYMMETRIC * half).then_some(half)
@@ -359,51 +358,6 @@ pub fn usable(standard: Option<f64>) -> Option<f64> {
     standard.filter(|u| u.is_finite() && *u > 0.0)
 }
 
-/// The coefficient in words for a table cell: `0.0133(12)`, `0 (bound)`, `—`.
-///
-/// An undetermined coefficient is [`MISSING`], whatever stands in its value.
-#[must_use]
-pub fn coefficient(c: &Coefficient) -> String {
-    let Some(value) = finite(c.value) else {
-        return if c.status == Status::Excluded { "excluded" } else { MISSING }.to_owned();
-    };
-    let number = usable(c.standard_uncertainty).map_or_else(|| plain(value, 5), |u| short_form(value, u));
-    match c.status {
-        Status::Free => number,
-        Status::AtBound => format!("{} (bound)", plain(value, 5)),
-        Status::BoundContradicted => format!("{} (bound contradicted)", plain(value, 5)),
-        Status::Fixed => format!("{number} (fixed)"),
-        Status::Prior => format!("{number} (prior)"),
-        Status::Excluded => "excluded".to_owned(),
-        Status::Undetermined => MISSING.to_owned(),
-    }
-}
-
-/// The coefficient with its expanded uncertainty: `0.0133 ± 0.0024`, or the
-/// value and its interval where the interval is cut by a bound.
-///
-/// `U` is half the 95 % interval where that is symmetric, else twice the
-/// standard uncertainty.
-#[must_use]
-pub fn coefficient_expanded(c: &Coefficient) -> String {
-    let Some(value) = finite(c.value) else { return coefficient(c) };
-    if !matches!(c.status, Status::Free | Status::Prior) {
-        return coefficient(c);
-    }
-    if let Some(ends) = c.interval_95 {
-        let half = ends[1] / 2.0 - ends[0] / 2.0;
-        if let Some(half) = half_width(value, ends) {
-            return plus_minus(value, half);
-        }
-        if half.is_finite() && half > 0.0 {
-            let number = usable(c.standard_uncertainty).map_or_else(|| plain(value, 5), |u| short_form(value, u));
-            return format!("{number} {}", interval(ends));
-        }
-    }
-    // Without an interval there is none to halve, whatever the standard uncertainty.
-    usable(c.standard_uncertainty).map_or_else(|| plain(value, 5), |u| short_form(value, u))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -487,38 +441,6 @@ mod tests {
         assert_eq!(dof(28.0), "28");
         assert_eq!(dof(f64::INFINITY), "∞");
         assert_eq!(fixed(-0.001, 2), "0.00");
-    }
-
-    #[test]
-    fn an_undetermined_coefficient_is_a_dash_whatever_it_holds() {
-        let mut c = Coefficient {
-            label: None,
-            nuisance: false,
-            value: Some(0.0),
-            unit: "1".to_owned(),
-            status: Status::Undetermined,
-            standard_uncertainty: Some(0.1),
-            type_a: None,
-            type_b: None,
-            interval_95: None,
-            effective_dof: None,
-            unconstrained: None,
-            range_95: None,
-        };
-        assert_eq!(coefficient(&c), MISSING);
-        assert_eq!(coefficient_expanded(&c), MISSING);
-        c.status = Status::AtBound;
-        assert_eq!(coefficient(&c), "0 (bound)");
-        c.status = Status::Free;
-        c.value = Some(0.0133);
-        c.standard_uncertainty = Some(0.0012);
-        assert_eq!(coefficient_expanded(&c), "0.0133(12)");
-        c.interval_95 = Some([0.0107, 0.0159]);
-        assert_eq!(coefficient_expanded(&c), "0.0133 ± 0.0026");
-        c.interval_95 = Some([0.0, 0.0159]);
-        assert_eq!(coefficient_expanded(&c), "0.0133(12) [0, 0.0159]");
-        c.value = Some(f64::NAN);
-        assert_eq!(coefficient(&c), MISSING);
     }
 
     /// Reads the short form back: value, and uncertainty in units of the last place.

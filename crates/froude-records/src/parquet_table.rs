@@ -47,20 +47,11 @@ const MOST_UNPACKED: u64 = 200;
 const BYTES_A_ROW: i64 = 24;
 const BYTES_BESIDE: i64 = 1 << 20;
 
-/// Reads a Parquet table, through a sidecar if there is one.
+/// Reads anything that holds a Parquet table, through a sidecar if there is one; `path` is for messages.
 ///
 /// # Errors
 ///
 /// See [`RecordError`]; a file that is cut off is [`RecordError::Damaged`].
-pub fn read_parquet(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    parse_parquet(path, read::open(path)?, sidecar)
-}
-
-/// The same from anything that holds a Parquet file; `path` is for messages.
-///
-/// # Errors
-///
-/// See [`RecordError`].
 pub fn parse_parquet<R: ChunkReader + 'static>(
     path: &Path,
     source: R,
@@ -507,16 +498,7 @@ fn raw_of(field: &Type) -> Option<Raw> {
     }
 }
 
-/// Writes a table as Parquet (zstd), whole or not at all; numbers as doubles in the units of their columns.
-///
-/// # Errors
-///
-/// A file that cannot be written.
-pub fn write_parquet(table: &Table, path: &Path) -> Result<(), RecordError> {
-    prepare_parquet(table, path)?.take_place()
-}
-
-/// The same, up to taking its place.
+/// A table as Parquet (zstd), written but not yet moved into place; numbers as doubles in the units of their columns.
 pub(crate) fn prepare_parquet(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
     Prepared::new(path, |file| {
         write_columns(table, file).map_err(|e| match e {

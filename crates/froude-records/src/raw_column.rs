@@ -1,7 +1,7 @@
 //! A column as it is read, before its unit is known.
 
 use crate::error::{Place, RecordError, briefly};
-use crate::table::{expected, known_dimension, usual_unit};
+use crate::known_columns::{expected, known_dimension, usual_unit};
 use crate::units::{Unit, UnitError, is_plausible};
 
 /// The cells of one column as the format gives them.

@@ -4,9 +4,12 @@
 //! **Size.** Every reader states a limit, or reads in chunks. A test (`crates/froude-cli/tests/files.rs`) keeps other openings out.
 
 use std::fs::File;
+use std::io::Read as _;
 use std::path::Path;
+use std::str::Utf8Error;
 
-use crate::error::{RecordError, read_bytes, reason, utf8};
+use crate::error::{Place, RecordError, reason};
+use crate::memory::reserve;
 
 /// Largest file of Froude's own that lists or states something: `case.json`, `campaign.json`, a result, a lock.
 pub const OWN_BYTES: u64 = 16 << 20;
@@ -45,7 +48,20 @@ pub fn open(path: &Path) -> Result<File, RecordError> {
 ///
 /// [`RecordError::Read`] and [`RecordError::TooLarge`].
 pub fn whole(path: &Path, limit: u64, what: &'static str) -> Result<Vec<u8>, RecordError> {
-    read_bytes(path, limit, what)
+    let failed = |error: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&error) };
+    let file = open(path)?;
+    let bytes = file.metadata().map_err(failed)?.len();
+    if bytes > limit {
+        return Err(RecordError::too_large(path, bytes, limit, what));
+    }
+    let mut content = Vec::new();
+    reserve(&mut content, bytes as usize + 1).map_err(|e| RecordError::memory(path, e))?;
+    // A growing file, or one of /proc, has no honest length: stop one byte past the limit.
+    file.take(limit + 1).read_to_end(&mut content).map_err(failed)?;
+    if content.len() as u64 > limit {
+        return Err(RecordError::too_large(path, content.len() as u64, limit, what));
+    }
+    Ok(content)
 }
 
 /// The same of a text in UTF-8.
@@ -54,8 +70,12 @@ pub fn whole(path: &Path, limit: u64, what: &'static str) -> Result<Vec<u8>, Rec
 ///
 /// As [`whole`]; [`RecordError::Syntax`] where it is not UTF-8.
 pub fn text(path: &Path, limit: u64, what: &'static str) -> Result<String, RecordError> {
-    let bytes = whole(path, limit, what)?;
-    utf8(path, &bytes).map(str::to_owned)
+    let text = String::from_utf8(whole(path, limit, what)?);
+    let mut text = text.map_err(|e| not_utf8(path, 1, e.as_bytes(), e.utf8_error()))?;
+    if text.starts_with('\u{feff}') {
+        text.remove(0);
+    }
+    Ok(text)
 }
 
 /// The same of a file that need not be there: `None` where there is none.
@@ -68,6 +88,16 @@ pub fn if_there(path: &Path, limit: u64, what: &'static str) -> Result<Option<Ve
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
         _ => whole(path, limit, what).map(Some),
     }
+}
+
+/// UTF-8 text from a line of a file on, or the line of the first byte that is not.
+pub(crate) fn utf8<'a>(path: &Path, first_line: usize, bytes: &'a [u8]) -> Result<&'a str, RecordError> {
+    std::str::from_utf8(bytes).map_err(|error| not_utf8(path, first_line, bytes, error))
+}
+
+fn not_utf8(path: &Path, first_line: usize, bytes: &[u8], error: Utf8Error) -> RecordError {
+    let line = first_line + memchr::memchr_iter(b'\n', &bytes[..error.valid_up_to()]).count();
+    RecordError::syntax(Place::line(path, line), "the text is not UTF-8; save the file as UTF-8")
 }
 
 #[cfg(test)]

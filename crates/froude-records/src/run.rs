@@ -13,8 +13,8 @@
 //! | what a column's numbers are | [`Meaning`] |
 //! | recording (MCAP)          | [`Recorder`]   |
 //! | reading, whole or streamed | [`read_run`], [`RunReader`] |
-//! | whether it lies as it was driven | [`check_pair`], [`Doubt`] |
-//! | another program's log     | [`import_run`]; one that is too long to be held [`Ticks`], [`Extremes`], [`run_of_means`] |
+//! | whether log and sidecar belong to the same run | [`contradiction`], [`difference`], [`Doubt`] |
+//! | another program's log     | [`import_run`] |
 //! | what is declared of its data | [`mod@sensor`], [`mod@clocks`], [`mod@frames`], [`mod@cell`], [`mod@marks`] |
 //! | what was done to it       | [`mod@step`] |
 //!
@@ -32,57 +32,44 @@
 /// Name of the campaign's copy in a folder of runs.
 pub const CAMPAIGN_COPY: &str = "campaign.toml";
 
-/// Name of the file that says why a campaign stopped before all its pairs were driven.
-pub const STOPPED_EARLY: &str = "stopped-early.txt";
-
-/// What its line with the last run begins with.
-pub const LAST_RUN: &str = "last run: ";
-
 mod allowance;
 pub mod cell;
 pub(crate) mod channel;
 pub mod clocks;
 pub(crate) mod declarations;
+mod declared;
 mod declared_text;
 mod doubt;
-mod extremes;
 mod file;
 pub mod frames;
 mod import;
 mod layout;
 mod log;
 pub mod marks;
-mod meta;
-mod pair;
+pub(crate) mod meta;
 mod reader;
-mod recorded;
 mod recorder;
 mod seal;
 pub mod sensor;
 pub(crate) mod sidecar;
 pub mod step;
 mod sync;
-mod ticks;
 
 pub use crate::run::doubt::{Doubt, DoubtKind};
-pub use crate::run::pair::{Pair, check_names, check_pair};
 pub use channel::{BOARD, Frame, LOG, Meaning};
 pub use declarations::{Declarations, Stated, Told};
-pub use extremes::{Extremes, Oscillating, Stay};
-pub use import::{Averaged, ImportedRun, TimeSteps, import_run, is_servo_log, run_of_means, run_of_table};
+pub use declared::{Declared, declared, declared_value, positive_declared};
+pub use import::{
+    EVEN, GAP, ImportedRun, TimeSteps, channel_name, gap, import_run, is_servo_log, not_increasing, run_of,
+    run_of_table, time_column, times,
+};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
-pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
+pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog, median};
 pub use meta::{
-    ACCELERATED_TOW, Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction,
-    EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, Mounted, ROTATION, Role, RunMeta, RunStatus, STEADY, TOW,
-    WEIGHT_TOW,
+    ACCELERATED_TOW, Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Direction, EXCITED_RESPONSE,
+    FORCED_OSCILLATION, FREE_DECAY, Mounted, ROTATION, Role, RunMeta, RunStatus, STEADY, TOW, WEIGHT_TOW,
 };
-pub use reader::{Block, RunReader, read_run};
-pub use recorded::recorded_run;
+pub use reader::{Block, RunReader, head_of, read_run};
 pub use recorder::{Packing, Recorder};
-pub use seal::CampaignMark;
-pub use sidecar::{
-    AMPLIFIER, TORQUE_CONSTANT, declared, declared_value, parse_run_meta, positive_declared, read_run_meta,
-    run_meta_text, write_run_meta,
-};
-pub use ticks::Ticks;
+pub use seal::{CampaignMark, contradiction, difference};
+pub use sidecar::{AMPLIFIER, TORQUE_CONSTANT, parse_run_meta, read_run_meta, run_meta_text, write_run_meta};

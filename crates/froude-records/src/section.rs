@@ -8,9 +8,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{Place, RecordError};
+use crate::known_columns::usual_unit_for;
 use crate::nearest::{nearest, suggestion};
 use crate::plausible::{self, unit_for};
-use crate::table::usual_unit_for;
 use crate::units::{Dimension, LARGEST_SI, Quantity, is_plausible, parse_quantity};
 
 /// A value with where it stands.
@@ -431,17 +431,7 @@ impl<'a> Section<'a> {
         list.iter().map(|value| self.as_listed(key, value)).collect()
     }
 
-    /// One table of an array, counted from 0; `None` where the array is shorter, or is none.
-    ///
-    /// # Errors
-    ///
-    /// [`RecordError::Value`] with its place where it is something else.
-    pub fn section_at(&self, key: &'static str, index: usize) -> Result<Option<Section<'a>>, RecordError> {
-        let list = self.get(key).and_then(|value| value.get_ref().as_array());
-        list.and_then(|list| list.get(index)).map(|value| self.as_listed(key, value)).transpose()
-    }
-
-    fn as_listed(&self, key: &str, value: &'a Value<'a>) -> Result<Section<'a>, RecordError> {
+    pub(crate) fn as_listed(&self, key: &str, value: &'a Value<'a>) -> Result<Section<'a>, RecordError> {
         Ok(Section { is_listed: true, ..self.as_section(key, value)? })
     }
 

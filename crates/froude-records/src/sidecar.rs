@@ -4,22 +4,24 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
-use crate::error::{Place, RecordError, read_bytes, utf8};
-use crate::estimate::Measured;
+use crate::error::{Place, RecordError};
+use crate::known_columns::{is_text_column, known_dimension};
+use crate::measured::Measured;
 use crate::nearest::suggestion;
 use crate::raw_column::{
     Raw, TEXT_FOR_NUMBERS, check_dimension, check_numbers, check_texts, in_light_of, unit_of_column,
 };
-use crate::run::Role;
+use crate::read;
 use crate::run::cell::Cell;
 use crate::run::channel::Words;
 use crate::run::declarations::{self, Declarations};
+use crate::run::meta::Role;
 use crate::run::sensor::{self, Sensor};
 use crate::run::sidecar::{configuration, quantities};
 use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};
 use crate::section_values::one_of;
-use crate::table::{Column, ColumnData, is_text_column, known_dimension};
+use crate::table::{Column, ColumnData};
 use crate::texts::Texts;
 use crate::units::{Dimension, Quantity, Unit, parse_unit};
 
@@ -81,7 +83,8 @@ pub(crate) fn is_sidecar(path: &Path) -> bool {
         // Without its last letter, so that [column] is reported as misspelt and not passed over.
         line.starts_with("[column") || line.starts_with("[constant")
     };
-    read_bytes(path, LARGEST_BYTES, "a sidecar").is_ok_and(|bytes| String::from_utf8_lossy(&bytes).lines().any(is_head))
+    read::whole(path, LARGEST_BYTES, "a sidecar")
+        .is_ok_and(|bytes| String::from_utf8_lossy(&bytes).lines().any(is_head))
 }
 
 /// Reads a sidecar.
@@ -90,8 +93,7 @@ pub(crate) fn is_sidecar(path: &Path) -> bool {
 ///
 /// See [`RecordError`].
 pub fn read_sidecar(path: &Path) -> Result<Sidecar, RecordError> {
-    let bytes = read_bytes(path, LARGEST_BYTES, "a sidecar")?;
-    parse_sidecar(path, utf8(path, &bytes)?)
+    parse_sidecar(path, &read::text(path, LARGEST_BYTES, "a sidecar")?)
 }
 
 /// The same from text; `path` is for messages.

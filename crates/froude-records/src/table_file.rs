@@ -6,7 +6,7 @@ use crate::error::RecordError;
 use crate::sidecar::Sidecar;
 use crate::table::Table;
 use crate::write::Prepared;
-use crate::{csv_table, parquet_table, sidecar};
+use crate::{csv_table, parquet_table, read, sidecar};
 
 /// Reads a table, `.csv` or `.parquet`, through `sidecar` or the `.toml` of the same name beside it.
 ///
@@ -34,7 +34,7 @@ fn read(
     let mapping = sidecar_of(path, sidecar)?;
     match Format::of(path)? {
         Format::Csv => read_csv(path, mapping.as_ref()),
-        Format::Parquet => parquet_table::read_parquet(path, mapping.as_ref()),
+        Format::Parquet => parquet_table::parse_parquet(path, read::open(path)?, mapping.as_ref()),
     }
 }
 

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use froude_records::csv_table::parse_csv;
 use froude_records::sidecar::parse_sidecar;
-use froude_records::table::{ColumnData, Table, read_table};
+use froude_records::table::{ColumnData, Table};
+use froude_records::table_file::read_table;
 use froude_records::units::Dimension;
 
 fn csv(text: &str) -> Result<Table, String> {
@@ -302,7 +303,7 @@ fn written_numbers_are_short() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("tank.csv");
     let table = csv("speed [mm/s],angle [deg],f_x [N]\n300,3,1e-9\n").unwrap();
-    froude_records::csv_table::write_csv(&table, &path).unwrap();
+    froude_records::table_file::prepare_table(&table, &path).unwrap().take_place().unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     assert_eq!(text, "speed [mm/s],angle [deg],f_x [N]\n300,3,1e-9\n");
     assert!(matches!(&table.columns[1].data, ColumnData::Number { unit, .. } if unit.text == "deg"));

@@ -4,9 +4,9 @@
 use std::path::{Path, PathBuf};
 
 use froude_records::campaign::{
-    AngleOffset, BoundKind, Campaign, Comparison, Input, KeepValue, Shared, SourceKind, Truth, parse_campaign,
-    read_campaign,
+    AngleOffset, BoundKind, Campaign, Comparison, Input, KeepValue, Shared, SourceKind, Truth,
 };
+use froude_records::campaign_file::{parse_campaign, read_campaign};
 use froude_records::units::Dimension;
 
 const CAMPAIGN: &str = r#"schema = 1
@@ -408,7 +408,7 @@ fn the_examples_are_read() {
         for source in &campaign.sources {
             match &source.input {
                 Input::Table(table) if table.exists() => {
-                    froude_records::table::read_table(table, source.sidecar.as_deref()).unwrap();
+                    froude_records::table_file::read_table(table, source.sidecar.as_deref()).unwrap();
                 }
                 Input::Record { path, .. } => {
                     froude_records::json::read_estimates(path).unwrap();

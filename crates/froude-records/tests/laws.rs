@@ -3,14 +3,14 @@
 
 use std::path::Path;
 
-use froude_records::campaign::parse_campaign;
-use froude_records::csv_table::{parse_csv, write_csv};
+use froude_records::campaign_file::parse_campaign;
+use froude_records::csv_table::parse_csv;
 use froude_records::json::parse_estimates;
 use froude_records::keep::parse_keep;
-use froude_records::parquet_table::write_parquet;
 use froude_records::scale::Scale;
 use froude_records::sidecar::parse_sidecar;
-use froude_records::table::{Column, ColumnData, Table, read_table};
+use froude_records::table::{Column, ColumnData, Table};
+use froude_records::table_file::read_table;
 use froude_records::units::{Dimension, parse_quantity, parse_unit};
 use proptest::prelude::*;
 
@@ -143,7 +143,7 @@ proptest! {
         for name in ["t.csv", "t.parquet"] {
             let path = folder.path().join(name);
             let table = Table::of(path.clone(), columns.clone(), (2..2 + rows.len()).collect());
-            if name == "t.csv" { write_csv(&table, &path).unwrap() } else { write_parquet(&table, &path).unwrap() }
+            froude_records::table_file::prepare_table(&table, &path).unwrap().take_place().unwrap();
             let read = read_table(&path, None).unwrap();
             prop_assert_eq!(&read.columns, &columns);
         }

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use froude_records::csv_table::parse_csv;
-use froude_records::parquet_table::write_parquet;
 use froude_records::sidecar::parse_sidecar;
-use froude_records::table::{ColumnData, Table, read_table};
+use froude_records::table::{ColumnData, Table};
+use froude_records::table_file::read_table;
 use froude_records::units::Dimension;
 use parquet::data_type::{ByteArrayType, FloatType, Int32Type, Int64Type};
 use parquet::file::writer::SerializedFileWriter;
@@ -22,7 +22,7 @@ fn sample() -> Table {
 
 fn written(folder: &Path) -> PathBuf {
     let path = folder.join("tank.parquet");
-    write_parquet(&sample(), &path).unwrap();
+    froude_records::table_file::prepare_table(&sample(), &path).unwrap().take_place().unwrap();
     path
 }
 
@@ -83,7 +83,7 @@ fn headers_and_dimensions_are_held_as_in_csv() {
     let path = folder.path().join("tank.parquet");
     let mut table = sample();
     table.columns[1].name = "f_x".to_owned();
-    write_parquet(&table, &path).unwrap();
+    froude_records::table_file::prepare_table(&table, &path).unwrap().take_place().unwrap();
     assert_eq!(
         read_table(&path, None).unwrap_err().to_string(),
         format!("{}: column `f_x [mm/s]`: wrong unit: expected a force (N), found a speed (m/s)", path.display())
@@ -91,7 +91,7 @@ fn headers_and_dimensions_are_held_as_in_csv() {
     let ColumnData::Number { si, .. } = &mut table.columns[1].data else { panic!() };
     si[1] = f64::NAN;
     table.columns[1].name = "speed".to_owned();
-    write_parquet(&table, &path).unwrap();
+    froude_records::table_file::prepare_table(&table, &path).unwrap().take_place().unwrap();
     assert_eq!(
         read_table(&path, None).unwrap_err().to_string(),
         format!(
@@ -126,7 +126,7 @@ fn no_rows_are_refused() {
             ColumnData::Text(cells) => *cells = cells.subset(&[]),
         }
     }
-    write_parquet(&table, &path).unwrap();
+    froude_records::table_file::prepare_table(&table, &path).unwrap().take_place().unwrap();
     assert_eq!(
         read_table(&path, None).unwrap_err().to_string(),
         format!("{}: the table has no rows; at least one observation is needed", path.display())

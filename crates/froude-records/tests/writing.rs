@@ -101,13 +101,15 @@ fn fingerprints_are_sha_256() {
 
 #[test]
 fn a_negative_zero_is_written_as_zero() {
-    use froude_records::csv_table::write_csv;
     use froude_records::table::{Column, ColumnData, Table};
     use froude_records::units::{Dimension, Unit};
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("t.csv");
     let data = ColumnData::Number { unit: Unit::one(), dimension: Dimension::ONE, si: vec![-0.0, -1.5] };
     let columns = vec![Column { name: "x".to_owned(), data }];
-    write_csv(&Table::of(path.clone(), columns, vec![2, 3]), &path).unwrap();
+    froude_records::table_file::prepare_table(&Table::of(path.clone(), columns, vec![2, 3]), &path)
+        .unwrap()
+        .take_place()
+        .unwrap();
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "x [1]\n0\n-1.5\n");
 }

@@ -3,7 +3,7 @@
 use froude_records::finding::{Finding, Severity};
 use maud::{Markup, html};
 
-use crate::tables::Tables;
+use crate::tables::counter::Tables;
 
 /// A table of findings for each severity, the gravest first.
 pub(crate) fn findings_by_severity(findings: &[Finding], tables: &mut Tables) -> Markup {

@@ -7,7 +7,7 @@ use maud::{Markup, PreEscaped, html};
 use crate::error::ReportError;
 use crate::findings::findings_by_severity;
 use crate::sheet::{count, sheet};
-use crate::tables::Tables;
+use crate::tables::counter::Tables;
 use crate::tables::typed::table_markup;
 use crate::{chart, field, map};
 

@@ -18,8 +18,10 @@ use crate::findings::findings_by_severity;
 use crate::sheet::sheet;
 use crate::side_by_side;
 use crate::symbol::unit_text;
+use crate::tables::counter::Tables;
+use crate::tables::symbols::{html_symbol, html_unit};
 use crate::tables::typed::table_markup;
-use crate::tables::{self, Tables, counted, html_symbol};
+use crate::tables::{self, counted};
 use froude_records::page::Report;
 
 /// What a reader of two sources needs to know first.
@@ -417,7 +419,7 @@ fn summary_of(i: usize, source: &SourceSection) -> Markup {
                         @for (component, sigma) in &best.sigma {
                             @if sigma.value.is_finite() {
                                 " · " (tables::sigma(component, &sigma.unit)) " " (number::significant(sigma.value, 2))
-                                (tables::html_unit(&sigma.unit))
+                                (html_unit(&sigma.unit))
                             }
                         }
                     }
@@ -429,7 +431,7 @@ fn summary_of(i: usize, source: &SourceSection) -> Markup {
                     @for (name, c) in &best.coefficients {
                         li {
                             (tables::named(name, c)) span { (tables::expanded(c, best)) }
-                            @if let Some(ends) = c.wider_range() { span class="kind" { "range " (number::interval(ends)) } }
+                            @if let Some(ends) = tables::wider_range(c) { span class="kind" { "range " (number::interval(ends)) } }
                         }
                     }
                 }

@@ -2,26 +2,30 @@
 
 mod budget;
 mod coefficients;
+pub(crate) mod counter;
 mod selection;
+pub(crate) mod symbols;
 pub(crate) mod typed;
 
 use froude_records::block::TableBuilder;
+use froude_records::estimate::words;
 use froude_records::estimate::{Coefficient, Estimate, Range, Status};
 use froude_records::number;
 use maud::{Markup, html};
 
+use self::counter::Tables;
+use self::symbols::{html_symbol, html_unit};
 use self::typed::table_markup;
-use crate::symbol::{Rich, Style, symbol, unit_text};
+use crate::symbol::unit_text;
+
+/// The range of a coefficient, where other laws make that wider than its interval.
+pub(crate) fn wider_range(c: &Coefficient) -> Option<[f64; 2]> {
+    c.range_95.filter(|range| c.interval_95.is_none_or(|own| range[0] < own[0] || own[1] < range[1]))
+}
 
 /// A count with its noun.
 pub(crate) fn counted(n: usize, one: &str, many: &str) -> String {
     format!("{} {}", number::count(n), if n == 1 { one } else { many })
-}
-
-/// Counter of the tables.
-#[derive(Default)]
-pub(crate) struct Tables {
-    n: usize,
 }
 
 /// A quantity of the range of validity in words; channels of the table stay symbols.
@@ -39,34 +43,6 @@ fn quantity(name: &str) -> String {
     words.to_owned()
 }
 
-/// A name as a symbol, with the name itself in its tooltip.
-pub(crate) fn html_symbol(name: &str) -> Markup {
-    let Rich { runs } = symbol(name);
-    html! {
-        span class="symbol" title=(name) {
-            @for (i, (style, text)) in runs.iter().enumerate() {
-                @match style {
-                    Style::Upright => (text),
-                    Style::Bold => b { (text) },
-                    Style::Italic => i { (text) },
-                    Style::Subscript => {
-                        @if let Some((Style::Superscript, upper)) = runs.get(i + 1) {
-                            span class="both" { sup { (upper) } sub { (text) } }
-                        } @else {
-                            sub { (text) }
-                        }
-                    },
-                    Style::Superscript => {
-                        @if !matches!(i.checked_sub(1).and_then(|k| runs.get(k)), Some((Style::Subscript, _))) {
-                            sup { (text) }
-                        }
-                    },
-                }
-            }
-        }
-    }
-}
-
 /// What an estimate is called beside others: its law, or, where several have that one, what its id ends with.
 pub(crate) fn called<'a>(e: &'a Estimate, beside: &[&Estimate]) -> &'a str {
     let is_alone = beside.iter().filter(|other| other.law.name == e.law.name).count() < 2;
@@ -76,24 +52,6 @@ pub(crate) fn called<'a>(e: &'a Estimate, beside: &[&Estimate]) -> &'a str {
 /// A coefficient's symbol, with what a paper calls it.
 pub(crate) fn named(name: &str, c: &Coefficient) -> Markup {
     html! { (html_symbol(name)) @if let Some(label) = &c.label { " (" (html_symbol(label)) ")" } }
-}
-
-/// A name as a symbol, with another in brackets where there is one.
-pub(crate) fn html_symbols(cell: &str) -> Markup {
-    match cell.strip_suffix(')').and_then(|cell| cell.split_once(" (")) {
-        Some((name, label)) => html! { (html_symbol(name)) " (" (html_symbol(label)) ")" },
-        None => html_symbol(cell),
-    }
-}
-
-/// A unit behind a number; nothing for a pure number.
-pub(crate) fn html_unit(unit: &str) -> Markup {
-    html! { @if unit != "1" && !unit.is_empty() { " " span class="unit" { (unit_text(unit)) } } }
-}
-
-/// A unit in brackets for a head.
-fn head_unit(unit: &str) -> Markup {
-    html! { @if !unit.is_empty() { " " span class="unit" { "[" (unit_text(unit)) "]" } } }
 }
 
 /// Whether a value is given without any uncertainty although one belongs to it.
@@ -117,7 +75,7 @@ fn dagger() -> Markup {
 pub(crate) fn expanded(c: &Coefficient, estimate: &Estimate) -> Markup {
     let has_number = number::finite(c.value).is_some() && !matches!(c.status, Status::Undetermined | Status::Excluded);
     html! {
-        (number::coefficient_expanded(c))
+        (words::coefficient_expanded(c))
         @if is_bare(c, estimate) { (dagger()) }
         @if has_number { (html_unit(&c.unit)) }
     }
@@ -135,12 +93,6 @@ fn union<'a, I: IntoIterator<Item = &'a String>>(keys: I) -> Vec<&'a str> {
 }
 
 impl Tables {
-    /// The next table's caption.
-    pub(crate) fn caption(&mut self, text: &str) -> Markup {
-        self.n += 1;
-        html! { caption { b { "Table " (self.n) ". " } (text) } }
-    }
-
     /// Ranges of the observations behind an estimate.
     pub(crate) fn validity(&mut self, e: &Estimate) -> Markup {
         let caption = format!(

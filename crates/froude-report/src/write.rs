@@ -9,7 +9,7 @@ use froude_records::json::write_estimates;
 use froude_records::manifest::take_own_place;
 use froude_records::outcome::{Content, Outcome, OutputFile};
 use froude_records::results::replace;
-use froude_records::table::prepare_table;
+use froude_records::table_file::prepare_table;
 use froude_records::write::{Prepared, write_atomically};
 
 use crate::error::ReportError;

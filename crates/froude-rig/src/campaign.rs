@@ -7,6 +7,7 @@
 //! | [`drive`]     | what passed, driven into its own folder                                         |
 //! | [`lock`]      | one drive at a time into a folder                                               |
 //! | [`runner`]    | drives and records one run after the other; stops                              |
+//! | [`pair`]      | whether a sidecar and its log belong together                                   |
 //! | `resume`      | what lies of a run already, and putting aside what is not complete              |
 //! | [`setup`]     | controller and twin from the campaign's `[rig]` section                            |
 //! | [`stop`]      | Ctrl-C: once is a controlled stop, twice cuts the torque                        |
@@ -22,6 +23,7 @@ pub mod error;
 mod hand_over;
 pub mod lock;
 mod order;
+pub mod pair;
 pub mod preflight;
 pub mod prepare;
 mod recording;

@@ -23,7 +23,8 @@ mod section;
 
 use std::path::Path;
 
-use froude_records::campaign::{Campaign, read_campaign};
+use froude_records::campaign::Campaign;
+use froude_records::campaign_file::read_campaign;
 use froude_records::run::{Axis, AxisConstants, Declared};
 use froude_records::units::Quantity;
 use froude_records::{Place, RecordError};

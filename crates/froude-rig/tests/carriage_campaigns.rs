@@ -4,7 +4,8 @@
 use std::path::Path;
 
 use froude_records::RecordError;
-use froude_records::campaign::{Campaign, parse_campaign};
+use froude_records::campaign::Campaign;
+use froude_records::campaign_file::parse_campaign;
 use froude_records::run::{Axis, Declared};
 use froude_rig::carriage::{CarriageCampaign, Directions, DrivenCampaign, Order, RigKind, declared};
 

@@ -13,6 +13,7 @@
 //! | [`rows`]     | weighted means of motion and force, zeros       | Shinbrot 1957 (modulating functions); USR eq. 16 |
 //! | [`law`]      | a drag law with a term of the acceleration      | USR eq. 15 and 16                              |
 //! | [`section`]    | what a campaign declares and plans            | –                                              |
+//! | [`setup`]      | body, rig and water as they are declared      | –                                              |
 //! | [`mod@reduce`] | mass, delay, what declared errors do          | JCGM 100:2008 (GUM), 5.2                       |
 //! | `lag`        | a lag of the force that nobody declared         | –                                              |
 //! | [`simulate`] | the runs that a campaign would give             | –                                              |
@@ -27,5 +28,6 @@ pub mod plan;
 pub mod reduce;
 pub mod rows;
 pub mod section;
+pub mod setup;
 pub mod simulate;
 pub mod source;

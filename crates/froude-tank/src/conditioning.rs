@@ -12,7 +12,7 @@
 //! | `frame`     | [`loads`]   | loads along the sensor's axes as loads along the body's, about its reference point                     |
 //! | `segment`, `mark` | [`stretches`] | the declared test, and what is not to be used                                                  |
 //!
-//! Every step stands in [`ImportedRun::done`]; what a reader should know of it is a finding.
+//! Every step stands in [`TankLog::done`]; what a reader should know of it is a finding.
 //!
 //! Not here: windows of a method, which leave marks out themselves ([`stretches::MARK_AWARE`]).
 
@@ -23,9 +23,9 @@ pub mod resolution;
 pub mod stretches;
 pub mod times;
 
+use crate::log::TankLog;
 use froude_identify::method::MethodError;
 use froude_identify::wild;
-use froude_records::run::ImportedRun;
 use froude_records::run::step::Step;
 
 /// Does to a run what its sidecar declares.
@@ -33,7 +33,7 @@ use froude_records::run::step::Step;
 /// # Errors
 ///
 /// Clocks without a time in common, bridges or loads that a matrix or a rotation needs and the log lacks, marks that leave nothing.
-pub fn condition(run: &mut ImportedRun, method: &str) -> Result<(), MethodError> {
+pub fn condition(run: &mut TankLog, method: &str) -> Result<(), MethodError> {
     let read = run.told.iter().filter_map(|(name, told)| {
         let meaning = &run.log.channels.get(name)?.meaning;
         let frame = told.frame.as_deref().unwrap_or_else(|| meaning.frame.name());
@@ -65,7 +65,7 @@ pub fn condition(run: &mut ImportedRun, method: &str) -> Result<(), MethodError>
 /// # Errors
 ///
 /// The first such log, with both numbers.
-pub fn of_one_rig(runs: &[ImportedRun]) -> Result<(), MethodError> {
+pub fn of_one_rig(runs: &[TankLog]) -> Result<(), MethodError> {
     let Some((k, what)) = wild::steps(&runs.iter().map(|run| &run.log).collect::<Vec<_>>()) else { return Ok(()) };
     let path = &runs[k].log.path;
     let sidecar = path.with_extension("toml");

@@ -15,6 +15,7 @@
 //! | [`motion`]       | the motion itself, with its derivatives                          | Hairer et al. 1993           |
 //! | [`fit`]          | coefficients, scatter, what M and C do to them                   | Efron & Stein 1981, GUM      |
 //! | [`record`]        | estimate, rows and line for the page                             | –                            |
+//! | [`axis`]         | names and units of what an axis determines                       | –                            |
 //! | [`section`]      | what a campaign declares and plans                               | –                            |
 //! | [`releases`]     | those that a campaign plans, on the twin of its rig              | –                            |
 //! | [`forecast`]     | the interval to expect of each coefficient                       | Ljung 1999, GUM              |
@@ -23,6 +24,7 @@
 //! Not here: the mass of springs (a third of it moves with the body: add it to M), two axes that swing together, waves that come back from the
 //! walls, memory of the free surface (A and D_I are those of the one frequency), the Keulegan–Carpenter number.
 
+pub mod axis;
 mod envelope;
 mod error;
 mod findings;

@@ -14,20 +14,22 @@ use froude_records::campaign::{BudgetEntry, Shared, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::clocks::is_own;
 use froude_records::run::step::Step;
-use froude_records::run::{Channel, ImportedRun, Role, RunReader, RunStatus, read_run_meta, recorded_run};
+use froude_records::run::{Channel, Role, RunReader, RunStatus, read_run_meta};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
 use crate::conditioning;
 use crate::error::{TankError, undeclared};
-use crate::joint::findings::{note, warning};
+use crate::findings::{note, warning};
+use crate::log::TankLog;
 use crate::long_logs::{self, LENGTHS, Lengths, Reading};
 use crate::motion::Motion;
+use crate::recorded::recorded_run;
 
 /// The logs of a folder that a method uses.
 pub(crate) struct Logs {
-    pub runs: Vec<ImportedRun>,
+    pub runs: Vec<TankLog>,
     pub files: Vec<ReadFile>,
     pub findings: Vec<Finding>,
 }
@@ -110,7 +112,7 @@ pub(crate) fn read_averaging(
 }
 
 /// A log with its steps, and its sidecar where there is one.
-pub(crate) fn files_of(path: PathBuf, role: &str, log: &ImportedRun) -> impl Iterator<Item = ReadFile> {
+pub(crate) fn files_of(path: PathBuf, role: &str, log: &TankLog) -> impl Iterator<Item = ReadFile> {
     let sidecar = Some(path.with_extension("toml")).filter(|sidecar| sidecar.exists());
     let log = ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role) };
     std::iter::once(log).chain(sidecar.map(|sidecar| ReadFile::new(sidecar, "sidecar")))
@@ -150,8 +152,8 @@ fn once(of_logs: Vec<(PathBuf, Finding)>) -> Vec<Finding> {
 const MANY_LOGS: usize = 4;
 
 /// That the times of some logs are counted from their first samples, said once.
-pub(crate) fn of_a_calendar(logs: &[ImportedRun]) -> Option<Finding> {
-    let has_it = |log: &&ImportedRun| log.done.iter().any(|step| step.step == conditioning::times::STEP);
+pub(crate) fn of_a_calendar(logs: &[TankLog]) -> Option<Finding> {
+    let has_it = |log: &&TankLog| log.done.iter().any(|step| step.step == conditioning::times::STEP);
     let first = logs.iter().find(has_it)?;
     let text = format!(
         "the times of {} are calendar times and are counted from the first sample of each, in the analysis and in the report",
@@ -218,7 +220,7 @@ fn recorded_of(log: &Path) -> Option<String> {
 /// # Errors
 ///
 /// A log that cannot be read, one that is damaged, or another than its sidecar's.
-pub(crate) fn imported(path: &Path, reading: Reading, progress: &dyn Fn(&str)) -> Result<ImportedRun, MethodError> {
+pub(crate) fn imported(path: &Path, reading: Reading, progress: &dyn Fn(&str)) -> Result<TankLog, MethodError> {
     if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mcap")) {
         return long_logs::import(path, reading, progress);
     }
@@ -230,32 +232,32 @@ pub(crate) fn imported(path: &Path, reading: Reading, progress: &dyn Fn(&str)) -
 }
 
 /// Adds a step to those of the file of a run.
-pub(crate) fn add_step(files: &mut [ReadFile], log: &ImportedRun, step: Step) {
+pub(crate) fn add_step(files: &mut [ReadFile], log: &TankLog, step: Step) {
     if let Some(file) = files.iter_mut().find(|file| file.path == log.log.path) {
         file.steps.push(step);
     }
 }
 
 /// Configurations of the runs, in order of first appearance.
-pub(crate) fn configurations(logs: &[ImportedRun]) -> Vec<String> {
+pub(crate) fn configurations(logs: &[TankLog]) -> Vec<String> {
     distinct_texts(&logs.iter().map(|log| log.log.meta.configuration.clone()).collect::<Vec<_>>())
 }
 
 /// Standard uncertainty of what lies between the stamps of two channels of a run, s.
-pub(crate) fn stamps_standard_s(log: &ImportedRun, channels: [&str; 2]) -> f64 {
+pub(crate) fn stamps_standard_s(log: &TankLog, channels: [&str; 2]) -> f64 {
     let [a, b] = channels.map(|name| log.told.get(name).map_or(0.0, |told| told.time_standard_s));
     a.hypot(b)
 }
 
 /// The window of a log that is used; `words` follow its ends.
-pub(crate) fn window_step(log: &ImportedRun, rows: &Range<usize>, words: &str) -> Step {
+pub(crate) fn window_step(log: &TankLog, rows: &Range<usize>, words: &str) -> Step {
     let (from_s, to_s) = (log.log.time_s[rows.start], log.log.time_s[rows.end - 1]);
     let words = format!("{from_s:.3} s to {to_s:.3} s{words}");
     Step::new("window", "", words).with("from", from_s, "s").with("to", to_s, "s")
 }
 
 /// The cycles that are used of a run, as a step.
-pub(crate) fn cycles_step(log: &ImportedRun, motion: &Motion) -> Step {
+pub(crate) fn cycles_step(log: &TankLog, motion: &Motion) -> Step {
     let but = if motion.dropped == 0 { String::new() } else { format!(", but {} that a mark touches", motion.dropped) };
     let period_s = motion.angle.period_s();
     let words = format!(": {} whole cycles{but}; angle by harmonics of {period_s:.4} s", motion.whole);
@@ -265,7 +267,7 @@ pub(crate) fn cycles_step(log: &ImportedRun, motion: &Motion) -> Step {
 
 /// A channel that is declared in full and has the log's times; `why` says what a guess would cost, `along` what its sign is that of.
 pub(crate) fn channel<'a>(
-    log: &'a ImportedRun,
+    log: &'a TankLog,
     name: &str,
     dimension: Dimension,
     why: &str,
@@ -286,7 +288,7 @@ pub(crate) fn channel<'a>(
 
 /// The same of a channel whose clock may be one that nobody knows: to be compared with another, and for nothing else.
 pub(crate) fn of_any_clock<'a>(
-    log: &'a ImportedRun,
+    log: &'a TankLog,
     name: &str,
     dimension: Dimension,
     why: &str,
@@ -315,7 +317,7 @@ pub(crate) fn of_any_clock<'a>(
 }
 
 /// A condition that a run was done in; `None` where it declares none.
-pub(crate) fn condition(log: &ImportedRun, name: &str, dimension: Dimension) -> Result<Option<f64>, MethodError> {
+pub(crate) fn condition(log: &TankLog, name: &str, dimension: Dimension) -> Result<Option<f64>, MethodError> {
     match log.log.meta.conditions.get(name) {
         None => Ok(None),
         Some(found) if found.unit == dimension.to_string() => Ok(Some(found.value)),

@@ -6,20 +6,26 @@
 //! uncertainties are those of the whole logs. All logs of a folder come to one rate, so that none gains weight on another by being shorter. Gaps,
 //! uneven steps and what a sensor at the end of its range shows are told by the rows recorded.
 
+mod ticks;
+
 use std::path::{Path, PathBuf};
 
-use crate::joint::findings::warning;
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::chunks::{count_rows, for_each_chunk};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::run::{Averaged, Extremes, ImportedRun, Ticks, import_run, run_of_means};
+use froude_records::run::{channel_name, import_run, run_of, times};
 use froude_records::sidecar::read_sidecar;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::Dimension;
 use froude_signal::block_mean::{BlockMean, gain, noise_bandwidth_hz};
 use indexmap::IndexMap;
+
+use self::ticks::Ticks;
+use crate::extremes::Extremes;
+use crate::findings::warning;
+use crate::log::{Averaged, TankLog};
 
 /// Where the logs of a folder are too long, and what is kept of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,9 +89,9 @@ const MOST_LOST: f64 = 1e-3;
 const KEPT: f64 = 1e-4;
 
 /// Reads a log through the sidecar beside it, whole or averaged.
-pub(crate) fn import(path: &Path, reading: Reading, progress: &dyn Fn(&str)) -> Result<ImportedRun, MethodError> {
+pub(crate) fn import(path: &Path, reading: Reading, progress: &dyn Fn(&str)) -> Result<TankLog, MethodError> {
     if reading.block_rows == 1 {
-        return Ok(import_run(path, None)?);
+        return Ok(import_run(path, None)?.into());
     }
     let mut means = Means::of(reading.block_rows);
     let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -155,7 +161,7 @@ impl Means {
         Ok(())
     }
 
-    fn finish(mut self, path: &Path) -> Result<ImportedRun, MethodError> {
+    fn finish(mut self, path: &Path) -> Result<TankLog, MethodError> {
         let Some(mut table) = self.table else { return Err(RecordError::NoRows { path: path.to_owned() }.into()) };
         self.left_out += self.blocks.first_mut().map_or(0, BlockMean::leave);
         table.n_rows = table.columns.first().map_or(0, |column| match &column.data {
@@ -172,7 +178,11 @@ impl Means {
         }
         let averaged = Averaged { rows: self.rows, block_rows: self.block_rows, left_out: self.left_out };
         let sidecar = table.sidecar.as_deref().map(read_sidecar).transpose()?;
-        Ok(run_of_means(&table, sidecar.as_ref(), self.ticks, averaged, self.extremes)?)
+        let (steps, lost) = self.ticks.finish(&table.path)?;
+        let mut run = run_of(&table, sidecar.as_ref(), times(&table)?, steps, lost)?;
+        run.log.meta.log_rate_hz /= averaged.block_rows as f64;
+        let recorded = self.extremes.into_iter().map(|(name, extremes)| (channel_name(&name), extremes)).collect();
+        Ok(TankLog { recorded, averaged: Some(averaged), ..run.into() })
     }
 }
 
@@ -184,7 +194,7 @@ fn empty(column: &Column) -> Option<Column> {
 }
 
 /// What was done to a log that is averaged.
-pub(crate) fn note(log: &ImportedRun) -> Option<Finding> {
+pub(crate) fn note(log: &TankLog) -> Option<Finding> {
     let averaged = log.averaged.as_ref()?;
     let (rate_hz, q) = (1.0 / log.steps.median_s, averaged.block_rows);
     let kept_hz = (6.0 * KEPT).sqrt() * rate_hz / (std::f64::consts::PI * q as f64);
@@ -210,12 +220,12 @@ pub(crate) fn note(log: &ImportedRun) -> Option<Finding> {
 }
 
 /// What averages leave of the fastest tone that counts; `None` of a log that is as it was recorded.
-fn left(log: &ImportedRun, frequency_hz: f64) -> Option<f64> {
+fn left(log: &TankLog, frequency_hz: f64) -> Option<f64> {
     log.averaged.as_ref().map(|averaged| gain(averaged.block_rows, 1.0 / log.steps.median_s, frequency_hz))
 }
 
 /// That averages are too coarse for a tone.
-pub(crate) fn too_coarse(log: &ImportedRun, frequency_hz: f64) -> Option<Finding> {
+pub(crate) fn too_coarse(log: &TankLog, frequency_hz: f64) -> Option<Finding> {
     let left = left(log, frequency_hz).filter(|left| 1.0 - left > MOST_LOST)?;
     let text = format!(
         "{}: the averages that the log is read in leave {left:.4} of what moves at {frequency_hz:.2} Hz, in every channel; cut the log into shorter runs",
@@ -225,8 +235,8 @@ pub(crate) fn too_coarse(log: &ImportedRun, frequency_hz: f64) -> Option<Finding
 }
 
 /// The step as a record states it, of the logs that were averaged; `frequencies_hz` is the fastest tone that counts in each.
-pub(crate) fn step(logs: &[ImportedRun], frequencies_hz: &[f64]) -> Option<String> {
-    let of = |(log, hz): (&ImportedRun, &f64)| Some((log.averaged.as_ref()?.block_rows, left(log, *hz)?));
+pub(crate) fn step(logs: &[TankLog], frequencies_hz: &[f64]) -> Option<String> {
+    let of = |(log, hz): (&TankLog, &f64)| Some((log.averaged.as_ref()?.block_rows, left(log, *hz)?));
     let all: Vec<(usize, f64)> = logs.iter().zip(frequencies_hz).filter_map(of).collect();
     let (fewest, most) = (all.iter().map(|a| a.0).min()?, all.iter().map(|a| a.0).max()?);
     let least = all.iter().map(|a| a.1).fold(f64::INFINITY, f64::min);

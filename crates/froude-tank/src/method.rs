@@ -5,6 +5,7 @@ use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
 
 /// What a method of the tank is called, what it needs, and what does it.
+#[derive(Debug)]
 pub struct TankMethod {
     /// Names that a campaign selects it by.
     pub names: &'static [&'static str],

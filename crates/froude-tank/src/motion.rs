@@ -3,13 +3,14 @@
 use std::ops::Range;
 
 use froude_records::run::marks::Mark;
-use froude_records::run::{Extremes, ImportedRun, Oscillating, Stay};
 use froude_records::text::counted;
 use froude_signal::harmonic::Harmonics;
 use indexmap::IndexMap;
 
 use crate::conditioning::stretches::{in_words, touching};
 use crate::error::TankError;
+use crate::extremes::{Extremes, Oscillating, Stay};
+use crate::log::TankLog;
 
 /// The motion has begun where the angle is this part of its size away from its middle.
 const BEGUN: f64 = 0.1;
@@ -63,7 +64,7 @@ pub struct Sampled<'a> {
 }
 
 impl<'a> Sampled<'a> {
-    pub(crate) fn of(log: &'a ImportedRun) -> Self {
+    pub(crate) fn of(log: &'a TankLog) -> Self {
         Self { marks: &log.declared.marks, recorded: Some(&log.recorded), is_averaged: log.averaged.is_some() }
     }
 }

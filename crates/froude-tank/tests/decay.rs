@@ -5,7 +5,7 @@ mod scenario;
 
 use froude_fit::budget::{OUTSIDE_95, Uncertain, combine};
 use froude_fit::coverage::{Count, z_limit};
-use froude_records::campaign::Motion;
+use froude_tank::decay::axis::Motion;
 use froude_tank::decay::releases::Logged;
 use froude_tank::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method, Restoring, envelope, output_error};
 use rand::SeedableRng;

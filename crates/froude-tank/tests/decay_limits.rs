@@ -4,8 +4,9 @@
 use std::f64::consts::PI;
 
 use froude_fit::budget::Uncertain;
-use froude_records::campaign::{Motion, SensorSpec};
+use froude_records::campaign::SensorSpec;
 use froude_rig::decay::Release;
+use froude_tank::decay::axis::Motion;
 use froude_tank::decay::forecast::{forecast, peaks_of};
 use froude_tank::decay::releases::Logged;
 use froude_tank::decay::releases::{Planned, simulated};

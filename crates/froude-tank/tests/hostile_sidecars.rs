@@ -7,6 +7,7 @@ use froude_records::csv_table::parse_csv;
 use froude_records::run::run_of_table;
 use froude_records::sidecar::parse_sidecar;
 use froude_tank::conditioning::condition;
+use froude_tank::log::TankLog;
 use proptest::prelude::*;
 
 const SEEDS: [&[u8]; 3] = [
@@ -116,7 +117,8 @@ proptest! {
         };
         let Ok(table) = parse_csv(Path::new("run.csv"), &csv, Some(&sidecar)) else { return Ok(()) };
         for method in ["steady", "forced_oscillation", "another"] {
-            let Ok(mut run) = run_of_table(&table, Some(&sidecar)) else { return Ok(()) };
+            let Ok(run) = run_of_table(&table, Some(&sidecar)) else { return Ok(()) };
+            let mut run = TankLog::from(run);
             if let Err(error) = condition(&mut run, method) {
                 let text = error.to_string();
                 prop_assert!(text.starts_with("run.csv") || text.starts_with("run.toml"), "{}", text);
@@ -137,7 +139,7 @@ fn the_seeds_are_conditioned() {
         let (own, csv) = rest.split_at(usize::from(u16::from_le_bytes(*length)));
         let sidecar = parse_sidecar(Path::new("run.toml"), std::str::from_utf8(own).unwrap()).unwrap();
         let table = parse_csv(Path::new("run.csv"), std::str::from_utf8(csv).unwrap(), Some(&sidecar)).unwrap();
-        let mut run = run_of_table(&table, Some(&sidecar)).unwrap();
+        let mut run = TankLog::from(run_of_table(&table, Some(&sidecar)).unwrap());
         condition(&mut run, "steady").unwrap();
         assert!(run.done.len() >= 2, "{:?}", run.done);
     }

@@ -43,7 +43,7 @@ fn of_campaign(path: &Path) -> Result<Inspection, Error> {
     method::check_sections(&campaign)?;
     for (source, facts) in campaign.sources.iter().zip(&mut found.sources) {
         match &source.input {
-            Input::Mesh(path) => drop(Asked::read(path, &source.added_mass)?),
+            Input::Mesh(path) => drop(Asked::of_source(path, source)?),
             Input::Table(log) if is_servo_log(log, source.sidecar.as_deref())? => {
                 Servo::check_log(source)?;
                 let asked = method::of(source, None)?;

@@ -3,20 +3,16 @@
 use std::path::Path;
 
 use froude_added_mass::source::AddedMass;
-use froude_carriage::axis::source::Servo;
-use froude_carriage::drag::calibration::source::KnownWeights;
 use froude_carriage::source::Carriage;
-use froude_carriage::tuning::source::{Resonance, Tuning};
 use froude_identify::IdentifyError;
-use froude_identify::method::Method;
+use froude_identify::method::{Logs, Method};
 use froude_identify::table::Table;
-use froude_records::campaign::{self, Campaign, Input, Source};
+use froude_records::campaign::{Campaign, Input, Source};
+use froude_records::campaign_file;
 use froude_records::nearest::meant;
-use froude_records::run::is_servo_log;
 use froude_rig::carriage::declared;
 
 use crate::Error;
-use crate::pipeline::job::Purpose;
 use crate::registry::METHODS;
 use froude_cfd::verb::Computed;
 
@@ -29,7 +25,7 @@ pub(crate) type Asked = (&'static dyn Method, Vec<&'static str>);
 ///
 /// Whatever the readers find.
 pub fn read_campaign(path: &Path) -> Result<Campaign, Error> {
-    let campaign = campaign::read_campaign(path)?;
+    let campaign = campaign_file::read_campaign(path)?;
     check_sections(&campaign)?;
     Ok(campaign)
 }
@@ -41,39 +37,35 @@ pub fn read_campaign(path: &Path) -> Result<Campaign, Error> {
 /// The first mistake in them, with its place.
 pub fn check_sections(campaign: &Campaign) -> Result<(), Error> {
     for source in &campaign.sources {
-        METHODS.iter().try_for_each(|method| method.check(source))?;
-        Computed.check(source)?;
+        METHODS.iter().chain(&[&AddedMass as &dyn Method, &Computed]).try_for_each(|method| method.check(source))?;
     }
     declared(campaign)?;
     Ok(())
 }
 
-/// The methods of a source, each with the names that it is asked for; `purpose` is what is asked of a source that names none.
+/// The methods of a source, each with the names that it is asked for; `instead` is used where a source names no method.
 ///
 /// # Errors
 ///
 /// A sidecar that cannot be read; a name that no method answers to, one twice, or names of methods that read runs of two kinds, and so need two
 /// sources.
-pub(crate) fn of(source: &Source, purpose: Option<Purpose>) -> Result<Vec<Asked>, Error> {
+pub(crate) fn of(source: &Source, instead: Option<&'static dyn Method>) -> Result<Vec<Asked>, Error> {
+    if let Some((method, logs)) = of_logs(source, instead)? {
+        return of_log(source, method, &logs);
+    }
     match &source.input {
         Input::Runs { .. } if source.methods.is_empty() => {
-            let method: &dyn Method = match purpose {
-                Some(Purpose::Servo) => &Servo,
-                Some(Purpose::Calibration) => &KnownWeights,
-                Some(Purpose::Tuning) => &Tuning,
-                Some(Purpose::Resonance) => &Resonance,
-                None => &Carriage,
-            };
+            let method = instead.unwrap_or(&Carriage);
             Ok(vec![(method, method.names().to_vec())])
         }
         Input::Runs { .. } => named(source),
-        Input::Table(_) if is_of_a_servo(source, purpose)? => of_log(source),
         Input::Table(_) if !source.methods.is_empty() => Err(refused(
             source,
             0,
-            "`method` says how runs are reduced, but the source names no runs; of tables only the log of a servo takes it, whose sidecar names time, position \
-             and command"
-                .to_owned(),
+            format!(
+                "`method` says how runs are reduced, but the source names no runs; among tables it applies only to {}",
+                known_logs()
+            ),
         )),
         Input::Mesh(_) => Ok(vec![(&AddedMass, AddedMass.names().to_vec())]),
         Input::Cases(_) => Ok(vec![(&Computed, Computed.names().to_vec())]),
@@ -81,14 +73,32 @@ pub(crate) fn of(source: &Source, purpose: Option<Purpose>) -> Result<Vec<Asked>
     }
 }
 
-/// Whether a source is the log of a servo.
+/// The method whose log a table is: the one asked for, or else the one that its sidecar indicates; `None` for any other source.
 ///
 /// # Errors
 ///
 /// A sidecar that cannot be read.
-pub(crate) fn is_of_a_servo(source: &Source, purpose: Option<Purpose>) -> Result<bool, Error> {
-    let Input::Table(log) = &source.input else { return Ok(false) };
-    Ok(purpose == Some(Purpose::Servo) || is_servo_log(log, source.sidecar.as_deref())?)
+pub(crate) fn of_logs(
+    source: &Source,
+    asked: Option<&'static dyn Method>,
+) -> Result<Option<(&'static dyn Method, Logs)>, Error> {
+    let Input::Table(log) = &source.input else { return Ok(None) };
+    let with_logs = |method: &'static dyn Method| Some((method, method.logs()?));
+    if let Some(found) = asked.and_then(with_logs) {
+        return Ok(Some(found));
+    }
+    for (method, logs) in METHODS.into_iter().filter_map(with_logs) {
+        if (logs.is_one)(log, source.sidecar.as_deref())? {
+            return Ok(Some((method, logs)));
+        }
+    }
+    Ok(None)
+}
+
+/// In words: which tables are logs, and how they are recognised.
+fn known_logs() -> String {
+    let of = |logs: Logs| format!("{}, whose sidecar names {}", logs.words, logs.told_by);
+    METHODS.iter().filter_map(|method| method.logs()).map(of).collect::<Vec<_>>().join(" or ")
 }
 
 /// What is wrong with the name at `i` in `method`, with its place.
@@ -97,21 +107,21 @@ fn refused(source: &Source, i: usize, what: String) -> Error {
     Error::Identify(IdentifyError::Campaign { place, what })
 }
 
-/// The models of a servo's log: those that are named, else all that need no rig.
-fn of_log(source: &Source) -> Result<Vec<Asked>, Error> {
+/// A log by the names that its source asks for, or else by all that it allows.
+fn of_log(source: &Source, method: &'static dyn Method, logs: &Logs) -> Result<Vec<Asked>, Error> {
     let mut asked = Vec::new();
     for (i, name) in source.methods.iter().enumerate() {
-        let Some(known) = Servo::OF_LOGS.into_iter().find(|known| known == name) else {
-            let all = Servo::OF_LOGS.join(", ");
-            let advice = meant(name, Servo::OF_LOGS).unwrap_or_else(|| format!("expected {all}"));
-            return Err(refused(source, i, format!("method {name:?} is not one for the log of a servo; {advice}")));
+        let Some(known) = logs.names.iter().copied().find(|known| known == name) else {
+            let all = logs.names.join(", ");
+            let advice = meant(name, logs.names.iter().copied()).unwrap_or_else(|| format!("expected {all}"));
+            return Err(refused(source, i, format!("method {name:?} is not one for {}; {advice}", logs.words)));
         };
         if asked.contains(&known) {
             return Err(refused(source, i, format!("method {name:?} is named twice")));
         }
         asked.push(known);
     }
-    Ok(vec![(&Servo, if asked.is_empty() { Servo::OF_LOGS.to_vec() } else { asked })])
+    Ok(vec![(method, if asked.is_empty() { logs.names.to_vec() } else { asked })])
 }
 
 /// Whether a source is fitted by laws, which `models` name.
@@ -119,11 +129,11 @@ fn of_log(source: &Source) -> Result<Vec<Asked>, Error> {
 /// # Errors
 ///
 /// As [`of`].
-pub(crate) fn takes_laws(source: &Source, purpose: Option<Purpose>) -> Result<bool, Error> {
+pub(crate) fn takes_laws(source: &Source, instead: Option<&'static dyn Method>) -> Result<bool, Error> {
     if matches!(source.input, Input::Record { .. }) {
         return Ok(false);
     }
-    Ok(of(source, purpose)?.iter().any(|(method, _)| method.names() == Table.names()))
+    Ok(of(source, instead)?.iter().any(|(method, _)| method.names() == Table.names()))
 }
 
 /// The methods that a source of runs names, in the order of their first names.

@@ -6,7 +6,6 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use froude_carriage::axis::held_against;
 use froude_identify::answer::Answer;
 use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared};
 use froude_identify::data_files::DataFiles;
@@ -37,7 +36,7 @@ use crate::{Error, method, results};
 
 pub use crate::method::{check_sections, read_campaign};
 pub use crate::pipeline::job::default_out;
-pub use crate::pipeline::job::{Identified, Input, Job, Purpose};
+pub use crate::pipeline::job::{Identified, Input, Job};
 
 /// Reads, fits, chooses, compares, reports; `progress` receives each step.
 ///
@@ -63,7 +62,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Identified, Error>
         }
     }
     if !job.models.is_empty() {
-        let taken = campaign.sources.iter().map(|source| method::takes_laws(source, job.purpose));
+        let taken = campaign.sources.iter().map(|source| method::takes_laws(source, job.method));
         if !taken.collect::<Result<Vec<_>, _>>()?.contains(&true) {
             let what = "names the laws of a table of loads, and there is none here: leave it out".to_owned();
             return Err(Error::Identify(IdentifyError::Campaign { place: "--models".to_owned(), what }));
@@ -86,7 +85,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Identified, Error>
     }
     for source in campaign.sources.iter().filter(|source| source.is_validation) {
         progress(&format!("{}: validation against the fits", source.name));
-        gathered.validate(source, &campaign, job.purpose)?;
+        gathered.validate(source, &campaign, job.method)?;
     }
     origins::inherit(&campaign, &gathered.sources, &mut files)?;
     let nobodys = asked::held_by_no_law(&campaign.identify, gathered.sources.iter().flat_map(Answer::estimates));
@@ -246,7 +245,7 @@ impl Gathered {
             self.published.push((relative(path, &campaign.path), record));
             return Ok(());
         }
-        for (method, asked) in method::of(source, job.purpose)? {
+        for (method, asked) in method::of(source, job.method)? {
             let found = method.identify(campaign, source, &asked, &step)?;
             let fitted = campaign.sources.iter().filter(|source| !source.is_validation).count();
             self.add(method, found, files, source, fitted == 1)?;
@@ -303,10 +302,15 @@ impl Gathered {
     }
 
     /// Holds the recommended estimates against the rows of a source that none of them was fitted to.
-    fn validate(&mut self, source: &Source, campaign: &Campaign, purpose: Option<Purpose>) -> Result<(), Error> {
+    fn validate(
+        &mut self,
+        source: &Source,
+        campaign: &Campaign,
+        method: Option<&'static dyn Method>,
+    ) -> Result<(), Error> {
         let fitted = campaign.sources.iter().filter(|other| !other.is_validation);
         let same_file = fitted.map(|other| other.input.path()).find(|path| is_same_file(path, source.input.path()));
-        if method::is_of_a_servo(source, purpose)? {
+        if let Some((_, logs)) = method::of_logs(source, method)? {
             if let Some(path) = same_file {
                 let text = format!(
                     "{} has the SHA-256 of {}, which was fitted, so this does not validate the law: errors are smaller than on new data",
@@ -317,7 +321,7 @@ impl Gathered {
                 self.findings.push(finding.of_source(&source.name));
             }
             let all: Vec<&Estimate> = self.sources.iter().flat_map(Answer::estimates).collect();
-            let (findings, section) = held_against(source.input.path(), source.sidecar.as_deref(), &source.name, &all)?;
+            let (findings, section) = (logs.hold_against)(source, &all)?;
             self.findings.extend(findings.into_iter().map(|f| f.of_source(&source.name)));
             self.blocks.push(placed(section, &source.name));
             return Ok(());

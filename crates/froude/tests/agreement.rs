@@ -5,15 +5,18 @@
 use std::path::{Path, PathBuf};
 
 use froude::carriage::drive::{DriveJob, drive, prepare};
-use froude::carriage::tune::tune;
+use froude::carriage::tune::{find_resonance, tune};
 use froude::demo;
+use froude::identify::method::Method;
 use froude::identify::prediction;
 use froude::inspect::inspect;
 use froude::methods::added_mass::options::Asked;
 use froude::methods::added_mass::verb::{check, put_right};
-use froude::pipeline::{self, Input, Purpose, identify};
+use froude::methods::carriage::axis::source::Servo;
+use froude::methods::carriage::drag::calibration::source::KnownWeights;
+use froude::pipeline::{self, Input, identify};
 use froude::plan::plan;
-use froude::records::added_mass_options::GivenOption;
+use froude::records::given_option::GivenOption;
 use froude::report::write::{write_files, write_folder};
 use froude::rig::campaign::runner::{Operator, Progress};
 use froude::rig::campaign::stop::StopSwitch;
@@ -210,11 +213,12 @@ fn a_carriage_and_what_is_inspected() {
     of_verb("run", &[&prepared.outcome(), &driven.outcome(&prepared.folder)]);
 
     let runs = || Input::Runs { paths: vec![prepared.folder.clone()], campaign: None };
-    for purpose in [None, Some(Purpose::Servo), Some(Purpose::Calibration)] {
-        let out = Some(folder.path().join(format!("{purpose:?}")));
-        holds(&identify(&pipeline::Job { out, purpose, ..pipeline::Job::of(runs()) }, &|_| {}).unwrap().outcome());
+    for method in [None, Some(&Servo as &dyn Method), Some(&KnownWeights)] {
+        let out = Some(folder.path().join(format!("{method:?}")));
+        holds(&identify(&pipeline::Job { out, method, ..pipeline::Job::of(runs()) }, &|_| {}).unwrap().outcome());
     }
     holds(&tune(&job, &StopSwitch::default(), &mut Nobody, &mut Nobody).unwrap().outcome());
+    holds(&find_resonance(&job, &StopSwitch::default(), &mut Nobody, &mut Nobody).unwrap().outcome());
 
     let table = folder.path().join("monday.csv");
     std::fs::write(&table, ROWS).unwrap();

@@ -14,12 +14,12 @@ use froude::inspect::inspect;
 use froude::records::campaign::BodyAxis;
 use froude::records::finding::Finding;
 use froude::records::json::{read_estimates, write_estimates};
-use froude::records::parquet_table::write_parquet;
 use froude::records::run::{
     Axis, AxisSample, BodyState, CarriageFacts, CarriageSample, Direction, EventKind, Layout, Mounted, Packing,
     Recorder, Role, RunMeta, RunStatus, TOW, read_run,
 };
-use froude::records::table::{Column, read_table};
+use froude::records::table::Column;
+use froude::records::table_file::read_table;
 
 /// Flips for each kind of file.
 fn flips() -> u64 {
@@ -168,7 +168,10 @@ fn checksummed() -> PathBuf {
 fn no_flip_in_parquet_of_our_own_is_silent() {
     let folder = tempfile::tempdir().unwrap();
     let table = folder.path().join("table.parquet");
-    write_parquet(&read_table(&checksummed(), None).unwrap(), &table).unwrap();
+    froude_records::table_file::prepare_table(&read_table(&checksummed(), None).unwrap(), &table)
+        .unwrap()
+        .take_place()
+        .unwrap();
     let length = std::fs::read(&table).unwrap().len();
     assert_eq!(tally(&table, 0..length, || Ok((columns(&table)?, Vec::new()))).silent, []);
 }
@@ -199,7 +202,7 @@ fn no_flip_in_a_file_without_a_checksum_is_a_panic() {
     type Read<'a> = &'a dyn Fn(&[u8]) -> bool;
     let kinds: [(&str, &[u8], Read<'_>); 6] = [
         ("campaign", &campaign, &|b| {
-            let read = froude::records::campaign::parse_campaign(at, &text(b));
+            let read = froude::records::campaign_file::parse_campaign(at, &text(b));
             read.is_ok_and(|campaign| froude::pipeline::check_sections(&campaign).is_ok())
         }),
         ("body", &body, &|b| froude::methods::added_mass::body_file::parse_body(at, &text(b)).is_ok()),

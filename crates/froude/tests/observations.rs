@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 use froude::pipeline::{Job, identify};
-use froude::records::table::{ColumnData, Table, read_table};
+use froude::records::table::{ColumnData, Table};
+use froude::records::table_file::read_table;
 
 fn column<'a>(table: &'a Table, header: &str) -> &'a [f64] {
     let known: Vec<String> = table.columns.iter().map(froude::records::table::Column::header).collect();

@@ -82,7 +82,7 @@ fn the_comparison_error_and_its_uncertainty_are_those_of_the_standard() {
     let html = std::fs::read_to_string(found.path("report").unwrap()).unwrap();
     assert!(html.contains("Validation of computed") && html.contains("V&amp;V 20"));
     let flows = found.path("exports").filter(|path| path.ends_with("validation-computed.csv")).unwrap();
-    let table = froude::records::table::read_table(flows, None).unwrap();
+    let table = froude::records::table_file::read_table(flows, None).unwrap();
     let headers: Vec<String> = table.columns.iter().map(froude::records::table::Column::header).collect();
     assert_eq!(table.n_rows, 6);
     assert!(

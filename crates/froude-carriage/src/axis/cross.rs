@@ -6,15 +6,13 @@
 //!
 //! Source: Janot, Gautier & Brunot 2019 (the measure).
 
-use std::path::Path;
-
 use froude_identify::method::MethodError;
 use froude_records::block::{Section, TableBuilder};
+use froude_records::campaign::Source;
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 
-use super::source::Servo;
 use super::{AxisModel, force_per_volt_n_v, friction_of, read_log};
 use crate::servo::Chain;
 
@@ -27,24 +25,20 @@ struct Cross {
     other: f64,
 }
 
-/// Rigid models held against a log called `name`: a note for each in the record, and a section of the page. Estimates of other methods are left out.
+/// Rigid models held against the log of a source: a note for each in the record, and a section of the page. Estimates of other methods are left out.
 ///
 /// # Errors
 ///
 /// A log that cannot be read, has no force per volt, or moves too little for rows; no rigid model among the estimates.
-pub fn held_against(
-    path: &Path,
-    sidecar: Option<&Path>,
-    name: &str,
-    estimates: &[&Estimate],
-) -> Result<(Vec<Finding>, Section), MethodError> {
+pub(super) fn hold_against(source: &Source, estimates: &[&Estimate]) -> Result<(Vec<Finding>, Section), MethodError> {
+    let (path, sidecar, name) = (source.input.path(), source.sidecar.as_deref(), &source.name);
     let (imported, log) = read_log(path, sidecar)?;
     let rate_hz = log.rate_hz().map_err(MethodError::refused)?;
     let force_per_volt_n_v = force_per_volt_n_v(path, sidecar)?;
     let mut found = Vec::new();
     for estimate in estimates {
         let model = AxisModel::ALL.into_iter().find(|model| model.name() == estimate.method.name);
-        let Some(model) = model.filter(|model| Servo::OF_LOGS.contains(&model.name())) else { continue };
+        let Some(model) = model.filter(|model| AxisModel::OF_LOGS.contains(&model.name())) else { continue };
         let chain = Chain::of_log(force_per_volt_n_v, rate_hz, friction_of(model));
         let rows = chain.rows(&log).map_err(MethodError::refused)?;
         // Of a rig the friction may have no offset.

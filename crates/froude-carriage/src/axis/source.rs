@@ -2,15 +2,16 @@
 
 use froude_identify::IdentifyError;
 use froude_identify::answer::Made;
-use froude_identify::method::{Found, Method, MethodError, Need};
+use froude_identify::method::{Found, Logs, Method, MethodError, Need};
 use froude_identify::uncertainty::common_key;
 use froude_records::Place;
 use froude_records::campaign::{Campaign, Input, Shared, Source};
 use froude_records::estimate::OWN;
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::TOW;
+use froude_records::run::{TOW, is_servo_log};
 use froude_records::units::Dimension;
 
+use super::cross::hold_against;
 use super::page::sections;
 use super::{AxisModel, AxisModels, KINDS, force_per_volt_n_v, long, of_runs, of_table};
 use crate::runs::read;
@@ -18,6 +19,7 @@ use crate::servo::scale::{ForcePerVolt, Scale};
 use crate::source::{lacking_in, named};
 
 /// The models of an axis.
+#[derive(Debug)]
 pub struct Servo;
 
 /// Their names.
@@ -35,9 +37,6 @@ impl Servo {
     pub fn check_log(source: &Source) -> Result<(), MethodError> {
         declared_gain(source, "").map(drop)
     }
-
-    /// What a log tells that no rig is known of.
-    pub const OF_LOGS: [&'static str; 2] = [AxisModel::Symmetric.name(), AxisModel::Asymmetric.name()];
 }
 
 fn model_of(name: &str) -> Option<AxisModel> {
@@ -73,6 +72,12 @@ impl Method for Servo {
 
     fn runs(&self) -> &'static str {
         TOW
+    }
+
+    fn logs(&self) -> Option<Logs> {
+        let told_by = "time, position and command";
+        let names = &AxisModel::OF_LOGS;
+        Some(Logs { words: "the log of a servo", told_by, is_one: is_servo_log, names, hold_against })
     }
 
     fn identify(

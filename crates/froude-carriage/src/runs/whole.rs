@@ -12,7 +12,7 @@ use froude_identify::runs::files;
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
 use froude_records::read;
-use froude_records::run::{CAMPAIGN_COPY, LAST_RUN, Role, RunMeta, RunStatus, STOPPED_EARLY, read_run_meta};
+use froude_records::run::{CAMPAIGN_COPY, Role, RunMeta, RunStatus, read_run_meta};
 use froude_records::text::counted;
 use froude_rig::carriage::plan::{PlannedRun, Step, order_seed, plan};
 use froude_rig::carriage::{CarriageCampaign, DrivenCampaign};
@@ -21,6 +21,12 @@ use super::set::is_put_aside;
 
 /// Stretches of missing runs that are named.
 const MOST_NAMED: usize = 6;
+
+/// Name of the file that says why a campaign stopped before all its pairs were driven.
+pub(crate) const STOPPED_EARLY: &str = "stopped-early.txt";
+
+/// What its line with the last run begins with.
+pub(crate) const LAST_RUN: &str = "last run: ";
 
 /// Runs that lie complete in their folders.
 #[derive(Debug, Default)]

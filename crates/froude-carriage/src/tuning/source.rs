@@ -16,9 +16,11 @@ use crate::source::{file_of, files_of, named};
 use crate::tuning::bench::ConfiguredLoop;
 
 /// Gains of the position loop, with the margins that they have on the measured response.
+#[derive(Debug)]
 pub struct Tuning;
 
 /// Modes of the carriage in each state of the body.
+#[derive(Debug)]
 pub struct Resonance;
 
 const DRIVEN: &[&str] = &["position", "reference_velocity", "command"];

@@ -316,7 +316,7 @@ mod tests {
     use std::collections::BTreeSet;
     use std::path::Path;
 
-    use froude_records::campaign::parse_campaign;
+    use froude_records::campaign_file::parse_campaign;
 
     use super::*;
     use crate::section::declared;

@@ -28,8 +28,8 @@
 use std::path::PathBuf;
 
 use froude_records::RecordError;
-use froude_records::added_mass_options::GivenOption;
 use froude_records::campaign::Source;
+use froude_records::given_option::GivenOption;
 use froude_records::section::Section;
 use froude_records::section_values::{at_most, count, one_of, series};
 use froude_records::units::Dimension;
@@ -444,7 +444,7 @@ fn cubes(m: &Section<'_>) -> Result<CubeSpec, RecordError> {
 mod tests {
     use std::path::Path;
 
-    use froude_records::campaign::parse_campaign;
+    use froude_records::campaign_file::parse_campaign;
 
     use super::*;
 

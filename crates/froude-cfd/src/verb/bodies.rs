@@ -15,7 +15,8 @@ use froude_mesh::plausible::{LARGEST_M, too_large};
 use froude_mesh::vector::dot;
 use froude_records::table::links_of_configuration;
 
-use super::{Asked, VerbError};
+use super::asked::Asked;
+use super::error::VerbError;
 
 /// Most links of a body: as many modules as a robot file has.
 const MOST_LINKS: u32 = 1_000;

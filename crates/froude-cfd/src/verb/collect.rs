@@ -9,14 +9,16 @@ use froude_records::block::{Block, ResultColumn, ResultTable, Section, TableBuil
 use froude_records::csv_table::csv_bytes;
 use froude_records::manifest::take_own_place;
 use froude_records::number::significant;
-use froude_records::outcome::Outcome;
 use froude_records::read;
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration};
 use froude_records::text::counted;
 use froude_records::units::{Dimension, Unit, parse_unit};
 use froude_records::write::Prepared;
 
-use super::{Asked, VerbError, findings, numerical};
+use super::asked::Asked;
+use super::error::VerbError;
+use super::loads::{LOADS, loads_of, unit};
+use super::numerical;
 use crate::again::Again;
 use crate::case::Model;
 use crate::collect::{Collected as Row, collect as results};
@@ -26,10 +28,6 @@ use crate::outcome::Status;
 use crate::store::Store;
 use crate::wall::{MeshQuality, std_of_wall};
 
-/// Loads in the order of [`Loads`].
-pub(super) const LOADS: [&str; 6] = ["f_x", "f_y", "f_z", "m_x", "m_y", "m_z"];
-/// Those that half a domain determines; the others are zero by its symmetry.
-const OF_HALF: [usize; 3] = [0, 1, 5];
 /// Name of the table.
 const TABLE: &str = "observations.csv";
 /// Of a table that is compared with the new one.
@@ -65,17 +63,7 @@ struct Pair {
     second: Row,
 }
 
-/// Collects a campaign and writes its table.
-///
-/// # Errors
-///
-/// As the campaign is read; no case has a result that counts; the table cannot be written.
-pub fn collect(campaign: &Path, source: Option<&str>) -> Result<Outcome, VerbError> {
-    let found = collected(campaign, source)?;
-    Ok(Outcome { blocks: found.blocks(), findings: Some(findings::of_collected(&found)), ..Outcome::default() })
-}
-
-/// The same, not yet said.
+/// Collects a campaign and writes its table; the caller reports it.
 pub(super) fn collected(campaign: &Path, source: Option<&str>) -> Result<Collected, VerbError> {
     let asked = Asked::read(campaign, source)?;
     of_folder(&asked.folder, &asked.spec, Some(&asked.inputs_sha256()), || Ok(()))
@@ -146,16 +134,6 @@ fn paired(all: Vec<Row>) -> (Vec<Row>, Vec<Pair>) {
     }
     rows.sort_by(|a, b| a.case.id.cmp(&b.case.id));
     (rows, pairs)
-}
-
-/// Loads that a domain determines, by their places.
-pub(super) fn loads_of(is_half: bool) -> Vec<usize> {
-    if is_half { OF_HALF.to_vec() } else { (0..LOADS.len()).collect() }
-}
-
-/// Of a load.
-pub(super) fn unit(load: usize) -> &'static str {
-    if load < 3 { "N" } else { "N m" }
 }
 
 fn table(rows: &[Row], numerical: &Numerical, path: &Path) -> Table {

@@ -19,10 +19,14 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::output::inside;
 use froude_records::table::Table;
 
-use super::collect::{Collected, LOADS, of_folder};
-use super::{Asked, findings};
+use super::asked::Asked;
+use super::collect::{Collected, of_folder};
+use super::error::VerbError;
+use super::findings;
+use super::loads::LOADS;
 
 /// The cases of a CFD campaign.
+#[derive(Debug)]
 pub struct Computed;
 
 impl Method for Computed {
@@ -59,7 +63,7 @@ impl Method for Computed {
         let all = || std::iter::once(source).chain(&campaign.sources);
         let spec = all().find(of_cases).map(declared).transpose()?.flatten().unwrap_or_default();
         let may_write = || inside(&campaign.path, source.input.path(), &source.place, "cases", "froude identify");
-        let input = |e: super::VerbError| MethodError::input(source.input.path(), e.to_string());
+        let input = |e: VerbError| MethodError::input(source.input.path(), e.to_string());
         let planned = all().find(|other| of_cases(other) && !other.plan.is_empty());
         // A campaign that can no longer be planned is not the one that was planned.
         let inputs_sha256 = planned.map(|other| {

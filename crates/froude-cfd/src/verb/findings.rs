@@ -10,8 +10,9 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number::{count, percent, significant};
 use froude_records::text::counted;
 
+use super::asked::OUTDATED;
 use super::collect::Collected;
-use super::{OUTDATED, numerical};
+use super::numerical;
 
 /// Difference of repeats, of ½ρU²A, from which it is a warning: as the largest drift that a case may end with.
 const APART: f64 = 0.01;

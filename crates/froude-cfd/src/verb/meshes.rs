@@ -19,8 +19,11 @@ use crate::wall::{MIN_COVERAGE, MeshQuality, WallLayers};
 use froude_hydro::similarity::blockage;
 use froude_mesh::sections::SectionBody;
 
-use super::{Asked, MESHES, VerbError};
+use super::asked::Asked;
+use super::error::VerbError;
 
+/// Folder of the meshes in that of a campaign's cases.
+pub(super) const MESHES: &str = "meshes";
 /// Angles this close are one, as in the run matrix.
 const SAME_RAD: f64 = 1e-9;
 

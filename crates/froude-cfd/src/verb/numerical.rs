@@ -5,7 +5,7 @@ use froude_records::number::{count, percent, significant};
 use froude_records::page::{Chart, ChartPanel, Mark, Series};
 use froude_records::text::counted;
 
-use super::collect::{LOADS, loads_of, unit};
+use super::loads::{LOADS, loads_of, unit};
 use crate::case::{Case, Flow};
 use crate::collect::Collected as Row;
 use crate::family::refinement_ratio;

@@ -10,8 +10,10 @@ use froude_records::number::{bytes, count, duration, percent, significant};
 use froude_records::outcome::Outcome;
 use froude_records::text::counted;
 
+use super::asked::Asked;
+use super::bodies;
+use super::error::VerbError;
 use super::meshes::{Group, Ready, of_body};
-use super::{Asked, VerbError, bodies};
 use crate::again::Again;
 use crate::case::{Case, LAMINAR_REYNOLDS, Water};
 use crate::change::{Change, plan as plan_cases};

@@ -6,60 +6,34 @@
 //! | `forces` | forces against angle and speed |
 //! | `meshes` | quality of the meshes, and y+ |
 //! | `pictures` | pressure on the surface, and the wake |
+//! | `solved` | cases that have a result |
 
 mod convergence;
 mod forces;
 mod meshes;
 mod pictures;
+mod solved;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use froude_records::block::{Block, ResultColumn, Section, TableBuilder};
 use froude_records::outcome::{Content, Head, Outcome, OutputFile};
+use froude_records::page::Field;
 use froude_records::text::counted;
 
 use self::convergence::Convergence;
 use self::pictures::Pictures;
+use self::solved::Solved;
+use super::asked::Asked;
+use super::error::VerbError;
 use super::status::of_store;
-use super::{Asked, VerbError};
-use crate::again::Again;
 use crate::case::Case;
-use crate::outcome::Outcome as Ended;
-use crate::result::attempt_folder;
-use crate::store::{State, Store};
+use crate::store::Store;
 
 /// Cases that failed or diverged whose convergence is shown.
 const MOST_TROUBLED: usize = 12;
 /// Angles whose flows are shown where none are named, rad.
 const TELLING_RAD: [f64; 3] = [0.0, std::f64::consts::FRAC_PI_4, std::f64::consts::FRAC_PI_2];
-
-/// A case that has a result.
-#[derive(Debug, Clone)]
-struct Solved {
-    case: Case,
-    outcome: Ended,
-    /// Where it was solved.
-    folder: PathBuf,
-    mesh: PathBuf,
-}
-
-impl Solved {
-    fn of(store: &Store, id: &str) -> Result<Option<Self>, VerbError> {
-        let State::Done(attempted) = store.state(id) else { return Ok(None) };
-        let case = store.case(id)?;
-        Ok(Some(Self {
-            folder: attempt_folder(&store.case_folder(id), attempted.attempt),
-            mesh: store.mesh_folder(&case),
-            outcome: attempted.outcome,
-            case,
-        }))
-    }
-
-    /// Whether it computes another again, and enters no fit.
-    fn is_repeat(&self) -> bool {
-        Again::of(&self.case.id).is_some()
-    }
-}
 
 /// What is shown of a case.
 #[derive(Debug)]
@@ -84,6 +58,42 @@ impl Shown {
             convergence: Convergence::of(solved),
             pictures: has_pictures.then(|| Pictures::of(solved)),
         }
+    }
+
+    /// Columns from the histories of cases.
+    fn convergence_columns(t: &TableBuilder<'_, Self>) -> Vec<ResultColumn> {
+        let window = |s: &Shown| s.convergence.as_ref().ok()?.window;
+        let first = |s: &Shown| {
+            let found = s.convergence.as_ref().ok()?;
+            Some(found.first(found.window.as_ref()?))
+        };
+        vec![
+            t.number("convergence/window/first", "judged from", first).plain(9),
+            t.number("convergence/last", "to", |s| s.convergence.as_ref().ok().map(|c| c.last)).plain(9),
+            t.count("convergence/window/iterations", "", |s| window(s).map(|w| w.length)),
+            t.numbers("convergence/window/mean", "", |s| window(s).map(|w| w.mean.to_vec())),
+            t.numbers("convergence/window/drift", "", |s| window(s).map(|w| w.drift.to_vec())),
+            t.numbers("convergence/window/spread", "", |s| window(s).map(|w| w.spread.to_vec())),
+            t.text("convergence/problem", "", |s| s.convergence.as_ref().err().cloned()),
+        ]
+    }
+
+    /// Columns from the pictures of cases.
+    fn picture_columns(t: &TableBuilder<'_, Self>) -> Vec<ResultColumn> {
+        fn of(shown: &Shown) -> Option<&Pictures> {
+            shown.pictures.as_ref()?.as_ref().ok()
+        }
+        let file = |field: &Field| format!("figures/{}.svg", field.name);
+        vec![
+            t.number("pictures/iteration", "", |s| of(s).map(|p| p.time)),
+            t.interval("pictures/pressure_coefficient", "C_p", |s| of(s).map(|p| p.pressure_coefficient)).range(),
+            t.numbers("pictures/pressure_force_n", "", |s| of(s).map(|p| p.pressure_force_n.to_vec())),
+            t.number("pictures/largest_speed_ratio", "largest |U|/U", |s| of(s).map(|p| p.largest_speed_ratio))
+                .places(2),
+            t.text("pictures/surface", "", |s| of(s).map(|p| file(&p.surface))),
+            t.text("pictures/wake", "", |s| of(s).map(|p| file(&p.wake))),
+            t.text("pictures/problem", "", |s| s.pictures.as_ref()?.as_ref().err().cloned()),
+        ]
     }
 }
 
@@ -218,8 +228,8 @@ fn cases(shown: &[Shown], unshown: usize) -> Vec<Block> {
         t.count("iterations", "iterations", |s| s.iterations),
         t.text("reason", "reason", |s| s.reason.clone()),
     ];
-    columns.extend(Convergence::columns(&t));
-    columns.extend(Pictures::columns(&t));
+    columns.extend(Shown::convergence_columns(&t));
+    columns.extend(Shown::picture_columns(&t));
     let mut out = vec![t.build(columns).into()];
     if unshown > 0 {
         let more = counted(unshown, "more case", "more cases");

@@ -11,7 +11,7 @@ use froude_records::number::duration;
 use froude_records::outcome::{Exit, Outcome};
 use froude_records::text::counted;
 
-use super::VerbError;
+use super::error::VerbError;
 use super::plan::planned;
 use crate::engine::slurm;
 pub use crate::engine::slurm::SlurmOptions;

@@ -7,7 +7,8 @@ use froude_records::number::{bytes, duration, significant};
 use froude_records::outcome::Outcome;
 use froude_records::text::counted;
 
-use super::{Asked, OUTDATED, VerbError};
+use super::asked::{Asked, OUTDATED};
+use super::error::VerbError;
 use crate::status::{CampaignStatus, Row, Standing};
 use crate::store::Store;
 

@@ -5,8 +5,10 @@ use std::path::Path;
 use froude_records::block::{Block, TableBuilder, facts};
 use froude_records::outcome::Outcome;
 
-use super::collect::{LOADS, collected};
-use super::{Asked, VerbError};
+use super::asked::Asked;
+use super::collect::collected;
+use super::error::VerbError;
+use super::loads::LOADS;
 use crate::store::Store;
 use crate::suggest::{Miss, misses, suggested};
 

@@ -1,6 +1,6 @@
 //! What two estimates say that cannot both be so, or that is not tied to one axis, one density, one constant.
 
-use froude_records::estimate::{Estimate, Status};
+use froude_records::estimate::{CHAIN, Estimate, Status};
 use froude_records::finding::{Finding, Severity};
 
 use super::independence::is_one_source;
@@ -92,7 +92,7 @@ pub(super) fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
 
 /// Forces of a carriage, which has no axis of the body, beside those in body axes.
 pub(super) fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
-    let (chain, body) = match [a, b].map(|e| e.frame.is_chain()) {
+    let (chain, body) = match [a, b].map(|e| e.frame.name == CHAIN) {
         [true, false] => (a, b),
         [false, true] => (b, a),
         _ => return None,

@@ -27,6 +27,11 @@ fn is_observed(estimate: &Estimate, data: &DataFile) -> bool {
         )
 }
 
+/// The files that the observations of an estimate came from.
+pub(crate) fn data_of<'a>(file: &'a EstimateFile, estimate: &'a Estimate) -> impl Iterator<Item = &'a DataFile> {
+    estimate.data.iter().filter_map(|key| file.data.get(key))
+}
+
 /// Fingerprints of the observations of an estimate among files.
 fn fingerprints<'a>(estimate: &Estimate, files: impl Iterator<Item = &'a DataFile>) -> BTreeSet<&'a str> {
     files.filter(|data| is_observed(estimate, data)).map(|data| data.sha256.as_str()).collect()
@@ -35,7 +40,7 @@ fn fingerprints<'a>(estimate: &Estimate, files: impl Iterator<Item = &'a DataFil
 /// The files that hold observations of an estimate; of an old record, which does not say whose they are, all of them.
 #[must_use]
 pub fn observations<'a>(file: &'a EstimateFile, estimate: &'a Estimate) -> Vec<&'a DataFile> {
-    let own: Vec<_> = file.data_of(estimate).filter(|data| is_observed(estimate, data)).collect();
+    let own: Vec<_> = data_of(file, estimate).filter(|data| is_observed(estimate, data)).collect();
     if own.is_empty() { file.data.values().filter(|data| is_observed(estimate, data)).collect() } else { own }
 }
 
@@ -54,7 +59,7 @@ pub(super) struct Origin<'a> {
 /// The origin of each estimate.
 pub(super) fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
     let of = |n: &Named<'a>| {
-        let own = fingerprints(n.estimate, n.record.data_of(n.estimate));
+        let own = fingerprints(n.estimate, data_of(n.record, n.estimate));
         // What is behind a known coefficient or a tare is an error with a key of its own.
         let has_prior = n.estimate.coefficients.values().any(|c| c.status == Status::Prior);
         let is_inherited = |data: &&DataFile| has_prior && data.role.as_deref() == Some(INHERITED);

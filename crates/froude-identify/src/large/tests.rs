@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use froude_records::campaign::{Campaign, read_campaign};
-use froude_records::parquet_table::write_parquet;
-use froude_records::table::read_table;
+use froude_records::campaign::Campaign;
+use froude_records::campaign_file::read_campaign;
+use froude_records::table_file::read_table;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use serde_json::Value;
@@ -214,7 +214,10 @@ fn a_parquet_table_gives_what_the_csv_gives() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = written(folder.path(), "table = \"record.csv\"", "models = [\"linear_quadratic\"]");
     let parquet = folder.path().join("record.parquet");
-    write_parquet(&read_table(&folder.path().join("record.csv"), None).unwrap(), &parquet).unwrap();
+    froude_records::table_file::prepare_table(&read_table(&folder.path().join("record.csv"), None).unwrap(), &parquet)
+        .unwrap()
+        .take_place()
+        .unwrap();
     let of = |path: PathBuf| {
         let mut campaign = campaign.clone();
         campaign.sources[0].input = froude_records::campaign::Input::Table(path);

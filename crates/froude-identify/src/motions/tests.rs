@@ -122,7 +122,7 @@ fn a_channel_of_the_law_that_differs_keeps_motions_apart() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("t.csv"), "v_x [m/s],rate [1/s],f_x [N]\n1,2,3\n").unwrap();
     std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
-    let campaign = froude_records::campaign::read_campaign(&folder.path().join("c.toml")).unwrap();
+    let campaign = froude_records::campaign_file::read_campaign(&folder.path().join("c.toml")).unwrap();
     let mut data = logged(&twice(&[0.2, 0.3, 0.4].map(|a| [1.0, a, 0.2, 0.0])), NOISE);
     let rate = (0..data.rows).map(|i| 4.0 + (i / 400) as f64).collect();
     data.put("rate", rate, Dimension::ANGULAR_SPEED);

@@ -1,8 +1,8 @@
 //! What a fit came to, for the reader of a terminal; a program reads the record.
 
 use froude_records::block::{Block, TableBuilder};
+use froude_records::estimate::words;
 use froude_records::estimate::{Coefficient, Estimate, Status};
-use froude_records::number;
 use froude_records::text::counted;
 
 use crate::answer::Answer;
@@ -51,7 +51,7 @@ fn coefficients(estimate: &Estimate) -> Block {
     let interval = if has_others { "95 % interval if law is true" } else { "95 % interval" };
     let mut columns = vec![
         t.text("", "coefficient", |(name, _)| (*name).clone()).symbol(),
-        t.text("", "value", |(_, c)| number::coefficient(c)),
+        t.text("", "value", |(_, c)| words::coefficient(c)),
         t.text("", "unit", |(_, c)| c.unit.clone()),
         t.interval("", interval, |(_, c)| c.interval_95),
     ];

@@ -23,7 +23,7 @@ use froude_records::campaign::{BudgetEntry, Shared, SourceKind};
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
-use crate::regression::fitted::{Scatter, Settings};
+use crate::regression::settings::{Scatter, Settings};
 use crate::uncertainty::{Linearised, direction, groups};
 
 /// Rows of all loads together up to which it is done: matrices over all of them are kept.

@@ -10,9 +10,9 @@ use froude_records::number::p_equation;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw};
-use crate::regression::fitted::{Scatter, Settings};
 use crate::regression::known;
 use crate::regression::problem::step;
+use crate::regression::settings::{Scatter, Settings};
 use crate::uncertainty::{Linearised, contributions, scatter};
 
 /// Violation of a constraint, relative to the coefficients, that counts as none.

@@ -6,8 +6,8 @@ use froude_records::finding::{Finding, Severity};
 use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw, Kind};
-use crate::regression::fitted::Settings;
 use crate::regression::problem::{Offsets, logarithms, problem, start, step, weights};
+use crate::regression::settings::Settings;
 
 /// Iterations of the non-linear parts (power law, angle offset); both converge quadratically.
 const MOST_ITERATIONS: usize = 50;

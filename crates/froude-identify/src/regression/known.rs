@@ -11,7 +11,7 @@ use froude_fit::faer::Mat;
 use froude_records::campaign::{Identify, PriorSpec};
 
 use crate::law::ForceLaw;
-use crate::regression::fitted::Settings;
+use crate::regression::settings::Settings;
 
 /// A line of the budget for each set of known coefficients that are correlated, as far as the law has any of it.
 pub(crate) fn parts(law: &ForceLaw, settings: Settings<'_>, problem: &fit::Problem, fitted: &fit::Fit) -> Vec<Part> {

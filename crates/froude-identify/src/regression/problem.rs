@@ -7,7 +7,7 @@ use froude_records::texts::Texts;
 use crate::dataset::{Dataset, distinct, labels};
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw};
-use crate::regression::fitted::{Settings, Weight};
+use crate::regression::settings::{Settings, Weight};
 
 /// Logarithms of the loads, for the error model "every point has the same relative error".
 pub(crate) fn logarithms(

@@ -10,10 +10,10 @@ use crate::dataset::{Dataset, GroupedBy, labels};
 use crate::eiv;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
-use crate::regression::fitted::{Scatter, Settings};
 use crate::regression::known;
 use crate::regression::problem::step;
 use crate::regression::runs::between_runs;
+use crate::regression::settings::{Scatter, Settings};
 use crate::uncertainty::{Linearised, contributions, scatter};
 
 /// Type A and type B of all coefficients of a fit.

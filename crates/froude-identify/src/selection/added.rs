@@ -267,7 +267,7 @@ fn beside(law: &ModelFit, other: &ModelFit, load: &str, data: &Dataset) -> Optio
 mod tests {
     use std::fmt::Write as _;
 
-    use froude_records::campaign::read_campaign;
+    use froude_records::campaign_file::read_campaign;
     use froude_records::comparison::AddedTerms;
     use rand_distr::{Distribution, StandardNormal};
     use rand_pcg::Pcg64;

@@ -5,9 +5,10 @@
 use std::path::{Component, Path, PathBuf};
 
 use froude_records::RecordError;
-use froude_records::campaign::{Campaign, Input, Source, read_campaign};
+use froude_records::campaign::{Campaign, Input, Source};
+use froude_records::campaign_file::read_campaign;
 use froude_records::manifest::{may_replace, take_own_place};
-use froude_records::table::prepare_table;
+use froude_records::table_file::prepare_table;
 
 use super::{observations, table};
 use crate::error::IdentifyError;

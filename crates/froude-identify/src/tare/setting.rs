@@ -1,6 +1,6 @@
 //! A tare in another setting than its own: another fluid, other speeds or angles, the other way; or one whose own record reports errors.
 
-use froude_records::estimate::{Estimate, EstimateFile, Range};
+use froude_records::estimate::{CHAIN, Estimate, EstimateFile, Range};
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
@@ -69,7 +69,7 @@ impl Use<'_> {
 
     /// The drag of a carriage is along its chain, and subtracted along x.
     pub fn along_the_chain(&self) -> Option<Finding> {
-        (self.estimate.frame.is_chain()).then(|| {
+        (self.estimate.frame.name == CHAIN).then(|| {
             let text = format!(
                 "the tare {} is along the chain of its carriage and is subtracted from f_x: that is right only where x was along the travel",
                 self.estimate.id

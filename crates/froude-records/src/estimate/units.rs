@@ -17,7 +17,7 @@ use froude_hydro::DragModel;
 use indexmap::IndexMap;
 
 use super::{Coefficient, Derived, Estimate, EstimateFile, Measured, Range, RunScatter};
-use crate::table::known_dimension;
+use crate::known_columns::known_dimension;
 use crate::units::{Dimension, Unit, parse_unit};
 
 /// A unit that is rejected, and where it stands.
@@ -109,7 +109,9 @@ fn estimate_to_si(e: &mut Estimate) -> Result<(), BadUnit> {
         Field { path: &["law", "outputs", name], expected: known_dimension(name) }.si(&output.unit)?;
     }
     for (name, m) in &mut e.law.constants {
-        measured(m, &Field { path: &["law", "constants", name], expected: of_constant(name) })?;
+        // A user's own constants have any dimension.
+        let expected = matches!(name.as_str(), "v_ref" | "U_ref" | "epsilon").then_some(Dimension::SPEED);
+        measured(m, &Field { path: &["law", "constants", name], expected })?;
     }
     for (name, m) in &mut e.refers_to {
         measured(m, &Field { path: &["refers_to", name], expected: of_reference(name) })?;
@@ -203,11 +205,6 @@ fn differences<const N: usize>(unit: &Unit, all: [&mut Option<f64>; N]) {
 
 fn ends(unit: &Unit, interval: &mut Option<[f64; 2]>) {
     interval.iter_mut().flatten().for_each(|x| *x = unit.to_si(*x));
-}
-
-/// Dimension of a constant that laws read; a user's own constants have any.
-fn of_constant(name: &str) -> Option<Dimension> {
-    matches!(name, "v_ref" | "U_ref" | "epsilon").then_some(Dimension::SPEED)
 }
 
 /// Dimension of what coefficients refer to.

@@ -19,7 +19,7 @@ use crate::units::Dimension;
 /// A skew beyond this is of no two clocks.
 const MOST_SKEW: f64 = 0.1;
 
-/// How the stamps of a clock become times of the log.
+/// How a stamp t of a clock becomes a time of the log: t + offset + skew (t − origin).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clock {
     /// What is added to its stamps at the origin, s.
@@ -32,14 +32,6 @@ pub struct Clock {
     pub standard_s: f64,
     /// How it was found.
     pub found: String,
-}
-
-impl Clock {
-    /// The time of the log at a stamp, s.
-    #[must_use]
-    pub fn log_time_s(&self, stamp_s: f64) -> f64 {
-        stamp_s + self.offset_s + self.skew * (stamp_s - self.origin_s)
-    }
 }
 
 /// Whether a name is that of the log's own clock.

@@ -2,9 +2,9 @@
 
 use crate::run::channel::Meaning;
 use crate::run::declarations::{Declarations, Stated};
-use crate::run::meta::Declared;
+use crate::run::declared::Declared;
 use crate::run::sensor::Filter;
-use crate::run::sidecar::{key_word, quoted};
+use crate::toml_text::{key_word, quoted};
 use crate::units::{Unit, parse_unit};
 
 /// Sections whose values are written as they are.

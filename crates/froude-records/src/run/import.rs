@@ -20,61 +20,40 @@ use std::path::Path;
 use indexmap::IndexMap;
 
 use crate::error::{Place, RecordError};
-use crate::estimate::Measured;
 use crate::finding::{Finding, Severity};
+use crate::measured::Measured;
 use crate::raw_column::TWICE;
 use crate::run::channel::{LOG, Meaning};
 use crate::run::declarations::{Declarations, Told};
-use crate::run::extremes::Extremes;
 use crate::run::layout::AXIS;
-use crate::run::log::{Channel, Gap, GapCause, RunLog};
+use crate::run::log::{Channel, Gap, GapCause, RunLog, median};
 use crate::run::meta::{Role, RunMeta, RunStatus};
-use crate::run::step::Step;
-use crate::run::ticks::{Ticks, median};
 use crate::sidecar::{Mapping, Sidecar, read_sidecar};
-use crate::table::{ColumnData, Table, sidecar_of};
+use crate::table::{ColumnData, Table};
 use crate::table_file::read_table;
+use crate::table_file::sidecar_of;
 use crate::text::counted;
 use crate::units::{Dimension, Unit};
 
 /// Steps that differ less than this from their median, relative to it, are even but for the clock's resolution.
-pub(crate) const EVEN: f64 = 0.01;
+pub const EVEN: f64 = 0.01;
 
 /// A step longer than this many medians has ticks missing in it.
-pub(crate) const GAP: f64 = 1.5;
+pub const GAP: f64 = 1.5;
 
 /// A log that was imported, with what was found in it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImportedRun {
-    /// Its sidecar, where it has one.
-    pub sidecar: Option<Sidecar>,
     /// The run; its gaps are where ticks are missing.
     pub log: RunLog,
     /// How even its time steps are.
     pub steps: TimeSteps,
-    /// What was done to a log that is too long to be held; `None` of one that is as it was recorded.
-    pub averaged: Option<Averaged>,
-    /// Extremes, as they were recorded, of the channels whose samples are others: means, or readings moved to other times.
-    pub recorded: IndexMap<String, Extremes>,
     /// What a reader should know.
     pub findings: Vec<Finding>,
     /// What its sidecar declares of the channels, by the channel's name.
     pub told: IndexMap<String, Told>,
     /// What it declares of the data beside them.
     pub declared: Declarations,
-    /// What was done to the data, in order.
-    pub done: Vec<Step>,
-}
-
-/// A log whose rows are means of the rows recorded; its time steps and gaps are those of the rows recorded.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Averaged {
-    /// Rows recorded.
-    pub rows: usize,
-    /// Rows in a block.
-    pub block_rows: usize,
-    /// Rows of blocks that a gap or the end of the log cut, which are left out.
-    pub left_out: usize,
 }
 
 /// Steps between ticks, s.
@@ -120,33 +99,17 @@ pub fn import_run(path: &Path, sidecar: Option<&Path>) -> Result<ImportedRun, Re
 /// As [`import_run`].
 pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<ImportedRun, RecordError> {
     let time_s = times(table)?;
-    let steps = steps(&time_s);
+    let steps = TimeSteps::of(&time_s);
     let lost = gaps(&time_s, steps);
-    run(table, sidecar, time_s, steps, lost)
+    run_of(table, sidecar, time_s, steps, lost)
 }
 
-/// A table of means, and what was recorded of it.
+/// A run of a table whose times, steps and gaps are known.
 ///
 /// # Errors
 ///
-/// As [`import_run`], and what `Ticks::finish` refuses.
-pub fn run_of_means(
-    table: &Table,
-    sidecar: Option<&Sidecar>,
-    ticks: Ticks,
-    averaged: Averaged,
-    extremes: IndexMap<String, Extremes>,
-) -> Result<ImportedRun, RecordError> {
-    let time_s = times(table)?;
-    let (steps, lost) = ticks.finish(&table.path)?;
-    let mut out = run(table, sidecar, time_s, steps, lost)?;
-    out.log.meta.log_rate_hz /= averaged.block_rows as f64;
-    out.recorded = extremes.into_iter().map(|(name, extremes)| (channel_name(&name), extremes)).collect();
-    out.averaged = Some(averaged);
-    Ok(out)
-}
-
-fn run(
+/// Two columns that are one channel.
+pub fn run_of(
     table: &Table,
     sidecar: Option<&Sidecar>,
     time_s: Vec<f64>,
@@ -189,8 +152,7 @@ fn run(
     let findings = vec![finding(table, steps, &lost)];
     let log = RunLog { path: table.path.clone(), time_s, channels, lost, meta, ..RunLog::default() };
     let declared = sidecar.map(|s| s.run.declared.clone()).unwrap_or_default();
-    let sidecar = sidecar.cloned();
-    Ok(ImportedRun { sidecar, log, steps, findings, told, declared, ..ImportedRun::default() })
+    Ok(ImportedRun { log, steps, findings, told, declared })
 }
 
 impl Mapping {
@@ -209,12 +171,18 @@ impl Mapping {
     }
 }
 
-fn channel_name(name: &str) -> String {
+/// The channel that a column becomes.
+#[must_use]
+pub fn channel_name(name: &str) -> String {
     if AXIS.iter().any(|(of_axis, ..)| *of_axis == name) { format!("y/{name}") } else { name.to_owned() }
 }
 
 /// The time column, two ticks at least, increasing.
-fn times(table: &Table) -> Result<Vec<f64>, RecordError> {
+///
+/// # Errors
+///
+/// No time column, fewer than two ticks, or times that do not increase.
+pub fn times(table: &Table) -> Result<Vec<f64>, RecordError> {
     let time_s = time_column(table)?;
     if time_s.len() < 2 {
         let problem = "has one value; a log needs two ticks at least".to_owned();
@@ -227,7 +195,11 @@ fn times(table: &Table) -> Result<Vec<f64>, RecordError> {
 }
 
 /// The times of a table, s.
-pub(crate) fn time_column(table: &Table) -> Result<&[f64], RecordError> {
+///
+/// # Errors
+///
+/// No such column, or one of another dimension.
+pub fn time_column(table: &Table) -> Result<&[f64], RecordError> {
     if !table.columns.iter().any(|column| column.name == "time") {
         let advice = "a log needs its times: head the column `time [s]`, or map it with { name = \"time\", unit = \"s\" } in the sidecar";
         return Err(RecordError::unknown_column(Place::whole(&table.path), "time", advice));
@@ -235,17 +207,23 @@ pub(crate) fn time_column(table: &Table) -> Result<&[f64], RecordError> {
     table.number("time", Dimension::TIME)
 }
 
-pub(crate) fn not_increasing(place: Place, before: f64, now: f64) -> RecordError {
+/// The error for times that go back or stand still.
+#[must_use]
+pub fn not_increasing(place: Place, before: f64, now: f64) -> RecordError {
     let problem = format!("is {now} s after {before} s; it must increase: sort the rows, or delete doubled ones");
     RecordError::value(place, "time", problem)
 }
 
-pub(super) fn steps(time_s: &[f64]) -> TimeSteps {
-    let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
-    let median_s = median(&mut steps).unwrap_or(f64::NAN);
-    let (shortest_s, longest_s) =
-        steps.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), step| (low.min(*step), high.max(*step)));
-    TimeSteps { median_s, shortest_s, longest_s }
+impl TimeSteps {
+    /// The steps between increasing times.
+    #[must_use]
+    pub fn of(time_s: &[f64]) -> Self {
+        let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
+        let median_s = median(&mut steps).unwrap_or(f64::NAN);
+        let (shortest_s, longest_s) =
+            steps.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), step| (low.min(*step), high.max(*step)));
+        Self { median_s, shortest_s, longest_s }
+    }
 }
 
 /// Where a step is so long that ticks are missing in it.
@@ -254,19 +232,20 @@ fn gaps(time_s: &[f64], steps: TimeSteps) -> Vec<Gap> {
     long.map(|w| gap(w[0], w[1], steps.median_s)).collect()
 }
 
-pub(crate) fn gap(from_s: f64, to_s: f64, step_s: f64) -> Gap {
+/// Ticks that are missing between two times.
+#[must_use]
+pub fn gap(from_s: f64, to_s: f64, step_s: f64) -> Gap {
     let ticks = ((to_s - from_s) / step_s).round() as u64 - 1;
     Gap {
         from_s: Some(from_s),
         to_s: Some(to_s),
         ticks: Some(ticks),
         cause: GapCause::Link,
-        text: format!("{} missing between {from_s} s and {to_s} s of the log", ticks_are(ticks)),
+        text: format!(
+            "{} missing between {from_s} s and {to_s} s of the log",
+            counted(ticks as usize, "tick is", "ticks are")
+        ),
     }
-}
-
-fn ticks_are(n: u64) -> String {
-    counted(n as usize, "tick is", "ticks are")
 }
 
 fn finding(table: &Table, steps: TimeSteps, lost: &[Gap]) -> Finding {
@@ -282,7 +261,7 @@ fn finding(table: &Table, steps: TimeSteps, lost: &[Gap]) -> Finding {
         let ticks: u64 = lost.iter().filter_map(|gap| gap.ticks).sum();
         let text = format!(
             "{numbers}: {} missing in {}; filters must not run across them",
-            ticks_are(ticks),
+            counted(ticks as usize, "tick is", "ticks are"),
             counted(lost.len(), "gap", "gaps")
         );
         (Severity::Warning, "time-gaps", text)

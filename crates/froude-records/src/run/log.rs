@@ -10,7 +10,6 @@ use crate::nearest::suggestion;
 use crate::run::channel::Meaning;
 use crate::run::doubt::Doubt;
 use crate::run::meta::RunMeta;
-use crate::run::ticks::median;
 use crate::units::{Dimension, parse_unit};
 
 /// A whole run.
@@ -219,4 +218,10 @@ impl RunLog {
     pub fn lost_ticks(&self) -> u64 {
         self.lost.iter().filter_map(|gap| gap.ticks).sum()
     }
+}
+
+/// The middle one, in the order of size; `None` of none.
+pub fn median(steps: &mut [f64]) -> Option<f64> {
+    let middle = steps.len() / 2;
+    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

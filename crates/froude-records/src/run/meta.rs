@@ -3,10 +3,11 @@
 use indexmap::IndexMap;
 
 use crate::body_axis::BodyAxis;
-use crate::estimate::Measured;
 use crate::hash::Fingerprint;
+use crate::measured::Measured;
 use crate::run::channel::Meaning;
 use crate::run::declarations::{Declarations, Stated};
+use crate::run::declared::Declared;
 
 /// What a run is, on which rig, and how it ended.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -299,29 +300,6 @@ impl RunStatus {
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize]
-    }
-}
-
-/// A declared constant with its standard uncertainty, both in SI.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Declared {
-    /// The value.
-    pub value: f64,
-    /// Its standard uncertainty; 0 for what is exact by construction (teeth, lines).
-    pub standard_uncertainty: f64,
-}
-
-impl Declared {
-    /// A value and its standard uncertainty, SI.
-    #[must_use]
-    pub const fn new(value: f64, standard_uncertainty: f64) -> Self {
-        Self { value, standard_uncertainty }
-    }
-
-    /// A value without uncertainty.
-    #[must_use]
-    pub const fn exact(value: f64) -> Self {
-        Self::new(value, 0.0)
     }
 }
 

@@ -376,7 +376,11 @@ impl<R: Read + Seek> RunReader<R> {
 }
 
 /// What a log states about itself at its beginning; `None` where that cannot be read.
-pub(crate) fn head_of(path: &Path) -> Result<Option<RunMeta>, RecordError> {
+///
+/// # Errors
+///
+/// A file that cannot be read.
+pub fn head_of(path: &Path) -> Result<Option<RunMeta>, RecordError> {
     let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
     let Some(mut walk) = Walk::new(BufReader::new(crate::read::open(path)?)).map_err(failed)? else {
         return Ok(None);

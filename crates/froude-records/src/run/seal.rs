@@ -15,12 +15,15 @@ pub struct CampaignMark<'a> {
 }
 
 impl CampaignMark<'_> {
-    pub(crate) fn of(meta: &RunMeta) -> CampaignMark<'_> {
+    /// The mark of a run.
+    #[must_use]
+    pub fn of(meta: &RunMeta) -> CampaignMark<'_> {
         CampaignMark { name: &meta.campaign, sha256: &meta.campaign_sha256 }
     }
 
     /// Whether both may be the same: a hash that is not known contradicts none.
-    pub(crate) fn agrees(&self, other: &CampaignMark<'_>) -> bool {
+    #[must_use]
+    pub fn agrees(&self, other: &CampaignMark<'_>) -> bool {
         let is_same_file = self.sha256.is_empty() || other.sha256.is_empty() || self.sha256 == other.sha256;
         self.name == other.name && is_same_file
     }
@@ -37,7 +40,8 @@ impl fmt::Display for CampaignMark<'_> {
 }
 
 /// How a log and its sidecar contradict each other, as the rest of a sentence that begins with the log's name.
-pub(crate) fn contradiction(log: &RunMeta, sidecar: &RunMeta) -> Option<String> {
+#[must_use]
+pub fn contradiction(log: &RunMeta, sidecar: &RunMeta) -> Option<String> {
     let (own, said) = (CampaignMark::of(log), CampaignMark::of(sidecar));
     if log.id != sidecar.id {
         return Some(format!(
@@ -54,7 +58,8 @@ pub(crate) fn contradiction(log: &RunMeta, sidecar: &RunMeta) -> Option<String> 
 }
 
 /// How a file differs from the one that was recorded, as the rest of a sentence about it.
-pub(crate) fn difference(recorded: &Fingerprint, found: &Fingerprint) -> Option<String> {
+#[must_use]
+pub fn difference(recorded: &Fingerprint, found: &Fingerprint) -> Option<String> {
     if found.bytes < recorded.bytes {
         return Some(format!("has {} of the {} bytes that were recorded: it was cut off", found.bytes, recorded.bytes));
     }

@@ -9,8 +9,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use crate::error::RecordError;
-use crate::run::meta::Declared;
-use crate::run::sidecar::declared;
+use crate::run::declared::{Declared, declared};
 use crate::section::{Section, found};
 use crate::section_values::one_of;
 use crate::units::{Dimension, parse_quantity};

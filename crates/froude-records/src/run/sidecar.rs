@@ -14,19 +14,21 @@ use toml::de::DeTable;
 
 use crate::body_axis::BodyAxis;
 use crate::checksum;
-use crate::error::{RecordError, read_bytes, utf8};
-use crate::estimate::Measured;
+use crate::error::RecordError;
 use crate::hash::Fingerprint;
+use crate::measured::Measured;
+use crate::read;
 use crate::run::channel::Meaning;
 use crate::run::declarations::{self, Declarations, Stated};
+use crate::run::declared::declared;
 use crate::run::declared_text;
 use crate::run::meta::{
-    Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction, Mounted, Role, RunMeta,
-    RunStatus, TOW,
+    Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Direction, Mounted, Role, RunMeta, RunStatus, TOW,
 };
 use crate::run::sensor::Sensor;
-use crate::section::{Section, Source, Value, parse};
+use crate::section::{Section, Source, parse};
 use crate::section_values::{count, one_of};
+use crate::toml_text::{key_word, quoted};
 use crate::units::{Dimension, parse_unit};
 use crate::write::write_atomically;
 
@@ -56,8 +58,7 @@ const BARE: [&str; 9] =
 ///
 /// See [`RecordError`]; [`RecordError::Checksum`] for a sidecar whose content was changed and whose line `checksum` was left.
 pub fn read_run_meta(path: &Path) -> Result<RunMeta, RecordError> {
-    let bytes = read_bytes(path, LARGEST_BYTES, "a run's sidecar")?;
-    parse_run_meta(path, utf8(path, &bytes)?)
+    parse_run_meta(path, &read::text(path, LARGEST_BYTES, "a run's sidecar")?)
 }
 
 /// The same from text; `path` is for messages.
@@ -152,26 +153,6 @@ fn written(key: &str, value: &str) -> String {
     }
     let is_named_freely = ["versions.", "constants.", "conditions."].iter().any(|section| key.starts_with(section));
     if BARE.contains(&last) && !is_named_freely { value.to_owned() } else { quoted(value) }
-}
-
-/// A basic string of TOML.
-pub(crate) fn quoted(text: &str) -> String {
-    let mut out = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' => out += "\\\"",
-            '\\' => out += "\\\\",
-            c if c.is_control() => out += &format!("\\u{:04X}", u32::from(c)),
-            c => out.push(c),
-        }
-    }
-    out + "\""
-}
-
-/// A key that a person chose: bare where TOML allows it.
-pub(crate) fn key_word(name: &str) -> String {
-    let is_bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'));
-    if is_bare { name.to_owned() } else { quoted(name) }
 }
 
 /// All entries, in the order of the sidecar.
@@ -439,57 +420,4 @@ fn axis_constants(s: &Section<'_>) -> Result<AxisConstants, RecordError> {
         efficiency_backward: declared(s, "efficiency_backward", Dimension::ONE)?,
         is_calibrated: s.flag("efficiency_is_calibrated")?.unwrap_or(false),
     })
-}
-
-/// A constant: `"0.35 A/V"`, taken as exact, or `{ value = "0.35 A/V", standard = "1 %" }`; per cent are of the value.
-///
-/// # Errors
-///
-/// [`RecordError::Value`] with its place where it is something else.
-pub fn declared(s: &Section<'_>, key: &'static str, dimension: Dimension) -> Result<Option<Declared>, RecordError> {
-    s.get(key).map(|value| declared_value(s, key, value, dimension)).transpose()
-}
-
-/// The same, larger than zero.
-///
-/// # Errors
-///
-/// [`RecordError::Value`] with its place where it is something else.
-pub fn positive_declared(
-    s: &Section<'_>,
-    key: &'static str,
-    dimension: Dimension,
-) -> Result<Option<Declared>, RecordError> {
-    let Some(constant) = declared(s, key, dimension)? else { return Ok(None) };
-    s.refuse(key, constant.value <= 0.0, format!("is {} in SI; it must be larger than zero", constant.value))?;
-    Ok(Some(constant))
-}
-
-/// The same as [`declared`] of a key that a person chose.
-///
-/// # Errors
-///
-/// [`RecordError::Value`] with its place where it is something else.
-pub fn declared_value<'a>(
-    s: &Section<'a>,
-    key: &str,
-    value: &'a Value<'a>,
-    dimension: Dimension,
-) -> Result<Declared, RecordError> {
-    if value.get_ref().as_table().is_none() {
-        return Ok(Declared::exact(s.as_quantity_of(key, value, dimension)?));
-    }
-    let table = s.as_section(key, value)?;
-    table.only(&["value", "standard"])?;
-    let written = table.need("value", "a constant is a quantity, or { value = \"…\", standard = \"…\" }")?;
-    let si = table.as_written("value", written, key, dimension)?.value_si;
-    let Some(standard) = table.get("standard") else { return Ok(Declared::exact(si)) };
-    let quantity = table.quantity_like("standard", standard, Some((key, dimension)))?;
-    let standard_uncertainty = if quantity.unit.text == "%" {
-        quantity.value_si * si.abs()
-    } else {
-        table.as_written("standard", standard, key, dimension)?.value_si
-    };
-    table.refuse("standard", standard_uncertainty < 0.0, "is negative; a standard uncertainty is not")?;
-    Ok(Declared { value: si, standard_uncertainty })
 }

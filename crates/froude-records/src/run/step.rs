@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-use crate::estimate::Measured;
+use crate::measured::Measured;
 
 /// One step.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

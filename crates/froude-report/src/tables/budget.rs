@@ -2,8 +2,10 @@
 
 use maud::{Markup, html};
 
+use super::counter::Tables;
+use super::symbols::{head_unit, html_symbol};
 use super::typed::table_markup;
-use super::{Tables, head_unit, html_symbol, union};
+use super::union;
 use crate::figures::{budget_rows, ranked_inputs, share};
 use crate::symbol::unit_text;
 use froude_records::block::TableBuilder;

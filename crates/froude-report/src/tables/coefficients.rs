@@ -3,12 +3,15 @@
 use std::collections::BTreeSet;
 
 use froude_records::block::TableBuilder;
+use froude_records::estimate::words;
 use froude_records::estimate::{Coefficient, Estimate, Status};
 use froude_records::number::{self, MISSING};
 use maud::{Markup, html};
 
+use super::counter::Tables;
+use super::symbols::{head_unit, html_symbol, html_unit};
 use super::typed::table_markup;
-use super::{Tables, called, dagger, head_unit, html_symbol, html_unit, is_bare, named, sigma, union};
+use super::{called, dagger, is_bare, named, sigma, union, wider_range};
 use crate::symbol::unit_text;
 
 /// Most models side by side in one table.
@@ -51,7 +54,7 @@ fn cell(c: &Coefficient, estimate: &Estimate, marks: &mut Marks) -> Markup {
         .map_or_else(|| number::plain(value, 5), |u| number::short_form(value, u));
     let interval = html! {
         @if let Some(ends) = c.interval_95 { span class="interval" { (number::interval(ends)) } }
-        @if let Some(ends) = c.wider_range() { span class="interval" { "range " (number::interval(ends)) } }
+        @if let Some(ends) = wider_range(c) { span class="interval" { "range " (number::interval(ends)) } }
     };
     match c.status {
         Status::AtBound => {
@@ -146,7 +149,7 @@ impl Tables {
         if has_interval {
             text.push_str("; standard uncertainty in brackets, below it the 95 % interval if the model is true");
         }
-        if group.iter().any(|e| e.coefficients.values().any(|c| c.wider_range().is_some())) {
+        if group.iter().any(|e| e.coefficients.values().any(|c| wider_range(c).is_some())) {
             text.push_str(", and the range over all models that the data do not contradict");
         }
         text.push('.');
@@ -274,7 +277,7 @@ impl Tables {
         };
         let mut columns = vec![
             t.text("", "Coefficient", name).symbol(),
-            t.text("", "Value", |(_, c)| number::coefficient(c)),
+            t.text("", "Value", |(_, c)| words::coefficient(c)),
             t.number("", "u_A", |(_, c)| c.type_a.filter(|_| known(c))).significant(2),
             t.number("", "u_B", |(_, c)| c.type_b.filter(|_| known(c))).significant(2),
             t.number("", "u_c", |(_, c)| number::usable(c.standard_uncertainty).filter(|_| known(c))).significant(2),

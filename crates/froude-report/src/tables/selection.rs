@@ -5,8 +5,10 @@ use froude_records::number::{self, MISSING};
 use froude_records::page::{SelectionRow, SourceSection};
 use maud::{Markup, html};
 
+use super::counter::Tables;
+use super::symbols::html_symbol;
 use super::typed::table_markup;
-use super::{Tables, html_symbol, union};
+use super::union;
 use crate::symbol::unit_text;
 
 impl Tables {

@@ -3,7 +3,8 @@
 use froude_records::block::{Digits, ResultTable, laid_out};
 use maud::{Markup, html};
 
-use super::{Tables, html_symbols};
+use super::counter::Tables;
+use super::symbols::html_symbols;
 
 /// Cells longer than this are sentences, and break into lines.
 const WORDS: usize = 44;

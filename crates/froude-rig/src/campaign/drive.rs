@@ -6,12 +6,13 @@ use crate::carriage::RigKind;
 use froude_control::config::Limits;
 use froude_records::hash::sha256_of_bytes;
 use froude_records::read;
-use froude_records::run::{CAMPAIGN_COPY, CampaignMark, check_names};
+use froude_records::run::{CAMPAIGN_COPY, CampaignMark};
 use froude_records::write::write_atomically;
 use indexmap::IndexMap;
 
 use super::error::CampaignError;
 use super::lock;
+use super::pair::check_names;
 use super::prepare::{Prepared, return_speed_m_s};
 use super::runner::{self, Driven, Enough, Operator, Progress, RunnerError};
 use super::setup;

@@ -6,7 +6,8 @@ use crate::carriage::plan::{PlannedRun, Step, order_seed, plan};
 use crate::carriage::{CarriageCampaign, CarriagePlan, RigKind, declared};
 use froude_control::config::{AxisConfig, Config, Limits};
 use froude_hydro::fluid::density_kg_m3;
-use froude_records::campaign::{Campaign, read_campaign};
+use froude_records::campaign::Campaign;
+use froude_records::campaign_file::read_campaign;
 
 use super::error::CampaignError;
 use super::preflight::{check, check_campaign};

@@ -19,8 +19,9 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use froude_records::read::{OWN_BYTES, if_there};
-use froude_records::run::{CampaignMark, Pair, RunStatus, check_pair, read_run_meta};
+use froude_records::run::{CampaignMark, RunStatus, read_run_meta};
 
+use super::pair::{Pair, check_pair};
 use super::runner::error::RunnerError;
 
 /// What a folder holds of a run.

@@ -324,7 +324,7 @@ mod tests {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/towing-carriage/campaign.toml");
         let text =
             std::fs::read_to_string(path).unwrap().replace("pulley_friction", &format!("{truth}\npulley_friction"));
-        let campaign = froude_records::campaign::parse_campaign(std::path::Path::new("c.toml"), &text).unwrap();
+        let campaign = froude_records::campaign_file::parse_campaign(std::path::Path::new("c.toml"), &text).unwrap();
         twin(&declared(&campaign).unwrap().unwrap(), Load::default()).unwrap().1
     }
 

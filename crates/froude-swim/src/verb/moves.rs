@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use froude_records::RecordError;
 use froude_records::block::{ResultColumn, facts};
-use froude_records::table::{Table, read_table};
+use froude_records::table::Table;
+use froude_records::table_file::read_table;
 use froude_records::units::Dimension;
 
 use super::VerbError;

@@ -8,8 +8,9 @@ use froude_records::finding::Finding;
 use froude_records::number::{p_equation, plain, significant};
 
 use super::law::names;
-use super::reduce::{Reduced, Setup};
-use crate::joint::findings::warning;
+use super::reduce::Reduced;
+use super::setup::Setup;
+use crate::findings::warning;
 
 /// The lag of the force behind the motion, where the rows show it.
 pub(super) fn finding(campaign: &Campaign, reduced: &Reduced, setup: &Setup, model: &ModelFit) -> Option<Finding> {

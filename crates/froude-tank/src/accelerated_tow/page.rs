@@ -6,19 +6,20 @@ use froude_identify::regression::ModelFit;
 use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark};
-use froude_records::run::ImportedRun;
 
 use super::law::names;
-use super::reduce::{Reduced, Setup};
+use super::reduce::Reduced;
 use super::rows::Rows;
+use super::setup::Setup;
 use crate::drawn::{self, over_time, series};
+use crate::log::TankLog;
 
 /// Runs that are drawn; more would be a page of the same.
 const DRAWN: usize = 4;
 
 /// What was done to the runs, and what the law `model` leaves of them.
 #[must_use]
-pub fn section(logs: &[ImportedRun], reduced: &Reduced, setup: &Setup, model: Option<&ModelFit>) -> Section {
+pub fn section(logs: &[TankLog], reduced: &Reduced, setup: &Setup, model: Option<&ModelFit>) -> Section {
     let paragraph = format!(
         "Motion and force are weighted by windows of {} s, a third of that apart; the acceleration is that of the windows' derivatives, so that it is as late and as smooth as the force. \
          The zero of each run is the straight line between the means of its parts at rest. The load of the water is the mass below the cell times the acceleration, less the force.",
@@ -67,7 +68,7 @@ fn masses(reduced: &Reduced, setup: &Setup) -> ResultTable {
     ])
 }
 
-fn signals(logs: &[ImportedRun], reduced: &Reduced) -> Chart {
+fn signals(logs: &[TankLog], reduced: &Reduced) -> Chart {
     let panel = |(id, _, rows): &(String, usize, Rows)| {
         let log = &logs.iter().find(|log| log.log.meta.id == *id)?.log;
         let force = &log.channels.get("force")?.values;

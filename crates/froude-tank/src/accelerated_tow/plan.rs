@@ -18,12 +18,12 @@ use froude_records::run::Declared;
 use froude_records::text::counted;
 
 use super::law::names;
-use super::reduce::{Setup, reduce};
+use super::reduce::reduce;
 use super::rows::{Rows, row_errors, sample_s, window};
 use super::section;
+use super::setup::{Setup, declared, no_mass, setup_of};
 use super::simulate::senses;
 use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
-use super::source::{declared, no_mass, setup_of};
 use crate::error::undeclared;
 use crate::inverted::inverted;
 use crate::joint::conclude::part;

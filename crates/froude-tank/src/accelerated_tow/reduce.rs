@@ -22,38 +22,9 @@ use froude_records::run::Declared;
 
 use super::law::{Channels, data, names};
 use super::rows::{Rows, TowRun, row_errors, rows};
+use super::setup::Setup;
 use crate::between_runs::{BetweenRuns, between_runs};
 use crate::error::TankError;
-
-/// What is declared of body and rig.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Setup {
-    /// `x` or `y`.
-    pub axis: String,
-    /// Length of the windows, s.
-    pub window_s: f64,
-    /// Delay of the force behind the motion, s.
-    pub delay_s: Declared,
-    /// ρ, kg/m³.
-    pub density_kg_m3: f64,
-    /// Gain error of the force, as part of it.
-    pub force_relative: f64,
-    /// Gain error of position and speed, as part of them.
-    pub motion_relative: f64,
-    /// The configurations.
-    pub bodies: Vec<Body>,
-}
-
-/// A configuration.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Body {
-    /// Its name; empty where there is one without.
-    pub name: String,
-    /// V, m³.
-    pub volume_m3: f64,
-    /// m: all that moves below the cell, kg; `None` where runs in air show it.
-    pub mass_kg: Option<Declared>,
-}
 
 /// A run with what is mounted.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,10 +12,10 @@ use froude_records::run::{ACCELERATED_TOW, Role};
 use froude_rig::accelerated_tow::{AcceleratedTrace, Profile, accelerated};
 
 use super::law::{Channels, data, names, with_acceleration};
-use super::reduce::{Mounted, Setup};
+use super::reduce::Mounted;
 use super::rows::{TowRun, Way};
 use super::section::{self, AcceleratedPlan};
-use super::source::{declared, no_mass, setup_of};
+use super::setup::{Setup, declared, no_mass, setup_of};
 use crate::declared::uncertain;
 use crate::error::undeclared;
 use crate::sensors::{Senses, reading, seed_and_sensors};

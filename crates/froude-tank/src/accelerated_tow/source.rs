@@ -8,22 +8,22 @@ use froude_identify::source::{Asked, identify_laws};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::Derived;
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{ACCELERATED_TOW, Declared, ImportedRun, Role};
+use froude_records::run::{ACCELERATED_TOW, Role};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::law::{asked, names};
-use super::reduce::{Body, Mounted, Reduced, Setup, reduce};
+use super::reduce::{Mounted, Reduced, reduce};
 use super::rows::{Rows, TowRun, Way, root_mean_square};
 use super::section::AcceleratedTowSpec;
+use super::setup::{Setup, declared, no_mass, setup_of, without_rig};
 use super::{lag, page, plan, section, simulate};
 use crate::between_runs::FEWEST_RUNS;
-use crate::declared::{check, gain as gain_of, needed};
-use crate::error::undeclared;
-use crate::joint::findings::{note, warning};
+use crate::declared::check;
+use crate::findings::{note, warning};
+use crate::log::TankLog;
 use crate::logs::{self, Logs, no_run};
 use crate::method::TankMethod;
-use crate::reference;
 
 const WHY: &str = "drag and added mass are wrong by its size or its sign where one is guessed";
 /// A row whose acceleration is below this part of the largest is one of constant speed.
@@ -59,7 +59,7 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
         progress,
     )?;
     let mut setup = setup_of(campaign, source, &spec, &logs::configurations(&logs))?;
-    let late = |log: &ImportedRun| {
+    let late = |log: &TankLog| {
         let of = ["position", "y/position", "speed"].map(|motion| logs::stamps_standard_s(log, [motion, "force"]));
         of.into_iter().fold(0.0, f64::max)
     };
@@ -141,77 +141,8 @@ fn refer(estimate: &mut froude_records::estimate::Estimate, campaign: &Campaign,
     );
 }
 
-/// `[source.accelerated_tow]`.
-///
-/// # Errors
-///
-/// It is not there, or cannot be read.
-pub fn declared(source: &Source) -> Result<AcceleratedTowSpec, MethodError> {
-    let what = "nothing is declared of the body that speeds up: write [source.accelerated_tow] with axis and mass";
-    needed(source, ACCELERATED_TOW, section::accelerated_tow, what)
-}
-
-pub(super) fn no_mass(source: &Source, setup: &Setup) -> MethodError {
-    let without = setup.bodies.iter().filter(|body| body.mass_kg.is_none());
-    let names: Vec<&str> = without
-        .map(|body| if body.name.is_empty() { "runs that state no configuration" } else { &body.name })
-        .collect();
-    let what = format!(
-        "the mass below the load cell is not known of {}: write mass = {{ value = \"1.63 kg\", standard = \"5 g\" }} in [source.accelerated_tow], for each configuration where they differ, \
-         or log runs of each in air (role = \"dry_air\")",
-        names.join(", ")
-    );
-    undeclared(&source.place, what)
-}
-
-/// Quantities of the budget that are the rig's, and no channel of the rows.
-const OF_RIG: [&str; 3] = ["force", "position", "speed"];
-
-/// The source without the errors that the rows have in them.
-#[must_use]
-pub fn without_rig(source: &Source) -> Source {
-    let mut own = source.clone();
-    own.uncertainty.retain(|entry| !OF_RIG.contains(&entry.quantity.as_str()));
-    own
-}
-
-/// Everything that the campaign declares, for the configurations that there are.
-///
-/// # Errors
-///
-/// What is missing, and what to write.
-pub fn setup_of(
-    campaign: &Campaign,
-    source: &Source,
-    spec: &AcceleratedTowSpec,
-    configurations: &[String],
-) -> Result<Setup, MethodError> {
-    let mut out = Setup {
-        axis: spec.axis.name().to_owned(),
-        window_s: spec.window_s,
-        delay_s: spec.delay_s.unwrap_or(Declared::exact(0.0)),
-        density_kg_m3: reference::density_kg_m3(campaign, source)?,
-        force_relative: 0.0,
-        motion_relative: 0.0,
-        bodies: Vec::new(),
-    };
-    for name in configurations {
-        out.bodies.push(Body {
-            name: name.clone(),
-            volume_m3: reference::volume_m3(campaign, source, name)?,
-            mass_kg: spec.mass_kg.of(name),
-        });
-    }
-    for entry in source.uncertainty.iter().filter(|entry| OF_RIG.contains(&entry.quantity.as_str())) {
-        logs::is_of_all_runs(entry)?;
-        let gain = if entry.quantity == "force" { &mut out.force_relative } else { &mut out.motion_relative };
-        *gain = gain_of(entry, "the zero of each run is taken off")?;
-    }
-    Ok(out)
-}
-
 /// A log as a run; nothing about it is taken for granted.
-fn run<'a>(log: &'a ImportedRun, setup: &Setup) -> Result<Mounted<'a>, MethodError> {
+fn run<'a>(log: &'a TankLog, setup: &Setup) -> Result<Mounted<'a>, MethodError> {
     let channel = |name: &str, dimension, along: &str| {
         logs::channel(log, name, dimension, WHY, along).map(|c| c.values.as_slice())
     };

@@ -9,11 +9,11 @@
 
 use froude_identify::method::MethodError;
 use froude_records::number::{percent, plain, significant};
-use froude_records::run::clocks::is_own;
+use froude_records::run::clocks::{Clock, is_own};
 use froude_records::run::marks::{Mark, SegmentKind};
 use froude_records::run::sensor::Filter;
 use froude_records::run::step::Step;
-use froude_records::run::{EXCITED_RESPONSE, Extremes, FORCED_OSCILLATION, FREE_DECAY, ImportedRun, LOG, ROTATION};
+use froude_records::run::{EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, LOG, ROTATION};
 use froude_records::text::counted;
 use froude_signal::analogue::Analogue;
 use froude_signal::harmonic::Harmonics;
@@ -21,7 +21,9 @@ use froude_signal::resample::Spline;
 use indexmap::IndexMap;
 
 use super::stretches::keep_rows;
-use crate::joint::findings::warning;
+use crate::extremes::Extremes;
+use crate::findings::warning;
+use crate::log::TankLog;
 
 /// Methods of a periodic motion.
 const PERIODIC: [&str; 4] = [FORCED_OSCILLATION, FREE_DECAY, ROTATION, EXCITED_RESPONSE];
@@ -36,7 +38,7 @@ const FEWEST: usize = 4;
 pub type Stamps = IndexMap<String, Vec<f64>>;
 
 /// The frequency of the motion, Hz; 0 where it has none.
-fn frequency_hz(run: &ImportedRun, method: &str) -> f64 {
+fn frequency_hz(run: &TankLog, method: &str) -> f64 {
     if !PERIODIC.contains(&method) {
         return 0.0;
     }
@@ -46,7 +48,7 @@ fn frequency_hz(run: &ImportedRun, method: &str) -> f64 {
 }
 
 /// The times of the log that the samples of each channel are of, where those are not its rows, and how that was found as steps.
-pub fn stamps(run: &mut ImportedRun, method: &str) -> Stamps {
+pub fn stamps(run: &mut TankLog, method: &str) -> Stamps {
     let has_filter = run.told.values().any(|told| told.sensor.filter.is_some());
     let signal_hz = if has_filter { frequency_hz(run, method) } else { 0.0 };
     let (mut out, mut steps, mut findings) = (Stamps::new(), Vec::new(), Vec::new());
@@ -93,7 +95,8 @@ pub fn stamps(run: &mut ImportedRun, method: &str) -> Stamps {
             }
         }
         if clock.is_some() || late_s != 0.0 {
-            let at = |t: &f64| clock.map_or(*t, |clock| clock.log_time_s(*t)) - late_s;
+            let on_log = |t: f64, clock: &Clock| t + clock.offset_s + clock.skew * (t - clock.origin_s);
+            let at = |t: &f64| clock.map_or(*t, |clock| on_log(*t, clock)) - late_s;
             out.insert(name.clone(), run.log.time_s.iter().map(at).collect());
         }
     }
@@ -151,7 +154,7 @@ fn filtered(filter: Filter, signal_hz: f64) -> Filtered {
 /// # Errors
 ///
 /// Fewer than four rows are left, or stamps that no spline can be drawn through.
-pub fn resample(run: &mut ImportedRun, stamps: &Stamps) -> Result<(), MethodError> {
+pub fn resample(run: &mut TankLog, stamps: &Stamps) -> Result<(), MethodError> {
     if stamps.is_empty() {
         return Ok(());
     }

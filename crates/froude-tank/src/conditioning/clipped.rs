@@ -9,12 +9,13 @@ use std::ops::Range;
 use froude_records::number::plain;
 use froude_records::run::marks::Mark;
 use froude_records::run::step::Step;
-use froude_records::run::{Channel, ImportedRun, Told};
+use froude_records::run::{Channel, Told};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::align::Stamps;
-use crate::joint::findings::warning;
+use crate::findings::warning;
+use crate::log::TankLog;
 
 /// Fewest samples of a flat stretch.
 const FEWEST: usize = 5;
@@ -37,7 +38,7 @@ struct Clipped {
 }
 
 /// Marks what is clipped; `stamps` are the times of channels whose samples are not of the log's rows.
-pub fn mark(run: &mut ImportedRun, stamps: &Stamps) {
+pub fn mark(run: &mut TankLog, stamps: &Stamps) {
     let (mut marks, mut steps, mut findings) = (Vec::new(), Vec::new(), Vec::new());
     for (name, told) in &run.told {
         let Some(channel) = run.log.channels.get(name) else { continue };

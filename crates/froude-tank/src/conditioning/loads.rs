@@ -12,10 +12,11 @@ use froude_records::run::cell::{LOADS, dimension_of_load};
 use froude_records::run::clocks::is_own;
 use froude_records::run::frames::{Pose, Rotation};
 use froude_records::run::step::Step;
-use froude_records::run::{Channel, Frame, ImportedRun, LOG, Meaning, Told};
+use froude_records::run::{Channel, Frame, LOG, Meaning, Told};
 
 use crate::error::undeclared;
-use crate::joint::findings::warning;
+use crate::findings::warning;
+use crate::log::TankLog;
 
 /// A part of a rotation or of an arm, as part of 1 or of 1 m, that carries nothing: the cosine of 90° is 6e-17.
 const NOTHING: f64 = 1e-9;
@@ -25,7 +26,7 @@ const NOTHING: f64 = 1e-9;
 /// # Errors
 ///
 /// A bridge that the log lacks, or that is not declared in full.
-pub fn of_cell(run: &mut ImportedRun) -> Result<(), MethodError> {
+pub fn of_cell(run: &mut TankLog) -> Result<(), MethodError> {
     let Some(cell) = run.declared.cell.clone() else { return Ok(()) };
     let mut bridges = Vec::new();
     let (mut time_standard_s, mut place) = (0.0_f64, None);
@@ -95,7 +96,7 @@ pub fn of_cell(run: &mut ImportedRun) -> Result<(), MethodError> {
 /// # Errors
 ///
 /// A channel along a declared frame that is no load; loads of two frames that give one component; loads of which none can be turned.
-pub fn in_body(run: &mut ImportedRun) -> Result<(), MethodError> {
+pub fn in_body(run: &mut TankLog) -> Result<(), MethodError> {
     let mut frames: Vec<String> = Vec::new();
     for (name, told) in &run.told {
         let Some(frame) = &told.frame else { continue };

@@ -6,9 +6,9 @@
 //!
 //! **Source.** JCGM 100:2008 (GUM), F.2.2.1; Widrow & Kollár (2008), *Quantization Noise*, ch. 4.
 
-use crate::joint::findings::warning;
+use crate::findings::warning;
+use crate::log::TankLog;
 use froude_records::number::significant;
-use froude_records::run::ImportedRun;
 
 /// This part of the second differences, the largest, are left out: a start, a stop, an outlier.
 const LEFT_OUT: f64 = 0.05;
@@ -26,7 +26,7 @@ pub fn noise(values: &[f64]) -> Option<f64> {
 }
 
 /// Says where the step of a channel is larger than its noise.
-pub fn check(run: &mut ImportedRun) {
+pub fn check(run: &mut TankLog) {
     let mut found = Vec::new();
     for (name, told) in &run.told {
         let (Some(step), Some(channel)) = (told.sensor.resolution, run.log.channels.get(name)) else { continue };

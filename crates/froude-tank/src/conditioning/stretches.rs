@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
-use crate::joint::findings::warning;
+use crate::findings::warning;
+use crate::log::TankLog;
 use froude_identify::method::MethodError;
 use froude_records::finding::Finding;
 use froude_records::number::plain;
 use froude_records::run::marks::{Mark, Segment, SegmentKind};
 use froude_records::run::step::Step;
-use froude_records::run::{ACCELERATED_TOW, FORCED_OSCILLATION, ImportedRun, ROTATION, RunLog, STEADY, WEIGHT_TOW};
+use froude_records::run::{ACCELERATED_TOW, FORCED_OSCILLATION, ROTATION, RunLog, STEADY, WEIGHT_TOW};
 use froude_records::text::counted;
 
 /// Methods whose windows leave marks out themselves; of the others a log is cut to its longest stretch without one.
@@ -21,7 +22,7 @@ const FEWEST: usize = 4;
 /// # Errors
 ///
 /// Nothing is left.
-pub fn cut(run: &mut ImportedRun, method: &str) -> Result<(), MethodError> {
+pub fn cut(run: &mut TankLog, method: &str) -> Result<(), MethodError> {
     let segments: Vec<Segment> = run.declared.segments.clone();
     for segment in &segments {
         let by = if segment.by.is_empty() { String::new() } else { format!(", by {}", segment.by) };

@@ -2,8 +2,8 @@
 //!
 //! At 1.7·10⁹ s a double resolves 0.2 µs, which squares of times and small steps of a delay lose.
 
+use crate::log::TankLog;
 use froude_records::number::plain;
-use froude_records::run::ImportedRun;
 use froude_records::run::step::Step;
 
 /// Name of the step.
@@ -12,7 +12,7 @@ pub const STEP: &str = "times";
 const OF_A_CALENDAR_S: f64 = 1e6;
 
 /// Counts the times of a log, and all that its sidecar states in them, from its first sample where they are those of a calendar.
-pub fn from_the_first_sample(run: &mut ImportedRun) {
+pub fn from_the_first_sample(run: &mut TankLog) {
     let Some(&start_s) = run.log.time_s.first() else { return };
     if start_s.abs() < OF_A_CALENDAR_S {
         return;

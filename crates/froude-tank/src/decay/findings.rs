@@ -13,7 +13,7 @@ use super::pool::{EIGHT_OVER_3_PI, inverse_2};
 use super::run::DecaySetup;
 use super::swings::Swings;
 use crate::decay::reduced::{FEWEST_RUNS, Reduced, all_but};
-use crate::joint::findings::{note, warning};
+use crate::findings::{note, warning};
 
 /// Below this ratio of largest to smallest speed, u and u² are correlated by 0.986 and more.
 const APART: f64 = 2.0;

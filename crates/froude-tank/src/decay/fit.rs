@@ -1,13 +1,13 @@
 //! What either method gives: three coefficients, their scatter, and what the declared numbers do to them.
 
+use crate::decay::axis::Motion;
 use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Uncertain, combine};
 use froude_fit::faer::Mat;
-use froude_records::campaign::Motion;
 use froude_records::finding::Finding;
 
 use super::run::{DecaySetup, Restoring};
+use crate::findings::warning;
 use crate::joint::conclude::part;
-use crate::joint::findings::warning;
 
 /// How the coefficients were got.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

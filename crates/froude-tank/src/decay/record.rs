@@ -13,7 +13,7 @@ use froude_records::units::{Dimension, Unit};
 use indexmap::IndexMap;
 
 use super::fit::{DecayFit, HalfCycle};
-use crate::joint::findings::warning;
+use crate::findings::warning;
 use crate::joint::record::{by_part, coefficient, shared_error};
 use froude_identify::IdentifyError;
 use froude_identify::dataset::Dataset;

@@ -1,7 +1,7 @@
 //! What a decay test gives: releases over time, and what is declared about body and springs.
 
+use crate::decay::axis::Motion;
 use froude_fit::budget::Uncertain;
-use froude_records::campaign::Motion;
 
 use crate::error::TankError;
 

@@ -18,8 +18,9 @@
 
 use std::f64::consts::PI;
 
+use crate::decay::axis::Motion;
 use froude_records::RecordError;
-use froude_records::campaign::{Motion, Source};
+use froude_records::campaign::Source;
 use froude_records::run::{FREE_DECAY, positive_declared};
 use froude_records::section::{Section, found};
 use froude_records::section_values::{Asks, MOST_RUNS, at_most, count, one_of, series};

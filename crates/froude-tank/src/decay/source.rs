@@ -3,23 +3,25 @@
 use std::path::Path;
 
 use crate::conditioning::{condition, of_one_rig};
+use crate::decay::axis::Motion;
 use crate::decay::section::{self, DecayPlan};
 use crate::decay::{DecayFit, DecayRun, DecaySetup, Method as DecayMethod, RunSummary};
 use crate::decay::{envelope, output_error, plan, record, releases};
 use crate::declared::{check, needed};
 use crate::drawn::{self, first_of, over_time, series};
 use crate::error::undeclared;
-use crate::joint::findings::warning;
+use crate::findings::warning;
+use crate::log::TankLog;
 use crate::logs::{self, Logs};
 use crate::long_logs::Reading;
 use crate::method::TankMethod;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::runs::{recorded_in, refuse_others};
 use froude_records::block::{Section, TableBuilder};
-use froude_records::campaign::{Campaign, Motion, Source};
+use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::Severity;
 use froude_records::page::{ChartPanel, Mark};
-use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role};
+use froude_records::run::{Channel, FREE_DECAY, Role};
 use froude_records::units::Dimension;
 
 /// Their names.
@@ -208,7 +210,7 @@ fn read(folder: &Path) -> Result<Logs, MethodError> {
 }
 
 /// A log as a release: its time and the channel that moves.
-fn release(log: &ImportedRun, axis: Motion) -> Result<DecayRun<'_>, MethodError> {
+fn release(log: &TankLog, axis: Motion) -> Result<DecayRun<'_>, MethodError> {
     let (names, unit): (&[&str], Dimension) = if axis.is_rotation() {
         (&["angle"], Dimension::ANGLE)
     } else {

@@ -250,7 +250,7 @@ mod tests {
 
     fn swings(time_s: &[f64], position: &[f64]) -> Result<Swings, DecayError> {
         let exact = |value| froude_fit::budget::Uncertain::new(value, 0.0);
-        let setup = DecaySetup::new(froude_records::campaign::Motion::Heave, exact(1.0), exact(1.0));
+        let setup = DecaySetup::new(crate::decay::axis::Motion::Heave, exact(1.0), exact(1.0));
         Swings::of(&DecayRun { id: "r", time_s, position }, &setup, Method::Envelope)
     }
 

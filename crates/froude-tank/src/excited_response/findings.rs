@@ -6,7 +6,7 @@ use froude_signal::clock::MOST_LEFT_RAD;
 use super::camera::camera;
 use super::coefficients::{AtPeriod, NAMES, UNITS, Used};
 use super::setup::{Setup, WaveRun};
-use crate::joint::findings::{note, warning};
+use crate::findings::{note, warning};
 
 /// Strokes that differ by more than this are no repeat of one wave.
 const SAME_STROKE: f64 = 0.02;

@@ -15,11 +15,10 @@ use froude_rig::steady::Reading;
 
 use super::coefficients::{NAMES, UNITS, budget, errors, scatter};
 use super::response::{DOF, cycles_within};
-use super::section;
+use super::section::{self, setup_of};
 use super::setup::{Setup, Shows};
 use super::simulate::senses;
 use super::simulate::{Planned, SENSORS, planned, truth};
-use super::source::setup_of;
 use super::wave::LEFT_OUT;
 use crate::error::{TankError, undeclared};
 use crate::plan::{self, Expected};

@@ -17,15 +17,19 @@
 //! free   = 2
 //! ```
 
+use crate::decay::axis::Motion;
+use froude_identify::method::MethodError;
 use froude_records::RecordError;
-use froude_records::campaign::{Motion, Source};
+use froude_records::campaign::Source;
 use froude_records::run::{Declared, EXCITED_RESPONSE, declared};
 use froude_records::section::Section;
 use froude_records::section_values::{Asks, MOST_RUNS, at_most, count, one_of, series};
 use froude_records::units::Dimension;
 
-use super::setup::Setup;
-use crate::declared::{STIFFNESS, above_zero, runs_of, uncertain};
+use super::setup::{ACCELERATION, FORCE, POSITION, Setup};
+use crate::declared::{STIFFNESS, above_zero, gain as gain_of, needed, runs_of, uncertain};
+use crate::error::undeclared;
+use crate::logs;
 
 /// Most harmonics of a fit.
 const MOST_HARMONICS: u64 = 20;
@@ -102,6 +106,33 @@ pub(super) fn excited(s: &Section<'_>) -> Result<Setup, RecordError> {
         harmonics: count(s, "harmonics", MOST_HARMONICS)?.unwrap_or(3),
         ..Setup::new(mass_kg, restoring_n_m)
     })
+}
+
+/// Everything that the source declares.
+///
+/// # Errors
+///
+/// No `[source.excited_response]`, or one that cannot be read; a budget entry of a quantity that this method does not have.
+pub fn setup_of(source: &Source) -> Result<Setup, MethodError> {
+    let what = "nothing is declared of the body in waves: write [source.excited_response] with axis = \"heave\", mass, restoring, and the window before reflections";
+    let mut out = needed(source, EXCITED_RESPONSE, excited, what)?;
+    for entry in &source.uncertainty {
+        logs::is_of_all_runs(entry)?;
+        let gain = match entry.quantity.as_str() {
+            "force" | FORCE => &mut out.force_relative,
+            ACCELERATION => &mut out.acceleration_relative,
+            "position" | POSITION => &mut out.position_relative,
+            other => {
+                let what = format!(
+                    "quantity = {other:?} is none that an excited response has: it has f_z, acceleration and heave; mass, restoring and delay take their standard uncertainties in \
+                     [source.excited_response]"
+                );
+                return Err(undeclared(&entry.place, what));
+            }
+        };
+        *gain = gain_of(entry, "a zero drops out of the harmonics")?;
+    }
+    Ok(out)
 }
 
 /// The runs that a source plans.

@@ -7,6 +7,13 @@ use froude_signal::SignalError;
 
 use crate::error::TankError;
 
+/// Channels: the wavemaker, the force on the held body, the camera's position of the free one.
+pub(super) const REFERENCE: &str = "reference";
+pub(super) const FORCE: &str = "f_z";
+pub(super) const POSITION: &str = "heave";
+/// What the names of its accelerometers begin with.
+pub(super) const ACCELERATION: &str = "acceleration";
+
 /// What the signal of a run shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shows {

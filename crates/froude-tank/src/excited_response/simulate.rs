@@ -11,9 +11,8 @@ use froude_rig::excited_response::{WaveReadings, WaveRig, WaveTrace};
 use froude_rig::steady::Reading;
 
 use super::coefficients::NAMES;
-use super::section::{self, ExcitedPlan};
+use super::section::{self, ExcitedPlan, setup_of};
 use super::setup::{Setup, Shows, WaveRun};
-use super::source::setup_of;
 use crate::sensors::{Senses, reading, seed_and_sensors};
 use crate::twin::{Draws, Sidecar, csv, pair, seed_of, true_value, truths};
 

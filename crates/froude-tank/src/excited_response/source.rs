@@ -5,25 +5,20 @@ use std::borrow::Cow;
 use froude_identify::answer::Made;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_records::campaign::{Campaign, Source};
-use froude_records::run::{Channel, EXCITED_RESPONSE, ImportedRun, Role};
+use froude_records::run::{Channel, EXCITED_RESPONSE, Role};
 use froude_records::units::Dimension;
 
-use super::setup::{Setup, Shows, WaveRun};
+use super::section::setup_of;
+use super::setup::{ACCELERATION, FORCE, POSITION, REFERENCE, Shows, WaveRun};
 use super::{findings, fit, page, plan, record, section, simulate};
-use crate::declared::{self, check, needed};
-use crate::error::undeclared;
+use crate::declared::check;
+use crate::log::TankLog;
 use crate::logs::{self, Logs, distinct};
 use crate::method::TankMethod;
 
 const WORDS: &str =
     "added mass and damping of a section in waves, from the force on the held body and the motion of the free one";
-/// Channels: the wavemaker, the force on the held body, the camera's position of the free one.
-const REFERENCE: &str = "reference";
-const FORCE: &str = "f_z";
-const POSITION: &str = "heave";
 const WHY: &str = "added mass and damping follow from the phase between force and motion, which a guess turns";
-/// What the names of its accelerometers begin with.
-const ACCELERATION: &str = "acceleration";
 
 /// Force of the held body over the motion of the free one.
 pub const EXCITED: TankMethod = TankMethod {
@@ -44,7 +39,7 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
     let Logs { runs: logs, files, findings: mut said } =
         logs::read(source.input.path(), EXCITED_RESPONSE, &[Role::Held, Role::Free], channels, progress)?;
     // A camera beside accelerometers is compared, and its clock is no part of the result.
-    let late = |log: &ImportedRun| {
+    let late = |log: &TankLog| {
         let is_compared = log.log.channels.keys().any(|name| name.starts_with(ACCELERATION));
         let used = log.told.iter().filter(|(name, _)| !(is_compared && name.as_str() == POSITION));
         used.map(|(_, told)| told.time_standard_s).fold(0.0, f64::max)
@@ -70,35 +65,8 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
     })
 }
 
-/// Everything that the source declares.
-///
-/// # Errors
-///
-/// No `[source.excited_response]`, or one that cannot be read; a budget entry of a quantity that this method does not have.
-pub fn setup_of(source: &Source) -> Result<Setup, MethodError> {
-    let what = "nothing is declared of the body in waves: write [source.excited_response] with axis = \"heave\", mass, restoring, and the window before reflections";
-    let mut out = needed(source, EXCITED_RESPONSE, section::excited, what)?;
-    for entry in &source.uncertainty {
-        logs::is_of_all_runs(entry)?;
-        let gain = match entry.quantity.as_str() {
-            "force" | FORCE => &mut out.force_relative,
-            ACCELERATION => &mut out.acceleration_relative,
-            "position" | POSITION => &mut out.position_relative,
-            other => {
-                let what = format!(
-                    "quantity = {other:?} is none that an excited response has: it has f_z, acceleration and heave; mass, restoring and delay take their standard uncertainties in \
-                     [source.excited_response]"
-                );
-                return Err(undeclared(&entry.place, what));
-            }
-        };
-        *gain = declared::gain(entry, "a zero drops out of the harmonics")?;
-    }
-    Ok(out)
-}
-
 /// A log as a run: the wavemaker, and the force on the held body or the motion of the free one.
-fn run(log: &ImportedRun) -> Result<WaveRun<'_>, MethodError> {
+fn run(log: &TankLog) -> Result<WaveRun<'_>, MethodError> {
     let meta = &log.log.meta;
     let period_s = logs::condition(log, "period", Dimension::TIME)?;
     let reference = channel(log, REFERENCE, Dimension::LENGTH, "the wavemaker away from the beach")?;
@@ -146,11 +114,6 @@ fn run(log: &ImportedRun) -> Result<WaveRun<'_>, MethodError> {
     Ok(WaveRun { camera_m: camera, ..of(Shows::Acceleration, signal) })
 }
 
-fn channel<'a>(
-    log: &'a ImportedRun,
-    name: &str,
-    dimension: Dimension,
-    along: &str,
-) -> Result<&'a Channel, MethodError> {
+fn channel<'a>(log: &'a TankLog, name: &str, dimension: Dimension, along: &str) -> Result<&'a Channel, MethodError> {
     logs::channel(log, name, dimension, WHY, along)
 }

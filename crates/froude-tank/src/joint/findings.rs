@@ -8,6 +8,7 @@ use froude_records::number;
 use froude_records::text::counted;
 
 use super::{Fitted, JointFit, Run};
+use crate::findings::warning;
 use crate::motion::{Cycles, Motion};
 
 /// Amplitudes of the cycles used differ by no more than this part of their mean.
@@ -18,14 +19,6 @@ const WHOLE: f64 = 0.02;
 const ALARM: f64 = 0.004;
 /// Of five independent cycles a fifth of the variance repeats; more than this is a misfit.
 const REPEATED: f64 = 0.6;
-
-pub(crate) fn warning(code: &str, message: String) -> Finding {
-    Finding::new(Severity::Warning, code, message)
-}
-
-pub(crate) fn note(code: &str, message: String) -> Finding {
-    Finding::new(Severity::Note, code, message)
-}
 
 /// A motion that is not the same from cycle to cycle, or not of the harmonics that it was fitted by.
 pub(crate) fn of_motion(id: &str, motion: &Motion, cycles: Cycles, harmonics: usize) -> Vec<Finding> {

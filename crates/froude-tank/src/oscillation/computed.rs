@@ -9,9 +9,8 @@ use froude_records::campaign::{Campaign, Source};
 use froude_rig::swung::SwungTrace;
 
 use super::section;
-use super::setup::Setup;
+use super::setup::{Setup, declared, setup_of};
 use super::simulate::{Planned, configurations, log, planned, sidecar};
-use super::source::{declared, setup_of};
 use crate::error::undeclared;
 use crate::twin::pair;
 use froude_hydro::swing::{Medium, Pivot};

@@ -11,8 +11,9 @@ use froude_records::text::counted;
 
 use super::fit::{ADDED, BUOYANCY, DELAY, MASS, OscillationFit};
 use super::setup::{OscillationRun, Setup};
+use crate::findings::{note, warning};
 use crate::joint::Run;
-use crate::joint::findings::{are_whole, contradicted, few_runs, misfit, note, of_motion, undetermined, warning};
+use crate::joint::findings::{are_whole, contradicted, few_runs, misfit, of_motion, undetermined};
 use crate::motion::Motion;
 
 /// A harmonic this near to a natural frequency of the tank makes waves grow, as part of that frequency.

@@ -10,14 +10,18 @@ use froude_hydro::Axis;
 use froude_hydro::swing::{Kinematics, Medium};
 use froude_identify::dataset::Dataset;
 use froude_identify::law::{ForceLaw, Kind};
+use froude_identify::method::MethodError;
+use froude_identify::source::laws;
+use froude_records::campaign::{Campaign, Source};
+use froude_records::texts::Texts;
 use froude_records::units::Dimension;
 
-use super::setup::{OscillationRun, Setup};
+use super::setup::{LOAD, OscillationRun, Setup};
 use crate::error::TankError;
 use crate::motion::Motion;
 
-/// The load that the cell shows.
-pub const LOAD: &str = "f_y";
+/// The drag law where none is asked for.
+const DEFAULT_LAW: &str = "linear_quadratic";
 
 /// A drag law as the force across the body.
 #[derive(Debug, Clone)]
@@ -61,6 +65,33 @@ impl Drag {
     pub fn coefficients(&self) -> impl Iterator<Item = (&str, &str)> {
         self.columns.iter().map(|&j| (self.law.coefficients[j].name.as_str(), self.law.coefficients[j].unit.as_str()))
     }
+}
+
+/// The drag laws that the source asks for, as the force across the body.
+///
+/// # Errors
+///
+/// An unknown law, or one that cannot be used here.
+pub fn drags(campaign: &Campaign, source: &Source, setup: &Setup) -> Result<Vec<Drag>, MethodError> {
+    let mut data = Dataset { rows: 1, ..Dataset::default() };
+    data.configuration = Texts::repeated("", 1);
+    (data.setup, data.run, data.line) = (data.configuration.clone(), data.configuration.clone(), vec![1]);
+    data.put("v_x", vec![0.1], Dimension::SPEED);
+    data.put("v_y", vec![0.1], Dimension::SPEED);
+    data.speed_and_angle_from_velocity();
+    data.put("density", vec![setup.density_kg_m3.value], Dimension::DENSITY);
+    if setup.bodies.iter().all(|body| body.n_links.is_some()) {
+        data.put("n_links", vec![1.0], Dimension::ONE);
+    }
+    data.put(LOAD, vec![0.0], Dimension::FORCE);
+    let mut asking = source.clone();
+    let nobody =
+        source.models.is_empty() && campaign.identify.models.is_empty() && campaign.identify.user_models.is_empty();
+    if nobody {
+        asking.models = vec![DEFAULT_LAW.to_owned()];
+    }
+    let laws = laws(campaign, &asking, &data)?;
+    laws.into_iter().map(|law| Drag::new(law).map_err(MethodError::refused)).collect()
 }
 
 /// What is declared, as the equation takes it; each may be moved to see what its error does.

@@ -3,9 +3,9 @@
 use froude_records::campaign::{Identify, SensorSpec};
 
 use super::fit::{Swing, problem};
-use super::forces::{Drag, LOAD};
+use super::forces::Drag;
 use super::motions;
-use super::setup::{OscillationRun, Setup};
+use super::setup::{LOAD, OscillationRun, Setup};
 use super::simulate::{Planned, Truths, simulated};
 use crate::error::TankError;
 use crate::joint::Problem;

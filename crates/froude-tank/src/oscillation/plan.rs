@@ -10,10 +10,9 @@ use froude_records::campaign::{Campaign, Source};
 use super::forces::Drag;
 use super::forecast::forecast;
 use super::section;
-use super::setup::Setup;
+use super::setup::{Setup, declared, setup_of};
 use super::simulate::senses;
 use super::simulate::{Planned, Truths, configurations, planned};
-use super::source::{declared, setup_of};
 use crate::plan;
 use crate::sensors::seed_and_sensors;
 

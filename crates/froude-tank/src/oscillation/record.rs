@@ -11,8 +11,8 @@ use froude_records::run::FORCED_OSCILLATION;
 use indexmap::IndexMap;
 
 use super::fit::{ADDED, BUOYANCY, DELAY, OscillationFit};
-use super::forces::{Drag, LOAD};
-use super::setup::{OscillationRun, Setup};
+use super::forces::Drag;
+use super::setup::{LOAD, OscillationRun, Setup};
 use crate::joint::record;
 use crate::motion::Motion;
 

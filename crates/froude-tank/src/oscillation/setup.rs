@@ -2,9 +2,20 @@
 
 use froude_fit::budget::Uncertain;
 use froude_hydro::swing::{Medium, Pivot};
+use froude_identify::method::MethodError;
+use froude_records::campaign::{Campaign, Source};
+use froude_records::run::FORCED_OSCILLATION;
+use froude_records::table::links_of_configuration;
 
-use crate::error::TankError;
+use super::section::{self, OscillationSpec};
+use crate::declared::{self, needed, uncertain};
+use crate::error::{TankError, undeclared};
+use crate::logs;
 use crate::motion::{Cycles, Logged, Motion, Sampled, motion};
+use crate::reference;
+
+/// The load that the cell shows.
+pub(super) const LOAD: &str = "f_y";
 
 /// One run: columns of one length, time increasing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,6 +123,74 @@ impl Setup {
         }
         Ok(())
     }
+}
+
+/// `[source.forced_oscillation]`.
+///
+/// # Errors
+///
+/// It is not there, or cannot be read.
+pub fn declared(source: &Source) -> Result<OscillationSpec, MethodError> {
+    let what =
+        "nothing is declared of the body that swings: write [source.forced_oscillation] with pivot, radius and mass";
+    needed(source, FORCED_OSCILLATION, section::oscillation, what)
+}
+
+/// Everything that the campaign declares, for the configurations that there are.
+///
+/// # Errors
+///
+/// What is missing, and what to write; a budget entry of a quantity that this method does not have.
+pub fn setup_of(
+    campaign: &Campaign,
+    source: &Source,
+    spec: &OscillationSpec,
+    configurations: &[String],
+) -> Result<Setup, MethodError> {
+    let body = |name: &String| {
+        let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
+        let volume = reference::volume_m3(campaign, source, name)?;
+        let mass = spec.mass_kg.of(name).ok_or_else(|| {
+            undeclared(&source.place, format!("no mass is declared{of}: write it in [source.forced_oscillation] mass, {name} = {{ value = \"1.63 kg\", standard = \"5 g\" }}"))
+        })?;
+        Ok(Body {
+            name: name.clone(),
+            n_links: links_of_configuration(name).map(f64::from),
+            reference_volume_m3: volume,
+            mass_kg: uncertain(mass),
+            buoyancy_n: spec.buoyancy_n.of(name).map(uncertain),
+        })
+    };
+    let density = reference::density_kg_m3(campaign, source)?;
+    let bodies = configurations.iter().map(body).collect::<Result<_, MethodError>>()?;
+    let mut out = Setup {
+        pivot: spec.pivot,
+        delay_s: spec.delay_s.map(uncertain),
+        cycles: spec.cycles,
+        harmonics: spec.harmonics,
+        ..Setup::new(uncertain(spec.radius_m), density, bodies)
+    };
+    for entry in &source.uncertainty {
+        logs::is_of_all_runs(entry)?;
+        let gain = match entry.quantity.as_str() {
+            "density" => {
+                out.density_kg_m3.standard = if entry.relative { entry.standard * density } else { entry.standard };
+                continue;
+            }
+            "angle" => &mut out.angle_relative,
+            "force" | LOAD => &mut out.force_relative,
+            "flow" | "speed" => &mut out.flow_relative,
+            other => {
+                let what = format!(
+                    "quantity = {other:?} is none that a forced oscillation has: it has force, angle, flow and density; radius, mass, buoyancy and \
+                     delay take their standard uncertainties in [source.forced_oscillation]"
+                );
+                return Err(undeclared(&entry.place, what));
+            }
+        };
+        *gain = declared::gain(entry, "the zero of each run is fitted")?;
+    }
+    Ok(out)
 }
 
 /// The motion of every run.

@@ -13,10 +13,9 @@ use froude_rig::oscillation::OscillationRig;
 use froude_rig::swung::{Swing, SwungSensor, SwungTrace};
 
 use super::fit::{ADDED, BUOYANCY, DELAY};
-use super::forces::{Drag, LOAD};
+use super::forces::{Drag, drags};
 use super::section::{self, OscillationPlan};
-use super::setup::{OscillationRun, Setup};
-use super::source::{declared, drags, setup_of};
+use super::setup::{LOAD, OscillationRun, Setup, declared, setup_of};
 use crate::sensors::{Senses, seed_and_sensors, swung};
 use crate::twin::{Draws, Sidecar, csv, pair, seed_of, true_value, truths};
 use froude_hydro::swing::{Medium, Pivot};

@@ -2,35 +2,27 @@
 
 use froude_hydro::swing::Medium;
 use froude_identify::answer::Made;
-use froude_identify::dataset::Dataset;
 use froude_identify::method::{Found, MethodError, Need};
-use froude_identify::source::laws;
 use froude_records::campaign::{Campaign, Source};
-use froude_records::run::{Channel, FORCED_OSCILLATION, ImportedRun, Role};
-use froude_records::table::links_of_configuration;
-use froude_records::texts::Texts;
+use froude_records::run::{Channel, FORCED_OSCILLATION, Role};
 use froude_records::units::Dimension;
 
-use super::forces::{Drag, LOAD};
-use super::section::OscillationSpec;
-use super::setup::{Body, OscillationRun, Setup, motions_without};
+use super::forces::{Drag, drags};
+use super::setup::{OscillationRun, Setup, declared, motions_without, setup_of};
 use super::{findings, fit, page, plan, record, section, simulate};
-use crate::declared::{self, check, needed, uncertain};
-use crate::error::undeclared;
-use crate::joint::findings::warning;
+use crate::declared::check;
+use crate::findings::warning;
+use crate::log::TankLog;
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs::{self, LENGTHS, Lengths};
 use crate::method::TankMethod;
 use crate::motion::Sampled;
-use crate::reference;
 
 const WORDS: &str =
     "added mass, drag, buoyancy and delay fitted together in time, to runs of a body that a motor swings";
 const DRY: Need = Need { is_optional: true, ..Need::of(&["dry_air"], &["angle", "force"]) };
 const ROLES: [Role; 2] = [Role::Test, Role::DryAir];
 const CHANNELS: &str = "time, angle and force";
-/// The drag law where none is asked for.
-const DEFAULT_LAW: &str = "linear_quadratic";
 
 /// The joint fit in time.
 pub const FORCED: TankMethod = TankMethod {
@@ -106,103 +98,8 @@ fn identified(
     Ok(Found { results, summary, blocks, findings: distinct(findings), ..Found::default() })
 }
 
-/// `[source.forced_oscillation]`.
-///
-/// # Errors
-///
-/// It is not there, or cannot be read.
-pub fn declared(source: &Source) -> Result<OscillationSpec, MethodError> {
-    let what =
-        "nothing is declared of the body that swings: write [source.forced_oscillation] with pivot, radius and mass";
-    needed(source, FORCED_OSCILLATION, section::oscillation, what)
-}
-
-/// Everything that the campaign declares, for the configurations that there are.
-///
-/// # Errors
-///
-/// What is missing, and what to write; a budget entry of a quantity that this method does not have.
-pub fn setup_of(
-    campaign: &Campaign,
-    source: &Source,
-    spec: &OscillationSpec,
-    configurations: &[String],
-) -> Result<Setup, MethodError> {
-    let body = |name: &String| {
-        let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
-        let volume = reference::volume_m3(campaign, source, name)?;
-        let mass = spec.mass_kg.of(name).ok_or_else(|| {
-            undeclared(&source.place, format!("no mass is declared{of}: write it in [source.forced_oscillation] mass, {name} = {{ value = \"1.63 kg\", standard = \"5 g\" }}"))
-        })?;
-        Ok(Body {
-            name: name.clone(),
-            n_links: links_of_configuration(name).map(f64::from),
-            reference_volume_m3: volume,
-            mass_kg: uncertain(mass),
-            buoyancy_n: spec.buoyancy_n.of(name).map(uncertain),
-        })
-    };
-    let density = reference::density_kg_m3(campaign, source)?;
-    let bodies = configurations.iter().map(body).collect::<Result<_, MethodError>>()?;
-    let mut out = Setup {
-        pivot: spec.pivot,
-        delay_s: spec.delay_s.map(uncertain),
-        cycles: spec.cycles,
-        harmonics: spec.harmonics,
-        ..Setup::new(uncertain(spec.radius_m), density, bodies)
-    };
-    for entry in &source.uncertainty {
-        logs::is_of_all_runs(entry)?;
-        let gain = match entry.quantity.as_str() {
-            "density" => {
-                out.density_kg_m3.standard = if entry.relative { entry.standard * density } else { entry.standard };
-                continue;
-            }
-            "angle" => &mut out.angle_relative,
-            "force" | LOAD => &mut out.force_relative,
-            "flow" | "speed" => &mut out.flow_relative,
-            other => {
-                let what = format!(
-                    "quantity = {other:?} is none that a forced oscillation has: it has force, angle, flow and density; radius, mass, buoyancy and \
-                     delay take their standard uncertainties in [source.forced_oscillation]"
-                );
-                return Err(undeclared(&entry.place, what));
-            }
-        };
-        *gain = declared::gain(entry, "the zero of each run is fitted")?;
-    }
-    Ok(out)
-}
-
-/// The drag laws that the source asks for, as the force across the body.
-///
-/// # Errors
-///
-/// An unknown law, or one that cannot be used here.
-pub fn drags(campaign: &Campaign, source: &Source, setup: &Setup) -> Result<Vec<Drag>, MethodError> {
-    let mut data = Dataset { rows: 1, ..Dataset::default() };
-    data.configuration = Texts::repeated("", 1);
-    (data.setup, data.run, data.line) = (data.configuration.clone(), data.configuration.clone(), vec![1]);
-    data.put("v_x", vec![0.1], Dimension::SPEED);
-    data.put("v_y", vec![0.1], Dimension::SPEED);
-    data.speed_and_angle_from_velocity();
-    data.put("density", vec![setup.density_kg_m3.value], Dimension::DENSITY);
-    if setup.bodies.iter().all(|body| body.n_links.is_some()) {
-        data.put("n_links", vec![1.0], Dimension::ONE);
-    }
-    data.put(LOAD, vec![0.0], Dimension::FORCE);
-    let mut asking = source.clone();
-    let nobody =
-        source.models.is_empty() && campaign.identify.models.is_empty() && campaign.identify.user_models.is_empty();
-    if nobody {
-        asking.models = vec![DEFAULT_LAW.to_owned()];
-    }
-    let laws = laws(campaign, &asking, &data)?;
-    laws.into_iter().map(|law| Drag::new(law).map_err(MethodError::refused)).collect()
-}
-
 /// A log as a run: its angle and its force, and the stream that it was done in.
-fn run<'a>(log: &'a ImportedRun, setup: &Setup) -> Result<OscillationRun<'a>, MethodError> {
+fn run<'a>(log: &'a TankLog, setup: &Setup) -> Result<OscillationRun<'a>, MethodError> {
     let meta = &log.log.meta;
     let medium = if meta.role == Role::DryAir { Medium::Air } else { Medium::Water };
     let flow_m_s = match logs::condition(log, "flow", Dimension::SPEED)? {
@@ -225,7 +122,7 @@ fn run<'a>(log: &'a ImportedRun, setup: &Setup) -> Result<OscillationRun<'a>, Me
     })
 }
 
-fn channel<'a>(log: &'a ImportedRun, name: &str, dimension: Dimension) -> Result<&'a Channel, MethodError> {
+fn channel<'a>(log: &'a TankLog, name: &str, dimension: Dimension) -> Result<&'a Channel, MethodError> {
     let along = if name == "angle" {
         "the pivot; positive where the body moves towards +y"
     } else {

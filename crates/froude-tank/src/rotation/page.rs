@@ -5,8 +5,7 @@ use froude_records::text::counted;
 
 use super::derive::{Derived, law_behind};
 use super::fit::RotationFit;
-use super::plan::words;
-use super::setup::{RotationRun, Setup};
+use super::setup::{RotationRun, Setup, words};
 use crate::joint::Run;
 use crate::joint::forecast::total;
 use crate::joint::page::{self, Load, Timed};

@@ -10,11 +10,10 @@ use froude_rig::rotation::Mounted;
 use super::findings::one_rate;
 use super::fit::LAMBDAS;
 use super::forecast::{Forecast, forecast};
-use super::section;
-use super::setup::Setup;
+use super::section::{self, setup_of};
+use super::setup::{Setup, tip_kc, words};
 use super::simulate::senses;
 use super::simulate::{Planned, Truths, planned};
-use super::source::setup_of;
 use crate::plan;
 use crate::sensors::seed_and_sensors;
 
@@ -63,20 +62,4 @@ fn matrix(planned: &[Planned], found: &Forecast, setup: &Setup) -> ResultTable {
         t.count("cycles", "cycles used", |(_, cycles)| **cycles),
         t.number("duration_s", "duration [s]", |((run, _), _)| run.swing.duration_s()).places(1),
     ])
-}
-
-/// What is mounted, in words.
-#[must_use]
-pub fn words(mounted: Mounted) -> &'static str {
-    match mounted {
-        Mounted::Body => "body",
-        Mounted::BodyInAir => "body, in air",
-        Mounted::Shaft => "shaft alone",
-    }
-}
-
-/// Keulegan and Carpenter's number of the end of the link, u T/D = 2π α l/(2a); `None` where no link is declared.
-#[must_use]
-pub fn tip_kc(setup: &Setup, amplitude_rad: f64) -> Option<f64> {
-    setup.link.map(|link| TAU * amplitude_rad * link.half_length_m / (2.0 * link.major_semi_axis_m))
 }

@@ -13,8 +13,7 @@ use indexmap::IndexMap;
 use super::derive::{Derived, law_behind};
 use super::findings::correlation;
 use super::fit::{LAMBDAS, LAW, RotationFit};
-use super::plan::tip_kc;
-use super::setup::{RotationRun, Setup};
+use super::setup::{RotationRun, Setup, tip_kc};
 use crate::joint::record;
 use crate::motion::Motion;
 

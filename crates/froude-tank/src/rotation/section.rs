@@ -16,16 +16,21 @@
 //! periods   = 7
 //! ```
 
+use froude_fit::budget::Uncertain;
 use froude_hydro::swing::Pivot;
+use froude_identify::method::MethodError;
 use froude_records::RecordError;
-use froude_records::campaign::Source;
+use froude_records::campaign::{Campaign, Source};
 use froude_records::run::{ROTATION, Role, declared};
 use froude_records::section::Section;
 use froude_records::section_values::{MOST_RUNS, at_most, count, one_of};
 use froude_records::units::Dimension;
 
 use super::setup::Setup;
-use crate::declared::{INERTIA, Swings, cycles, runs_of, uncertain};
+use crate::declared::{INERTIA, Swings, cycles, gain as gain_of, needed, runs_of, uncertain};
+use crate::error::undeclared;
+use crate::fluid::density_kg_m3;
+use crate::logs;
 
 /// One block of planned runs: every amplitude at every frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +85,41 @@ pub(super) fn rotation(s: &Section<'_>) -> Result<Setup, RecordError> {
         harmonics: count(s, "harmonics", 20)?.unwrap_or(3),
         ..Setup::new(inertia_kg_m2)
     })
+}
+
+/// Everything that the campaign declares.
+///
+/// # Errors
+///
+/// No `[source.rotation]`, or one that cannot be read; a budget entry of a quantity that this method does not have, or that is no part of it.
+pub fn setup_of(campaign: &Campaign, source: &Source) -> Result<Setup, MethodError> {
+    let what = "nothing is declared of the body that turns: write [source.rotation] with axis and inertia";
+    let mut out = needed(source, ROTATION, rotation, what)?;
+    let density = density_kg_m3(&campaign.fluid).map_err(|what| undeclared(&source.place, what))?;
+    out.density_kg_m3 = density.map(|value| Uncertain::new(value, 0.0));
+    out.link = campaign.body.as_ref().and_then(|b| b.link);
+    for entry in &source.uncertainty {
+        logs::is_of_all_runs(entry)?;
+        let gain = match entry.quantity.as_str() {
+            "density" => {
+                if let Some(density) = &mut out.density_kg_m3 {
+                    density.standard = if entry.relative { entry.standard * density.value } else { entry.standard };
+                }
+                continue;
+            }
+            "angle" => &mut out.angle_relative,
+            "torque" => &mut out.torque_relative,
+            other => {
+                let what = format!(
+                    "quantity = {other:?} is none that a rotation has: it has torque, angle and density; inertia, restoring moment and delay take their standard \
+                     uncertainties in [source.rotation]"
+                );
+                return Err(undeclared(&entry.place, what));
+            }
+        };
+        *gain = gain_of(entry, "the zero of each run is fitted")?;
+    }
+    Ok(out)
 }
 
 /// The runs that a source plans.

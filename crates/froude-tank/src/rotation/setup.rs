@@ -1,5 +1,7 @@
 //! What a rotation gives: runs over time, and what is declared about body, rig and water.
 
+use std::f64::consts::TAU;
+
 use froude_fit::budget::Uncertain;
 use froude_hydro::Link;
 use froude_hydro::swing::Pivot;
@@ -96,4 +98,20 @@ fn of_run(run: &RotationRun<'_>, setup: &Setup, sampled: Sampled<'_>) -> Result<
     let RotationRun { id, time_s, angle_rad, torque_n_m, .. } = *run;
     let of = Logged { id, time_s, angle_rad, load: ("torque", "N m", torque_n_m), sampled };
     motion(&of, setup.cycles, setup.harmonics)
+}
+
+/// What is mounted, in words.
+#[must_use]
+pub(super) fn words(mounted: Mounted) -> &'static str {
+    match mounted {
+        Mounted::Body => "body",
+        Mounted::BodyInAir => "body, in air",
+        Mounted::Shaft => "shaft alone",
+    }
+}
+
+/// Keulegan and Carpenter's number of the end of the link, u T/D = 2π α l/(2a); `None` where no link is declared.
+#[must_use]
+pub(super) fn tip_kc(setup: &Setup, amplitude_rad: f64) -> Option<f64> {
+    setup.link.map(|link| TAU * amplitude_rad * link.half_length_m / (2.0 * link.major_semi_axis_m))
 }

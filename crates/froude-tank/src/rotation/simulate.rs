@@ -11,9 +11,8 @@ use froude_rig::rotation::{Lambdas, Mounted, RotationRig};
 use froude_rig::swung::{Swing, SwungSensor, SwungTrace};
 
 use super::fit::{INERTIA, LAMBDAS, RESTORING, RESTORING_IN_AIR, TARES, no_inertia};
-use super::section::{self, RotationPlan};
+use super::section::{self, RotationPlan, setup_of};
 use super::setup::{RotationRun, Setup};
-use super::source::setup_of;
 use crate::error::undeclared;
 use crate::joint::DELAY;
 use crate::sensors::{Senses, seed_and_sensors, swung};

@@ -1,19 +1,18 @@
 //! Rotation as a source of a campaign: a folder of logs, one run each, with a sidecar that states what it is.
 
-use froude_fit::budget::Uncertain;
 use froude_identify::answer::Made;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_records::campaign::{Campaign, Source};
-use froude_records::run::{Channel, ImportedRun, ROTATION, Role};
+use froude_records::run::{Channel, ROTATION, Role};
 use froude_records::units::Dimension;
 
 use super::derive::derived;
-use super::setup::{RotationRun, Setup, motions_without};
+use super::section::setup_of;
+use super::setup::{RotationRun, motions_without};
 use super::simulate::mounted;
 use super::{findings, fit, page, plan, record, section, simulate};
-use crate::declared::{self, check, needed};
-use crate::error::undeclared;
-use crate::fluid::density_kg_m3;
+use crate::declared::check;
+use crate::log::TankLog;
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs;
 use crate::method::TankMethod;
@@ -79,8 +78,8 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
 }
 
 /// Runs of one body: λs of two are no numbers of one.
-fn one_body(logs: &[ImportedRun]) -> Result<(), MethodError> {
-    let name = |log: &ImportedRun| log.log.meta.configuration.clone();
+fn one_body(logs: &[TankLog]) -> Result<(), MethodError> {
+    let name = |log: &TankLog| log.log.meta.configuration.clone();
     let of_body = || logs.iter().filter(|log| log.log.meta.role != Role::Tare);
     let Some(first) = of_body().next() else { return Ok(()) };
     match of_body().find(|log| name(log) != name(first)) {
@@ -97,43 +96,8 @@ fn one_body(logs: &[ImportedRun]) -> Result<(), MethodError> {
     }
 }
 
-/// Everything that the campaign declares.
-///
-/// # Errors
-///
-/// No `[source.rotation]`, or one that cannot be read; a budget entry of a quantity that this method does not have, or that is no part of it.
-pub fn setup_of(campaign: &Campaign, source: &Source) -> Result<Setup, MethodError> {
-    let what = "nothing is declared of the body that turns: write [source.rotation] with axis and inertia";
-    let mut out = needed(source, ROTATION, section::rotation, what)?;
-    let density = density_kg_m3(&campaign.fluid).map_err(|what| undeclared(&source.place, what))?;
-    out.density_kg_m3 = density.map(|value| Uncertain::new(value, 0.0));
-    out.link = campaign.body.as_ref().and_then(|b| b.link);
-    for entry in &source.uncertainty {
-        logs::is_of_all_runs(entry)?;
-        let gain = match entry.quantity.as_str() {
-            "density" => {
-                if let Some(density) = &mut out.density_kg_m3 {
-                    density.standard = if entry.relative { entry.standard * density.value } else { entry.standard };
-                }
-                continue;
-            }
-            "angle" => &mut out.angle_relative,
-            "torque" => &mut out.torque_relative,
-            other => {
-                let what = format!(
-                    "quantity = {other:?} is none that a rotation has: it has torque, angle and density; inertia, restoring moment and delay take their standard \
-                     uncertainties in [source.rotation]"
-                );
-                return Err(undeclared(&entry.place, what));
-            }
-        };
-        *gain = declared::gain(entry, "the zero of each run is fitted")?;
-    }
-    Ok(out)
-}
-
 /// A log as a run: its angle and its torque.
-fn run(log: &ImportedRun) -> Result<RotationRun<'_>, MethodError> {
+fn run(log: &TankLog) -> Result<RotationRun<'_>, MethodError> {
     if let Some(flow) = logs::condition(log, "flow", Dimension::SPEED)?.filter(|flow| *flow != 0.0) {
         let what = format!(
             "was done in a stream of {flow} m/s, which turns on the body with a moment of its own; these coefficients are of water at rest: repeat it there"
@@ -149,7 +113,7 @@ fn run(log: &ImportedRun) -> Result<RotationRun<'_>, MethodError> {
     })
 }
 
-fn channel<'a>(log: &'a ImportedRun, name: &str, dimension: Dimension) -> Result<&'a Channel, MethodError> {
+fn channel<'a>(log: &'a TankLog, name: &str, dimension: Dimension) -> Result<&'a Channel, MethodError> {
     let along = if name == "angle" {
         "the body about the axis of rotation"
     } else {

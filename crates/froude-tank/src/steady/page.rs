@@ -3,12 +3,12 @@
 use froude_records::block::{Block, ResultColumn, ResultTable, Section, TableBuilder};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark};
-use froude_records::run::ImportedRun;
 
 use super::point::Load;
 use super::row::Row;
 use super::section::SteadySpec;
 use crate::drawn::{self, first_of, over_time, series};
+use crate::log::TankLog;
 use crate::residual_spectrum::{self, Left};
 
 /// Runs that are drawn; more would be a page of the same.
@@ -16,7 +16,7 @@ const DRAWN: usize = 6;
 
 /// What was done to the runs.
 #[must_use]
-pub fn section(logs: &[ImportedRun], rows: &[Row], spec: &SteadySpec) -> Section {
+pub fn section(logs: &[TankLog], rows: &[Row], spec: &SteadySpec) -> Section {
     let paragraph = format!(
         "The steady window of a run is the longest stretch whose blocks of {} s have speeds within ± {} of the middle of their range, without the first {} s and, where \
          the log goes on, its last block. Means are tapered at both ends and count the correlation of their samples; the zero is the straight line between the means at rest before and after.",
@@ -28,11 +28,11 @@ pub fn section(logs: &[ImportedRun], rows: &[Row], spec: &SteadySpec) -> Section
     Section::new("Runs and windows", [Block::words([paragraph]), table(logs, rows).into()].into_iter().chain(charts))
 }
 
-fn log_of<'a>(logs: &'a [ImportedRun], row: &Row) -> Option<&'a ImportedRun> {
+fn log_of<'a>(logs: &'a [TankLog], row: &Row) -> Option<&'a TankLog> {
     logs.iter().find(|log| log.log.meta.id == row.run)
 }
 
-fn table(logs: &[ImportedRun], rows: &[Row]) -> ResultTable {
+fn table(logs: &[TankLog], rows: &[Row]) -> ResultTable {
     let ends = |row: &Row| {
         let (log, window) = (&log_of(logs, row)?.log, &row.point.window.steady);
         Some([log.time_s[window.start], log.time_s[window.end - 1]])
@@ -75,7 +75,7 @@ pub(crate) fn load_column<'r, R>(
     t.uncertain([&keys[0], &keys[1]], &format!("{name} [{unit}]"), value, standard)
 }
 
-fn chart(logs: &[ImportedRun], rows: &[Row]) -> Chart {
+fn chart(logs: &[TankLog], rows: &[Row]) -> Chart {
     let panel = |row: &Row| {
         let (point, log) = (&row.point, &log_of(logs, row)?.log);
         let load = point.loads.first()?;
@@ -103,7 +103,7 @@ fn chart(logs: &[ImportedRun], rows: &[Row]) -> Chart {
 }
 
 /// What the mean leaves of each load in the windows.
-fn spectra(logs: &[ImportedRun], rows: &[Row]) -> Vec<Chart> {
+fn spectra(logs: &[TankLog], rows: &[Row]) -> Vec<Chart> {
     let loads = rows.first().map_or(&[] as &[_], |row| row.point.loads.as_slice());
     let chart = |load: &Load| {
         let left = rows.iter().filter_map(|row| {

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use froude_identify::method::MethodError;
-use froude_records::run::ImportedRun;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit};
 
 use super::point::Point;
+use crate::log::TankLog;
 use crate::logs::condition;
 
 /// One observation with what it was made at.
@@ -31,7 +31,7 @@ impl Row {
     /// # Errors
     ///
     /// An angle or a temperature that is none.
-    pub(crate) fn of(log: &ImportedRun, point: Point) -> Result<Self, MethodError> {
+    pub(crate) fn of(log: &TankLog, point: Point) -> Result<Self, MethodError> {
         Ok(Self {
             run: log.log.meta.id.clone(),
             configuration: log.log.meta.configuration.clone(),
@@ -43,7 +43,7 @@ impl Row {
 }
 
 /// Angle of attack of a run, rad; none where it states none.
-pub(crate) fn angle_rad(log: &ImportedRun) -> Result<f64, MethodError> {
+pub(crate) fn angle_rad(log: &TankLog) -> Result<f64, MethodError> {
     Ok(condition(log, "angle", Dimension::ONE)?.unwrap_or(0.0))
 }
 

@@ -8,7 +8,7 @@ use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::marks::SegmentKind;
 use froude_records::run::step::Step;
-use froude_records::run::{ImportedRun, Role, STEADY};
+use froude_records::run::{Role, STEADY};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
@@ -21,7 +21,8 @@ use super::window::{Motion, Told};
 use super::{page, plan, simulate};
 use crate::conditioning::stretches::{in_words, longest_free, rows};
 use crate::error::{TankError, undeclared};
-use crate::joint::findings::{note, warning};
+use crate::findings::{note, warning};
+use crate::log::TankLog;
 use crate::logs::{self, Logs};
 use crate::method::TankMethod;
 
@@ -99,7 +100,7 @@ struct Reduced {
 }
 
 /// Every test as an observation; one that gives none is left out and said, unless none is left.
-fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Reduced, MethodError> {
+fn reduce(source: &Source, logs: &[TankLog], spec: &SteadySpec) -> Result<Reduced, MethodError> {
     let (mut findings, mut steps) = (Vec::new(), Vec::new());
     let stills = stills(logs)?;
     let (mut rows, mut tares) = (Vec::new(), Vec::new());
@@ -146,7 +147,7 @@ fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Re
 }
 
 /// The window of a run as a step.
-fn window_step(log: &ImportedRun, point: &Point) -> Step {
+fn window_step(log: &TankLog, point: &Point) -> Step {
     let named = log.declared.segments.iter().any(|segment| segment.kind == SegmentKind::Steady);
     let by = if named { "as it is named in [[segments]]" } else { "by the rule of [source.steady]" };
     let words = format!(", {by}; mean tapered at both ends, the zero between the parts at rest taken off");
@@ -157,7 +158,7 @@ fn window_step(log: &ImportedRun, point: &Point) -> Step {
 }
 
 /// Whether a window that a person has named is steady by the rule.
-fn of_named_window(log: &ImportedRun, run: &Run<'_>, point: &Point, spec: &SteadySpec) -> Option<Finding> {
+fn of_named_window(log: &TankLog, run: &Run<'_>, point: &Point, spec: &SteadySpec) -> Option<Finding> {
     let segment = log.declared.segments.iter().find(|segment| segment.kind == SegmentKind::Steady)?;
     let (rows, time_s) = (point.window.steady.clone(), run.time_s);
     let block = ((spec.block_s / log.steps.median_s).round() as usize).clamp(1, rows.len());
@@ -211,7 +212,7 @@ fn of_point(run: &str, point: &Point) -> Vec<Finding> {
 }
 
 /// A log as a run; nothing about it is taken for granted.
-fn run(log: &ImportedRun) -> Result<Run<'_>, MethodError> {
+fn run(log: &TankLog) -> Result<Run<'_>, MethodError> {
     let why = "drag is wrong by its size or its sign where one is guessed";
     let channel = |name: &str, dimension, along: &str| {
         logs::channel(log, name, dimension, why, along).map(|c| c.values.as_slice())
@@ -260,7 +261,7 @@ struct Still {
 }
 
 /// The part of a still run that is used: the one that is named, without marks.
-fn at_rest(log: &ImportedRun) -> Result<std::ops::Range<usize>, MethodError> {
+fn at_rest(log: &TankLog) -> Result<std::ops::Range<usize>, MethodError> {
     let (time_s, declared) = (&log.log.time_s, &log.declared);
     let named = declared.segments.iter().find(|segment| segment.kind == SegmentKind::Still);
     let whole = named.map_or(0..time_s.len(), |segment| rows(time_s, segment.from_s, segment.to_s));
@@ -270,7 +271,7 @@ fn at_rest(log: &ImportedRun) -> Result<std::ops::Range<usize>, MethodError> {
     })
 }
 
-fn stills(logs: &[ImportedRun]) -> Result<Vec<Still>, MethodError> {
+fn stills(logs: &[TankLog]) -> Result<Vec<Still>, MethodError> {
     let mut out = Vec::new();
     for log in logs.iter().filter(|log| log.log.meta.role == Role::Still) {
         let at_s = logs::condition(log, "at", Dimension::TIME)?.ok_or_else(|| {
@@ -293,7 +294,7 @@ fn stills(logs: &[ImportedRun]) -> Result<Vec<Still>, MethodError> {
 
 /// The zero of a run from the still runs before and after it; `None` where there is none, or nothing says when it was.
 fn zero(
-    log: &ImportedRun,
+    log: &TankLog,
     run: &Run<'_>,
     stills: &[Still],
     spec: &SteadySpec,

@@ -18,7 +18,7 @@ use froude_records::finding::Finding;
 use froude_records::table::links_of_configuration;
 
 use super::row::Row;
-use crate::joint::findings::warning;
+use crate::findings::warning;
 
 /// Body and section of the tank.
 #[derive(Debug, Clone, Copy, PartialEq)]

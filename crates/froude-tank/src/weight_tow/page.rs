@@ -3,11 +3,11 @@
 use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark};
-use froude_records::run::ImportedRun;
 
 use super::reduce::Reduced;
 use super::section::WeightTowSpec;
 use crate::drawn::{self, first_of, over_time, series};
+use crate::log::TankLog;
 use crate::residual_spectrum::{self, Left};
 use crate::steady::page::load_column;
 use crate::steady::point::Load;
@@ -21,7 +21,7 @@ const DRAWN: usize = 6;
 pub fn section(
     rows: &[Row],
     reduced: &[Reduced],
-    logs: &[ImportedRun],
+    logs: &[TankLog],
     positions: &[Vec<f64>],
     spec: &WeightTowSpec,
 ) -> Section {
@@ -62,7 +62,7 @@ fn table(rows: &[Row], reduced: &[Reduced]) -> ResultTable {
     t.build(columns)
 }
 
-fn chart(rows: &[Row], reduced: &[Reduced], logs: &[ImportedRun], positions: &[Vec<f64>]) -> Chart {
+fn chart(rows: &[Row], reduced: &[Reduced], logs: &[TankLog], positions: &[Vec<f64>]) -> Chart {
     let panel = |(row, found): (&Row, &Reduced)| {
         let at = logs.iter().position(|log| log.log.meta.id == row.run)?;
         let (time_s, position) = (&logs[at].log.time_s, &positions[at]);
@@ -78,7 +78,7 @@ fn chart(rows: &[Row], reduced: &[Reduced], logs: &[ImportedRun], positions: &[V
 }
 
 /// What the parabola leaves of the tracks.
-fn spectrum(rows: &[Row], reduced: &[Reduced], logs: &[ImportedRun]) -> Option<Chart> {
+fn spectrum(rows: &[Row], reduced: &[Reduced], logs: &[TankLog]) -> Option<Chart> {
     let left = rows.iter().zip(reduced).filter_map(|(row, found)| {
         let log = logs.iter().find(|log| log.log.meta.id == row.run)?;
         let window = found.track.window.clone();

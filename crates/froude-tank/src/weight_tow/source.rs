@@ -8,7 +8,7 @@ use froude_records::campaign::{BudgetEntry, Campaign, Shared, Source};
 use froude_records::estimate::ErrorKind;
 use froude_records::finding::Finding;
 use froude_records::run::step::Step;
-use froude_records::run::{ImportedRun, Role, WEIGHT_TOW};
+use froude_records::run::{Role, WEIGHT_TOW};
 use froude_records::units::Dimension;
 
 use super::reduce::{ERRORS, Reduced, WeightRun, reduce};
@@ -18,7 +18,8 @@ use super::{page, plan, section, simulate};
 use crate::conditioning::stretches::{in_words, touching};
 use crate::declared::check;
 use crate::error::{TankError, undeclared};
-use crate::joint::findings::{note, warning};
+use crate::findings::{note, warning};
+use crate::log::TankLog;
 use crate::logs::{self, Logs};
 use crate::method::TankMethod;
 use crate::steady::row::{Row, angle_rad, table};
@@ -85,7 +86,7 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
 }
 
 /// A reduced run, where nothing of what it was reduced from is marked.
-fn without_marks(log: &ImportedRun, found: Reduced) -> Result<Reduced, TankError> {
+fn without_marks(log: &TankLog, found: Reduced) -> Result<Reduced, TankError> {
     let used = if found.balance.is_some() { &found.track.moving } else { &found.track.window };
     let marks = touching(&log.log.time_s, used, &log.declared.marks);
     if marks.is_empty() {
@@ -102,14 +103,14 @@ fn without_marks(log: &ImportedRun, found: Reduced) -> Result<Reduced, TankError
 }
 
 /// The last part of the way as a step.
-fn window_step(log: &ImportedRun, found: &Reduced) -> Step {
+fn window_step(log: &TankLog, found: &Reduced) -> Step {
     let by = if found.balance.is_some() { "the equation of motion over all that moves" } else { "shown steady" };
     let step = logs::window_step(log, &found.track.window, &format!(", the last part of the way; {by}"));
     step.with("speed", found.track.speed_m_s, "m/s")
 }
 
 /// The positions of a log, m: of its mark by scale and lens, or as they stand.
-fn position(log: &ImportedRun, spec: &WeightTowSpec) -> Result<Vec<f64>, MethodError> {
+fn position(log: &TankLog, spec: &WeightTowSpec) -> Result<Vec<f64>, MethodError> {
     let along = "the wagon's way along the rail, either way";
     if log.log.channels.contains_key("mark") {
         let mark = logs::channel(log, "mark", Dimension::ONE, WHY, along)?;
@@ -126,7 +127,7 @@ fn position(log: &ImportedRun, spec: &WeightTowSpec) -> Result<Vec<f64>, MethodE
 }
 
 /// A log as a run; nothing about it is taken for granted.
-fn run<'a>(log: &'a ImportedRun, position_m: &'a [f64]) -> Result<WeightRun<'a>, MethodError> {
+fn run<'a>(log: &'a TankLog, position_m: &'a [f64]) -> Result<WeightRun<'a>, MethodError> {
     let weight_n = logs::condition(log, "weight", Dimension::FORCE)?.ok_or_else(|| {
         MethodError::input(
             &log.log.path,

@@ -9,13 +9,14 @@ use froude::identify::seam::Choice;
 use froude::identify::source::{Asked, identify_laws};
 use froude::methods::tank::accelerated_tow::law::asked;
 use froude::methods::tank::accelerated_tow::plan::{Forecast, forecast};
-use froude::methods::tank::accelerated_tow::reduce::{Setup, reduce};
+use froude::methods::tank::accelerated_tow::reduce::reduce;
 use froude::methods::tank::accelerated_tow::section::{AcceleratedPlan, plan};
+use froude::methods::tank::accelerated_tow::setup::{Setup, declared, setup_of, without_rig};
 use froude::methods::tank::accelerated_tow::simulate::{
     Planned, Simulated, Truths, configurations, planned, simulated,
 };
-use froude::methods::tank::accelerated_tow::source::{declared, setup_of, without_rig};
-use froude::records::campaign::{Campaign, SensorSpec, Source, read_campaign};
+use froude::records::campaign::{Campaign, SensorSpec, Source};
+use froude::records::campaign_file::read_campaign;
 use rayon::prelude::*;
 
 use crate::claims::Claims;

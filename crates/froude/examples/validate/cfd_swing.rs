@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use froude::methods::added_mass::water::Water;
 use froude::pipeline::{Job, identify};
-use froude::records::campaign::read_campaign;
+use froude::records::campaign_file::read_campaign;
 use froude::swing::swing;
 use froude_cfd::collect::collect;
 use froude_cfd::history;

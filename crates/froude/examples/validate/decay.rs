@@ -6,13 +6,15 @@ use std::path::Path;
 
 use froude::fit::budget::Uncertain;
 use froude::fit::coverage::Count;
+use froude::methods::tank::decay::axis::Motion;
 use froude::methods::tank::decay::forecast::{Forecast, forecast, peaks_of};
 use froude::methods::tank::decay::releases::Logged;
 use froude::methods::tank::decay::releases::{planned, simulated, truth_of};
 use froude::methods::tank::decay::section::plan;
 use froude::methods::tank::decay::source::declared;
 use froude::methods::tank::decay::{DecayFit, DecayRun, DecaySetup, Method, envelope, output_error};
-use froude::records::campaign::{Motion, SensorSpec, read_campaign};
+use froude::records::campaign::SensorSpec;
+use froude::records::campaign_file::read_campaign;
 use froude::rig::decay::{DecayRig, DecaySensor, Release};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;

@@ -15,7 +15,7 @@ use froude::methods::carriage::drag::point::Method;
 use froude::methods::carriage::drag::run::RunKind;
 
 use froude::methods::carriage::drag::{BodyState, DragReport, DragRun, DragSetup, drag_report};
-use froude::records::campaign::read_campaign;
+use froude::records::campaign_file::read_campaign;
 use froude::rig::campaign::setup;
 use froude::rig::carriage::declared;
 use froude::rig::closed_loop::ClosedLoop;

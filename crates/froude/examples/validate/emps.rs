@@ -8,7 +8,7 @@ use froude::methods::carriage::servo::simulate::{Loop, Rigid, closed_loop};
 use froude::methods::carriage::servo::{
     Chain, Friction, ServoCoefficient, ServoLog, ServoReport, identify_servo, instrument, output_error,
 };
-use froude::records::table::read_table;
+use froude::records::table_file::read_table;
 use froude::records::units::Dimension;
 
 use crate::claims::{Claims, Verdict};

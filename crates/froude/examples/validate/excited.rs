@@ -5,12 +5,11 @@ use std::path::Path;
 
 use froude::fit::coverage::Count;
 use froude::methods::tank::excited_response::plan::forecast;
-use froude::methods::tank::excited_response::section::plan;
+use froude::methods::tank::excited_response::section::{plan, setup_of};
 use froude::methods::tank::excited_response::simulate::{Simulated, planned, simulated, truth};
-use froude::methods::tank::excited_response::source::setup_of;
 use froude::methods::tank::excited_response::{AtPeriod, WaveRun, fit};
 use froude::pipeline::{Identified, Job, identify};
-use froude::records::campaign::read_campaign;
+use froude::records::campaign_file::read_campaign;
 use froude::records::estimate::{Coefficient, Status};
 use rayon::prelude::*;
 

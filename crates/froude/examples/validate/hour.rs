@@ -9,11 +9,12 @@ use std::process::Command;
 use std::time::Instant;
 
 use froude::methods::tank::oscillation::section::plan;
+use froude::methods::tank::oscillation::setup::{declared as declared_of, setup_of};
 use froude::methods::tank::oscillation::simulate::{Truths, configurations, planned, simulated};
-use froude::methods::tank::oscillation::source::{declared as declared_of, setup_of};
 use froude::pipeline::{Job, identify};
-use froude::records::campaign::read_campaign;
-use froude::records::table::{Column, ColumnData, Table, prepare_table};
+use froude::records::campaign_file::read_campaign;
+use froude::records::table::{Column, ColumnData, Table};
+use froude::records::table_file::prepare_table;
 use froude::records::units::parse_unit;
 
 use crate::claims::{Claims, Verdict};

@@ -17,7 +17,8 @@ use std::path::Path;
 
 use froude::identify::envelope::of_source;
 use froude::identify::source::{SourceResult, identify_source};
-use froude::records::campaign::{Campaign, read_campaign};
+use froude::records::campaign::Campaign;
+use froude::records::campaign_file::read_campaign;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use froude::identify::source::identify_source;
-use froude::records::campaign::read_campaign;
+use froude::records::campaign_file::read_campaign;
 
 use crate::claims::{Claims, Verdict};
 

@@ -8,12 +8,14 @@ use froude::fit::budget::Uncertain;
 use froude::fit::coverage::Count;
 use froude::hydro::swing::{Kinematics, Medium, Pivot};
 use froude::methods::tank::TankError;
+use froude::methods::tank::oscillation::forces::drags;
 use froude::methods::tank::oscillation::forecast::{Forecast, forecast};
 use froude::methods::tank::oscillation::section::plan;
+use froude::methods::tank::oscillation::setup::{declared, setup_of};
 use froude::methods::tank::oscillation::simulate::{Planned, Truths, configurations, planned, simulated};
-use froude::methods::tank::oscillation::source::{declared, drags, setup_of};
 use froude::methods::tank::oscillation::{Cycles, Drag, OscillationFit, OscillationRun, Setup, fit, motions};
-use froude::records::campaign::{Campaign, Identify, SensorSpec, Source, read_campaign};
+use froude::records::campaign::{Campaign, Identify, SensorSpec, Source};
+use froude::records::campaign_file::read_campaign;
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};

@@ -10,11 +10,11 @@ use froude::methods::tank::TankError;
 use froude::methods::tank::rotation::derive::C_F_DIFFERENCE;
 use froude::methods::tank::rotation::fit::LAMBDAS;
 use froude::methods::tank::rotation::forecast::{Forecast, forecast, true_value};
-use froude::methods::tank::rotation::section::plan;
+use froude::methods::tank::rotation::section::{plan, setup_of};
 use froude::methods::tank::rotation::simulate::{Planned, Simulated, Truths, planned, simulated};
-use froude::methods::tank::rotation::source::setup_of;
 use froude::methods::tank::rotation::{Derived, RotationFit, RotationRun, Setup, derived, fit, motions};
-use froude::records::campaign::{Identify, SensorSpec, read_campaign};
+use froude::records::campaign::{Identify, SensorSpec};
+use froude::records::campaign_file::read_campaign;
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};

@@ -6,8 +6,11 @@ use froude_rig::campaign::runner::{Operator, Progress};
 use froude_rig::campaign::stop::StopSwitch;
 use froude_rig::carriage::plan::{Experiments, resonance, tuning};
 
+use froude_carriage::tuning::source::{Resonance, Tuning};
+use froude_identify::method::Method;
+
 use super::drive::{DriveJob, Prepared, drive, prepare_with};
-use crate::pipeline::{Identified, Input, Job, Purpose, identify};
+use crate::pipeline::{Identified, Input, Job, identify};
 use crate::{Error, results};
 
 /// The sweep below the margins, Hz: from well below the chain to well above the crossover of a loop that is stiff against it.
@@ -27,7 +30,7 @@ pub fn tune(
     let experiments = Experiments { sweep_hz: TUNING_HZ, ..Experiments::default() };
     let prepared = prepare_with(&with_folder(job, "tune"), &|asked, start_m, _| tuning(asked, start_m, &experiments))?
         .logging_every_tick();
-    driven(&prepared, Purpose::Tuning, &job.date, switch, operator, progress)
+    driven(&prepared, &Tuning, &job.date, switch, operator, progress)
 }
 
 /// Drives a sweep bare, dry and wet, and proposes a shaper; the record has the modes of each.
@@ -44,7 +47,7 @@ pub fn find_resonance(
     let experiments = Experiments::default();
     let prepared =
         prepare_with(&with_folder(job, "resonance"), &|asked, start_m, _| resonance(asked, start_m, &experiments))?;
-    driven(&prepared, Purpose::Resonance, &job.date, switch, operator, progress)
+    driven(&prepared, &Resonance, &job.date, switch, operator, progress)
 }
 
 fn with_folder(job: &DriveJob, what: &str) -> DriveJob {
@@ -56,7 +59,7 @@ fn with_folder(job: &DriveJob, what: &str) -> DriveJob {
 /// Drives and reads; the results lie beside the runs, in a folder of their own: it is replaced as a whole, and runs never are.
 fn driven(
     prepared: &Prepared,
-    purpose: Purpose,
+    method: &'static dyn Method,
     date: &str,
     switch: &StopSwitch,
     operator: &mut dyn Operator,
@@ -66,5 +69,5 @@ fn driven(
     results::can_be_written(&out)?;
     drive(prepared, switch, operator, progress)?.whole()?;
     let input = Input::Runs { paths: vec![prepared.folder.clone()], campaign: None };
-    identify(&Job { out: Some(out), purpose: Some(purpose), date: Some(date.to_owned()), ..Job::of(input) }, &|_| {})
+    identify(&Job { out: Some(out), method: Some(method), date: Some(date.to_owned()), ..Job::of(input) }, &|_| {})
 }

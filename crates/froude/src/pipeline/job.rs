@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use froude_identify::answer::Answer;
-use froude_records::added_mass_options::GivenOption;
+use froude_identify::method::Method;
 use froude_records::estimate::EstimateFile;
+use froude_records::given_option::GivenOption;
 use froude_records::outcome::Outcome;
 
 /// What a job reads.
@@ -12,7 +13,7 @@ use froude_records::outcome::Outcome;
 pub enum Input {
     /// A campaign (`.toml`) or a bare table (`.csv`, `.parquet`).
     File(PathBuf),
-    /// Runs of a carriage, by all methods of the job's purpose that they allow.
+    /// Runs of a carriage, reduced in every way that the job's method allows for them.
     Runs {
         /// Folders of runs, or runs.
         paths: Vec<PathBuf>,
@@ -30,19 +31,6 @@ pub enum Input {
     Records(Vec<PathBuf>),
 }
 
-/// What is asked of runs, or of a log, where no campaign names methods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Purpose {
-    /// Inertia, friction and flexibility of the axis.
-    Servo,
-    /// Force per volt of the drive, and polarity.
-    Calibration,
-    /// Gains of the position loop.
-    Tuning,
-    /// Modes of the carriage.
-    Resonance,
-}
-
 /// What to identify and where the results go.
 #[derive(Debug, Clone)]
 pub struct Job {
@@ -54,9 +42,8 @@ pub struct Job {
     pub sidecar: Option<PathBuf>,
     /// Models for a bare table, or instead of the campaign's.
     pub models: Vec<String>,
-    /// What is asked of runs or of a log that no campaign names methods for: unless said, their drag of runs, and of a log what its sidecar makes
-    /// of it.
-    pub purpose: Option<Purpose>,
+    /// Method for runs or a log where no campaign names one. By default: carriage drag for runs, and for a log whatever its sidecar indicates.
+    pub method: Option<&'static dyn Method>,
     /// The log of a servo that the fits of another are held against.
     pub validation: Option<PathBuf>,
     /// Date for the report's title page, as text; the pipeline reads no clock.
@@ -73,7 +60,7 @@ impl Job {
     /// A job with nothing but its input.
     #[must_use]
     pub fn of(input: Input) -> Self {
-        Self { input, out: None, sidecar: None, models: Vec::new(), purpose: None, validation: None, date: None }
+        Self { input, out: None, sidecar: None, models: Vec::new(), method: None, validation: None, date: None }
     }
 
     /// Where the results will lie, as far as that is known before the input is read.

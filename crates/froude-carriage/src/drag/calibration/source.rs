@@ -18,6 +18,7 @@ use crate::runs::{EXCITING, Runs, for_drag, read};
 use crate::source::files_of;
 
 /// Known weights over a pulley.
+#[derive(Debug)]
 pub struct KnownWeights;
 
 /// Its only name.

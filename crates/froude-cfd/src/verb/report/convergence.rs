@@ -1,9 +1,8 @@
 //! Forces over the iterations of a case, and the window that it was judged over.
 
-use froude_records::block::{ResultColumn, TableBuilder};
 use froude_records::page::{Chart, ChartPanel, Mark, Series};
 
-use super::{Shown, Solved};
+use super::solved::Solved;
 use crate::history;
 use crate::judge::judged_window;
 use crate::window::Window;
@@ -17,9 +16,9 @@ const DRAWN: [(usize, &str); 2] = [(0, "f_x [N]"), (1, "f_y [N]")];
 #[derive(Debug)]
 pub(super) struct Convergence {
     pub chart: Chart,
-    window: Option<Window>,
+    pub(super) window: Option<Window>,
     /// Of the last iteration.
-    last: f64,
+    pub(super) last: f64,
 }
 
 impl Convergence {
@@ -67,25 +66,7 @@ impl Convergence {
         Ok(Self { chart, window, last })
     }
 
-    fn first(&self, window: &Window) -> f64 {
+    pub(super) fn first(&self, window: &Window) -> f64 {
         self.last - window.length as f64 + 1.0
-    }
-
-    /// What it says of cases.
-    pub fn columns(t: &TableBuilder<'_, Shown>) -> Vec<ResultColumn> {
-        let window = |s: &Shown| s.convergence.as_ref().ok()?.window;
-        let first = |s: &Shown| {
-            let found = s.convergence.as_ref().ok()?;
-            Some(found.first(found.window.as_ref()?))
-        };
-        vec![
-            t.number("convergence/window/first", "judged from", first).plain(9),
-            t.number("convergence/last", "to", |s| s.convergence.as_ref().ok().map(|c| c.last)).plain(9),
-            t.count("convergence/window/iterations", "", |s| window(s).map(|w| w.length)),
-            t.numbers("convergence/window/mean", "", |s| window(s).map(|w| w.mean.to_vec())),
-            t.numbers("convergence/window/drift", "", |s| window(s).map(|w| w.drift.to_vec())),
-            t.numbers("convergence/window/spread", "", |s| window(s).map(|w| w.spread.to_vec())),
-            t.text("convergence/problem", "", |s| s.convergence.as_ref().err().cloned()),
-        ]
     }
 }

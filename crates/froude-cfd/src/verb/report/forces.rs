@@ -5,10 +5,10 @@ use froude_records::number::plain;
 use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 use froude_records::text::counted;
 
-use super::Solved;
+use super::solved::Solved;
 use crate::case::Model;
 use crate::outcome::Status;
-use crate::verb::collect::LOADS;
+use crate::verb::loads::LOADS;
 
 /// Loads that are drawn against the angle, with their labels.
 const DRAWN: [(usize, &str); 3] = [(0, "f_x [N]"), (1, "f_y [N]"), (5, "m_z [N m]")];

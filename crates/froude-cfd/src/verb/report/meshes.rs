@@ -2,7 +2,7 @@
 
 use froude_records::block::{Block, TableBuilder};
 
-use super::Solved;
+use super::solved::Solved;
 use crate::again::Again;
 use crate::poly_mesh::PolyMesh;
 use crate::quality::Quality;

@@ -2,11 +2,10 @@
 //!
 //! Views are those of an eye: from port the nose is left, from starboard and from below it is right.
 
-use froude_records::block::{ResultColumn, TableBuilder};
 use froude_records::number::{degrees, fixed, plain};
 use froude_records::page::{Field, Polygon, View};
 
-use super::{Shown, Solved};
+use super::solved::Solved;
 use crate::case::Case;
 use crate::flow_field::FlowField;
 use crate::midplane::{CutCell, Midplane};
@@ -20,13 +19,13 @@ const MARGIN: f64 = 0.04;
 /// Pictures of a case, with what they say in numbers.
 #[derive(Debug)]
 pub(super) struct Pictures {
-    surface: Field,
-    wake: Field,
+    pub(super) surface: Field,
+    pub(super) wake: Field,
     /// Least and largest.
-    pressure_coefficient: [f64; 2],
-    pressure_force_n: [f64; 3],
-    largest_speed_ratio: f64,
-    time: f64,
+    pub(super) pressure_coefficient: [f64; 2],
+    pub(super) pressure_force_n: [f64; 3],
+    pub(super) largest_speed_ratio: f64,
+    pub(super) time: f64,
 }
 
 impl Pictures {
@@ -58,24 +57,6 @@ impl Pictures {
 
     pub fn fields(&self) -> [Field; 2] {
         [self.surface.clone(), self.wake.clone()]
-    }
-
-    /// What they say of cases.
-    pub fn columns(t: &TableBuilder<'_, Shown>) -> Vec<ResultColumn> {
-        fn of(shown: &Shown) -> Option<&Pictures> {
-            shown.pictures.as_ref()?.as_ref().ok()
-        }
-        let file = |field: &Field| format!("figures/{}.svg", field.name);
-        vec![
-            t.number("pictures/iteration", "", |s| of(s).map(|p| p.time)),
-            t.interval("pictures/pressure_coefficient", "C_p", |s| of(s).map(|p| p.pressure_coefficient)).range(),
-            t.numbers("pictures/pressure_force_n", "", |s| of(s).map(|p| p.pressure_force_n.to_vec())),
-            t.number("pictures/largest_speed_ratio", "largest |U|/U", |s| of(s).map(|p| p.largest_speed_ratio))
-                .places(2),
-            t.text("pictures/surface", "", |s| of(s).map(|p| file(&p.surface))),
-            t.text("pictures/wake", "", |s| of(s).map(|p| file(&p.wake))),
-            t.text("pictures/problem", "", |s| s.pictures.as_ref()?.as_ref().err().cloned()),
-        ]
     }
 }
 

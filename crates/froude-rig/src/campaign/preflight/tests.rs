@@ -12,7 +12,7 @@ fn campaign(changes: &[(&str, &str)]) -> CarriageCampaign {
         assert!(text.contains(from), "the example has no {from}");
         text = text.replace(from, to);
     }
-    let campaign = froude_records::campaign::parse_campaign(std::path::Path::new("c.toml"), &text).unwrap();
+    let campaign = froude_records::campaign_file::parse_campaign(std::path::Path::new("c.toml"), &text).unwrap();
     declared(&campaign).unwrap().unwrap()
 }
 

@@ -4,10 +4,10 @@ use std::cell::RefCell;
 use std::path::Path;
 
 use froude_identify::answer::Answer;
-use froude_records::campaign::read_campaign;
+use froude_records::campaign_file::read_campaign;
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
-use froude_records::table::{prepare_table, read_table};
+use froude_records::table_file::{prepare_table, read_table};
 
 use super::*;
 

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use crate::error::{Place, RecordError};
-use crate::run::import::{EVEN, GAP, TimeSteps, gap, not_increasing, time_column};
-use crate::run::log::Gap;
-use crate::table::Table;
+use froude_records::run::{EVEN, GAP, Gap, TimeSteps, gap, median, not_increasing, time_column};
+use froude_records::table::Table;
+use froude_records::{Place, RecordError};
 
 /// Steps that the median is taken of: every one of a shorter log, evenly spread ones of a longer.
 const MOST_STEPS: usize = 1 << 16;
@@ -14,7 +13,7 @@ const MOST_GAPS: usize = 10_000;
 
 /// What is known of the times that went by.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ticks {
+pub(crate) struct Ticks {
     last_s: Option<f64>,
     /// Median step of the first rows: what gaps are told by while the log goes by.
     usual_s: Option<f64>,
@@ -48,7 +47,7 @@ impl Ticks {
     /// # Errors
     ///
     /// A time column that is missing or does not increase; more gaps than a log has.
-    pub fn push<'t>(&mut self, part: &'t Table) -> Result<(&'t [f64], Vec<usize>), RecordError> {
+    pub(crate) fn push<'t>(&mut self, part: &'t Table) -> Result<(&'t [f64], Vec<usize>), RecordError> {
         let time_s = time_column(part)?;
         if self.usual_s.is_none() && time_s.len() > 1 {
             self.usual_s = median(&mut time_s.windows(2).map(|w| w[1] - w[0]).collect::<Vec<_>>());
@@ -109,18 +108,13 @@ impl Ticks {
     }
 }
 
-/// The middle one, in the order of size; `None` of none.
-pub(super) fn median(steps: &mut [f64]) -> Option<f64> {
-    let middle = steps.len() / 2;
-    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
-
 #[cfg(test)]
 mod tests {
+    use froude_records::run::run_of_table;
+    use froude_records::table::{Column, ColumnData};
+    use froude_records::units::{Dimension, Unit};
+
     use super::*;
-    use crate::run::run_of_table;
-    use crate::table::{Column, ColumnData};
-    use crate::units::{Dimension, Unit};
 
     fn table(time_s: &[f64], first_row: usize) -> Table {
         Table::of(

@@ -4,22 +4,19 @@ use std::path::Path;
 
 use indexmap::IndexMap;
 
-use crate::error::{Place, RecordError};
-use crate::finding::Finding;
-use crate::run::channel::Frame;
-use crate::run::declarations::Told;
-use crate::run::import::{ImportedRun, steps};
-use crate::run::log::RunLog;
-use crate::run::reader::{head_of, read_run};
-use crate::run::sidecar::read_run_meta;
-use crate::units::{Unit, parse_unit};
+use froude_records::finding::Finding;
+use froude_records::run::{Doubt, Frame, RunLog, TimeSteps, Told, head_of, read_run, read_run_meta};
+use froude_records::units::{Unit, parse_unit};
+use froude_records::{Place, RecordError};
+
+use crate::log::TankLog;
 
 /// Reads `RUN.mcap` with `RUN.toml` beside it: units and signs are undone, as an importer does; what is doubtful about the log is a finding.
 ///
 /// # Errors
 ///
 /// As [`read_run`]; fewer than two ticks, a unit that cannot be read.
-pub fn recorded_run(path: &Path) -> Result<ImportedRun, RecordError> {
+pub(crate) fn recorded_run(path: &Path) -> Result<TankLog, RecordError> {
     let sidecar = path.with_extension("toml");
     // Before the whole is read: then what is not declared has been filled in by the channels' names.
     let declared = if sidecar.exists() { Some(read_run_meta(&sidecar)?) } else { head_of(path)? }.unwrap_or_default();
@@ -34,7 +31,7 @@ pub fn recorded_run(path: &Path) -> Result<ImportedRun, RecordError> {
         let meaning = &mut channel.meaning;
         let unit = parse_unit(&meaning.unit).map_err(|e| {
             let header = format!("{name} [{}]", meaning.unit);
-            RecordError::column(Place::whole(path), &header, format!(": {e}"))
+            RecordError::syntax(Place::whole(path), format!("column `{header}`: {e}"))
         })?;
         let sign = f64::from(meaning.sign);
         channel.values.iter_mut().for_each(|x| *x = sign * unit.to_si(*x));
@@ -64,9 +61,9 @@ pub fn recorded_run(path: &Path) -> Result<ImportedRun, RecordError> {
         meaning.unit = Unit::si(unit.dimension).text;
         meaning.sign = 1;
     }
-    let steps = steps(&log.time_s);
-    let findings: Vec<Finding> = log.doubts.iter().map(super::Doubt::finding).collect();
+    let steps = TimeSteps::of(&log.time_s);
+    let findings: Vec<Finding> = log.doubts.iter().map(Doubt::finding).collect();
     let declared = std::mem::take(&mut log.meta.declared);
     let log = RunLog { doubts: Vec::new(), ..log };
-    Ok(ImportedRun { log, steps, findings, told, declared, ..ImportedRun::default() })
+    Ok(TankLog { log, steps, findings, told, declared, ..TankLog::default() })
 }

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use crate::error::{RecordError, read_bytes};
-use crate::hash::fingerprint_of_file;
-use crate::run::doubt::DoubtKind;
-use crate::run::log::GapCause;
-use crate::run::meta::{RunMeta, RunStatus};
-use crate::run::reader::{RunReader, head_of};
-use crate::run::seal::{CampaignMark, contradiction, difference};
-use crate::run::sidecar::{LARGEST_BYTES, read_run_meta};
+use froude_records::RecordError;
+use froude_records::hash::fingerprint_of_file;
+use froude_records::read::whole;
+use froude_records::run::{
+    CampaignMark, DoubtKind, GapCause, RunMeta, RunReader, RunStatus, contradiction, difference, head_of, read_run_meta,
+};
+
+/// The largest sidecar that is looked into.
+const LARGEST_BYTES: u64 = 1 << 20;
 
 /// What lies in a folder under the name of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,7 +87,7 @@ pub fn check_names(folder: &Path, id: &str, campaign: CampaignMark<'_>) -> Resul
     let (log, sidecar) = (folder.join(format!("{id}.mcap")), folder.join(format!("{id}.toml")));
     // What a power cut leaves of a file that was just made: it says nothing of any run.
     let is_blank = |bytes: Vec<u8>| bytes.iter().all(|byte| byte.is_ascii_whitespace() || *byte == 0);
-    if !sidecar.exists() || read_bytes(&sidecar, LARGEST_BYTES, "a run's sidecar").is_ok_and(is_blank) {
+    if !sidecar.exists() || whole(&sidecar, LARGEST_BYTES, "a run's sidecar").is_ok_and(is_blank) {
         return Ok(None);
     }
     let meta = read_run_meta(&sidecar)?;

@@ -4,21 +4,20 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use indexmap::IndexMap;
-use toml::de::DeValue;
 
-use crate::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
 use crate::body::link;
 use crate::body_axis::BodyAxis;
 use crate::campaign::{
     AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, OwnSections,
-    PlanBlock, PriorRecord, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, StatedUnit, Tank,
-    Tare, Truth, UserModel,
+    PlanBlock, PriorRecord, PriorSpec, ROOT_KEYS, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind,
+    StatedUnit, Tank, Tare, Truth, UserModel,
 };
 use crate::document::Document;
 use crate::error::RecordError;
 use crate::estimate::ErrorKind;
 use crate::hash::short_key;
 use crate::keep::parse_keep;
+use crate::known_columns::known_dimension;
 use crate::plausible;
 use crate::prior_record;
 use crate::read;
@@ -27,15 +26,10 @@ use crate::section::{Section, Value, found};
 use crate::section_values::{
     Asks, MOST_RUNS, OF_RUNS, at_most, configurations, count, one_of, plan_of, product, series,
 };
-use crate::table::known_dimension;
 use crate::units::{Dimension, Unit};
 
 /// Kinds of covariance that can be asked for.
 const COVARIANCES: [&str; 4] = ["classical", "HC3", "cluster", "serial"];
-
-/// The sections and keys of a campaign.
-pub(crate) const ROOT_KEYS: [&str; 11] =
-    ["schema", "name", "cite", "fluid", "body", "tank", "source", "identify", "simulate", "rig", "carriage"];
 
 /// Where the numbers of a source can lie.
 const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
@@ -226,7 +220,7 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
             format!("describes runs of {method}, but that is no method of the source: write method = {method:?}");
         s.refuse(method, !is_method(method), problem)?;
     }
-    of_tank.into_iter().chain(["decay", "cfd"]).try_for_each(|name| s.section(name).map(drop))?;
+    of_tank.into_iter().chain(["added_mass", "decay", "cfd"]).try_for_each(|name| s.section(name).map(drop))?;
     let blocks = s.sections("plan")?;
     // The blocks of a plan are of the first method that has a form of its own; steady tows have that of tables.
     let planned =
@@ -247,7 +241,7 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
         group: s.text("group")?.map(str::to_owned),
         uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,
         tare,
-        added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
+        given: Vec::new(),
         own: Some(OwnSections { document: document.clone(), index, planned_by }),
         plan: plan_of(
             rows,
@@ -273,28 +267,6 @@ fn why_no_rows(input: &Input) -> Option<&'static str> {
         Input::Mesh(_) => Some("a mesh has none, and says its numerical uncertainty itself"),
         _ => None,
     }
-}
-
-/// `[source.added_mass]`: the options of the verb, as texts, whole numbers, switches and lists of texts.
-fn added_mass(s: &Section<'_>) -> Result<Vec<GivenOption>, RecordError> {
-    s.only(&ADDED_MASS_OPTIONS.map(|option| option.name))?;
-    let mut out = Vec::new();
-    for (name, _, value) in s.entries() {
-        let takes = ADDED_MASS_OPTIONS.iter().find(|option| option.name == name).and_then(|option| option.takes);
-        let text = match value.get_ref() {
-            DeValue::Boolean(false) if takes.is_none() => continue,
-            DeValue::Boolean(true) if takes.is_none() => "true".to_owned(),
-            _ if takes.is_none() => {
-                return Err(s.wrong(name, value, format!("is {}; expected true or false", found(value))));
-            }
-            DeValue::Integer(i) if i.radix() == 10 => i.as_str().replace('_', ""),
-            DeValue::Array(list) => list.iter().map(|v| s.as_text(name, v)).collect::<Result<Vec<_>, _>>()?.join(","),
-            _ => s.as_text(name, value)?.to_owned(),
-        };
-        let place = Some(s.source.place(value.span().start));
-        out.push(GivenOption { name: name.to_owned(), text, place });
-    }
-    Ok(out)
 }
 
 fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {

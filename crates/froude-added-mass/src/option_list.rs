@@ -2,9 +2,11 @@
 //!
 //! Here they are texts with their places; what they mean is for the method to say.
 
-use std::fmt;
-
-use crate::error::Place;
+use froude_records::RecordError;
+use froude_records::campaign::Source;
+use froude_records::given_option::GivenOption;
+use froude_records::section::found;
+use toml::de::DeValue;
 
 /// An option.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,23 +87,29 @@ pub const ADDED_MASS_OPTIONS: [AddedMassOption; 17] = [
     option("export", "FORMAT,…", "Files to write beside the record: wamit, capytaine, csv"),
 ];
 
-/// An option as it was given.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct GivenOption {
-    /// Its [`AddedMassOption::name`].
-    pub name: String,
-    /// What stands there; `true` for one that is set or not.
-    pub text: String,
-    /// Where it stands in a campaign; `None` for a flag.
-    pub place: Option<Place>,
-}
-
-impl fmt::Display for GivenOption {
-    /// `--most-panels "none"`, or `campaign.toml:9:15: most_panels = "none"`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.place {
-            Some(place) => write!(f, "{place}: {} = {:?}", self.name, self.text),
-            None => write!(f, "--{} {:?}", self.name.replace('_', "-"), self.text),
-        }
+/// The options given for a source: flags of the verb, or keys of `[source.added_mass]`. Values are texts, whole numbers, switches or lists of texts.
+///
+/// # Errors
+///
+/// A key that is not known, or a value of another kind, with its place.
+pub fn given(source: &Source) -> Result<Vec<GivenOption>, RecordError> {
+    let Some(s) = source.section("added_mass")? else { return Ok(source.given.clone()) };
+    s.only(&ADDED_MASS_OPTIONS.map(|option| option.name))?;
+    let mut out = Vec::new();
+    for (name, _, value) in s.entries() {
+        let takes = ADDED_MASS_OPTIONS.iter().find(|option| option.name == name).and_then(|option| option.takes);
+        let text = match value.get_ref() {
+            DeValue::Boolean(false) if takes.is_none() => continue,
+            DeValue::Boolean(true) if takes.is_none() => "true".to_owned(),
+            _ if takes.is_none() => {
+                return Err(s.wrong(name, value, format!("is {}; expected true or false", found(value))));
+            }
+            DeValue::Integer(i) if i.radix() == 10 => i.as_str().replace('_', ""),
+            DeValue::Array(list) => list.iter().map(|v| s.as_text(name, v)).collect::<Result<Vec<_>, _>>()?.join(","),
+            _ => s.as_text(name, value)?.to_owned(),
+        };
+        let place = Some(s.source.place(value.span().start));
+        out.push(GivenOption { name: name.to_owned(), text, place });
     }
+    Ok(out)
 }

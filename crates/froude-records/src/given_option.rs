@@ -1,0 +1,26 @@
+//! What is asked of a method as an option: a flag of its verb, or a key of its section in a campaign.
+
+use std::fmt;
+
+use crate::error::Place;
+
+/// An option as it was given.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GivenOption {
+    /// Its key in a campaign; the flag has `-` for `_`.
+    pub name: String,
+    /// What stands there; `true` for one that is set or not.
+    pub text: String,
+    /// Where it stands in a campaign; `None` for a flag.
+    pub place: Option<Place>,
+}
+
+impl fmt::Display for GivenOption {
+    /// `--most-panels "none"`, or `campaign.toml:9:15: most_panels = "none"`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.place {
+            Some(place) => write!(f, "{place}: {} = {:?}", self.name, self.text),
+            None => write!(f, "--{} {:?}", self.name.replace('_', "-"), self.text),
+        }
+    }
+}
