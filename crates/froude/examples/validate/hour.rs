@@ -82,7 +82,6 @@ fn log(root: &Path, folder: &Path, periods: usize) -> Result<usize, Box<dyn Erro
         ("[\"10 deg\", \"15 deg\", \"20 deg\"]", "[\"15 deg\"]"),
         ("[\"60 deg/s\", \"70 deg/s\", \"80 deg/s\"]", "[\"72 deg/s\"]"),
         ("configurations = [\"H1LT\", \"H2LT\"]", "configurations = [\"H1LT\"]"),
-        ("periods   = 7", &format!("periods   = {periods}")),
         ("rate      = \"100 Hz\"", "rate      = \"10000 Hz\""),
         ("cycles   = { skip = 1, used = 5 }", "cycles   = { skip = 1 }"),
         // At one frequency and on one configuration a law of one coefficient is what a run can tell, and a delay is no unknown beside it.
@@ -104,7 +103,12 @@ fn log(root: &Path, folder: &Path, periods: usize) -> Result<usize, Box<dyn Erro
     let setup = setup_of(&campaign, source, &spec, &configurations(&blocks))?;
     let truth = Truths::of(&campaign, source, &setup)?;
     let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
-    let trace = simulated(&planned(&blocks, &setup), &setup, &truth, sensors, seed).remove(0).trace;
+    // A campaign plans ten million samples at most, and an hour has 36.
+    let mut runs = planned(&blocks, &setup);
+    for run in &mut runs {
+        run.swing.periods = periods as f64;
+    }
+    let trace = simulated(&runs, &setup, &truth, sensors, seed).remove(0).trace;
     let rows = trace.time_s.len();
     // A strain of the rod, two accelerations, a voltage and a temperature, with steps as of a 16-bit converter.
     let beside = |size: f64, offset: f64, k: f64| -> Vec<f64> {
