@@ -1,6 +1,6 @@
-//! What can be asked of an added mass: one list of options, flags of `froude added-mass` and keys of `[source.added_mass]` alike.
+//! The options of an added-mass computation: flags of `froude added-mass` and keys of `[source.added_mass]`, from one list.
 //!
-//! Here they are texts with their places; what they mean is for the method to say.
+//! Values are kept here as written, with their places; [`Asked`](crate::options::Asked) interprets them.
 
 use froude_records::RecordError;
 use froude_records::campaign::Source;
@@ -15,11 +15,11 @@ pub struct AddedMassOption {
     pub name: &'static str,
     /// The flag, without its dashes: the key with `-` for `_`.
     pub flag: &'static str,
-    /// What it takes; nothing where it is set or not.
+    /// Placeholder of its value in the help; `None` for a switch.
     pub takes: Option<&'static str>,
-    /// The only words that it takes, where these are few.
+    /// The only values allowed; empty if there is no fixed list.
     pub words: &'static [&'static str],
-    /// What it says.
+    /// Help text.
     pub help: &'static str,
 }
 
@@ -38,7 +38,7 @@ const fn switch(name: &'static str, help: &'static str) -> AddedMassOption {
 /// Directions along the axes of a mesh.
 const DIRECTIONS: &[&str] = &["x", "-x", "y", "-y", "z", "-z"];
 
-/// All of them.
+/// All options.
 pub const ADDED_MASS_OPTIONS: [AddedMassOption; 17] = [
     option("links", "K|A..B|K,K", "Links of a robot: 3, or 1..9 for a table with a least-squares fit, or 1,3,6"),
     option("density", "QUANTITY", "Density of the water, with its unit [default: the body file's]"),

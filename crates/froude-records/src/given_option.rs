@@ -1,4 +1,4 @@
-//! What is asked of a method as an option: a flag of its verb, or a key of its section in a campaign.
+//! An option of a method as it was given: a flag of its verb, or a key of its section in a campaign.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::error::Place;
 pub struct GivenOption {
     /// Its key in a campaign; the flag has `-` for `_`.
     pub name: String,
-    /// What stands there; `true` for one that is set or not.
+    /// Its value as written; `true` for a switch.
     pub text: String,
     /// Where it stands in a campaign; `None` for a flag.
     pub place: Option<Place>,

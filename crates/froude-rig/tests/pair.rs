@@ -67,9 +67,9 @@ fn a_run_is_complete_only_when_log_and_sidecar_are_what_was_written() {
         std::fs::copy(path.with_extension(extension), at.join("next").with_extension(extension)).unwrap();
     }
     let error = pair(at, "next").unwrap_err().to_string();
-    let told = "is the sidecar of run run, not of next: it was renamed or exchanged; give log and sidecar the name of their own run, or move \
+    let expected = "is the sidecar of run run, not of next: it was renamed or exchanged; give log and sidecar the name of their own run, or move \
                 both out of the folder";
-    assert_eq!(error, format!("{} {told}", at.join("next.toml").display()));
+    assert_eq!(error, format!("{} {expected}", at.join("next.toml").display()));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Why `froude cfd` ends without what it was asked for.
+//! Errors of the `froude cfd` verbs.
 
 use std::path::{Path, PathBuf};
 

@@ -7,7 +7,7 @@ use froude_records::campaign::{BudgetEntry, Identify, SourceKind};
 
 use crate::uncertainty::SharedError;
 
-/// What the observations weigh.
+/// How the observations are weighted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Weight {
     /// All alike.
@@ -39,7 +39,7 @@ pub enum Scatter {
 }
 
 impl Scatter {
-    /// What the residuals are asked for.
+    /// The covariance to be estimated from the residuals.
     pub(crate) const fn of_residuals(&self) -> fit::CovarianceKind {
         match self {
             Self::Classical | Self::Runs | Self::Serial(_) | Self::Replicates { .. } => fit::CovarianceKind::Classical,
@@ -58,7 +58,7 @@ pub struct Settings<'a> {
     pub kind: SourceKind,
     /// `[identify]` of the campaign.
     pub identify: &'a Identify,
-    /// What the observations weigh.
+    /// How the observations are weighted.
     pub weight: Weight,
     /// Where the scatter comes from.
     pub scatter: &'a Scatter,

@@ -37,7 +37,7 @@ pub(crate) fn with_recommended(mut result: SourceResult, campaign: &Campaign) ->
     result
 }
 
-/// The rows with the laws that are asked for; `counts` are those of all rows, of which the observations may be few.
+/// Prepares the rows and the requested laws for the fit; `counts` covers all rows, of which `observations` may be a sample.
 pub(crate) fn reduced(
     campaign: &Campaign,
     source: &Source,

@@ -23,14 +23,14 @@ pub fn coefficient(c: &Coefficient) -> String {
     }
 }
 
-/// The coefficient with its expanded uncertainty: `0.0133 ± 0.0024` with half of a 95 % interval that is symmetric about the value, else the value in short form with its interval; without
-/// an interval, the short form alone.
+/// The coefficient with its expanded uncertainty: `0.0133 ± 0.0024` if its 95 % interval is symmetric about the value, otherwise the short form with the interval.
+/// Without an interval, the short form alone.
 #[must_use]
 pub fn coefficient_expanded(c: &Coefficient) -> String {
     let is_found = matches!(c.status, Status::Free | Status::Prior);
     let Some(value) = finite(c.value).filter(|_| is_found) else { return coefficient(c) };
     let number = usable(c.standard_uncertainty).map_or_else(|| plain(value, 5), |u| short_form(value, u));
-    // Without an interval there is none to halve, whatever the standard uncertainty.
+    // There is no U without an interval, even if a standard uncertainty is known.
     let has_width = |[low, high]: &[f64; 2]| (high / 2.0 - low / 2.0).is_finite() && high / 2.0 - low / 2.0 > 0.0;
     let Some(ends) = c.interval_95.filter(has_width) else { return number };
     half_width(value, ends).map_or_else(|| format!("{number} {}", interval(ends)), |half| plus_minus(value, half))
