@@ -30,7 +30,7 @@ pub struct Replicates {
 /// freedom, to differ between any two of them: it leaves out what they may have in common. A coefficient's variance is `max(V_jj, F_jj)` with the
 /// degrees of freedom of the larger one, the correlations stay: `V ← D V D` with `D_j = √max(1, F_jj/V_jj)`. The two are not pooled, since a trouble
 /// that only the replicates have is never in the floor. Where there is none, the larger of two estimates of one variance is somewhat too large:
-/// in simulated towing campaigns of three to five pairs the 95 % interval covers 93.8 to 97.7 % (`froude-carriage`, `tests/scatter.rs`).
+/// in simulated towing campaigns of three to five pairs the 95 % interval covers 93.8 to 97.7 % (`froude-carriage`, `tests/suite/scatter.rs`).
 ///
 /// The floor can narrow an interval: with its own degrees of freedom comes a smaller factor of Student's t than few replicates have. Two of them that
 /// scatter just below the floor have 2.09 √F for 20 degrees of freedom, and 12.7 √F just above it. The coverage with two replicates is not stated.

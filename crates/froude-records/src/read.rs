@@ -1,7 +1,7 @@
 //! The one place where input files are opened, with the errors of this crate.
 //!
 //! **Kind.** Regular files only, also through a symbolic link: a pipe may block for ever and a device may have no end.
-//! **Size.** Every reader states a limit, or reads in chunks. A test (`crates/froude-cli/tests/files.rs`) keeps other openings out.
+//! **Size.** Every reader states a limit, or reads in chunks. A test (`crates/froude-cli/tests/suite/files.rs`) keeps other openings out.
 
 use std::fs::File;
 use std::io::Read as _;

@@ -17,7 +17,7 @@
 //! with white residuals.
 //!
 //! **Source.** Ljung (1999), System Identification, 13.4 (the bias of a direct method in a loop); Belsley, Kuh & Welsch (1980), 3.2. The limits are ours: twelve motions of a simulated axis
-//! (tests/servo_logs.rs).
+//! (tests/suite/servo_logs.rs).
 
 use froude_fit::faer::Mat;
 use froude_fit::stream::Solution;

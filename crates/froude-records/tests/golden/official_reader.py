@@ -1,6 +1,6 @@
 """What the official Python reader finds in a run of tests/common: the parent of official_reader.json.
 
-    FROUDE_TEST_KEEP=/tmp/run cargo test -p froude-records --test official_reader
+    FROUDE_TEST_KEEP=/tmp/run cargo test -p froude-records --test suite official_reader
     pip install mcap==1.6.0 mcap-ros2-support==0.6.0
     python official_reader.py /tmp/run/run.mcap > official_reader.json
 """

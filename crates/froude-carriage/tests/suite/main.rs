@@ -1,0 +1,10 @@
+//! Methods of the carriage: tests against closed forms and a simulated axis.
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, missing_docs)]
+
+mod carriage;
+mod one_plant;
+mod scatter;
+#[path = "../scenario/mod.rs"]
+mod scenario;
+mod servo_logs;
+mod tuning;

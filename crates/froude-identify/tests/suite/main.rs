@@ -1,0 +1,10 @@
+//! Identification from tables: tests of choices, physics and what is advised.
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, missing_docs)]
+
+mod advice;
+mod choices;
+mod drift;
+mod idle;
+mod in_time;
+mod physics;
+mod seam;

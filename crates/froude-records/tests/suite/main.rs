@@ -1,0 +1,16 @@
+//! Files that are read and written: tests of every format.
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+
+mod bad_tables;
+mod campaigns;
+#[path = "../common/mod.rs"]
+mod common;
+#[cfg(unix)]
+mod crash;
+mod estimates;
+mod imported_logs;
+mod laws;
+mod official_reader;
+mod parquet_tables;
+mod runs;
+mod writing;

@@ -1,0 +1,78 @@
+//! A path to a stated accuracy: Dormand and Prince's eighth order with steps of its own.
+//!
+//! A drag law by |v| has corners, where the order falls: the step control pays for them.
+//!
+//! The reference of the steps of a swimmer.
+//!
+//! # Source
+//!
+//! Hairer, Nørsett & Wanner (1993), *Solving Ordinary Differential Equations I*, II.5 (DOP853), by the crate `differential-equations`.
+
+use std::cell::RefCell;
+
+use differential_equations::prelude::*;
+use froude_swim::path::{State as PlanarState, Swimmer as PlanarSwimmer};
+use froude_swim::spatial::attitude::unit;
+use froude_swim::spatial::path::{State, Swimmer};
+
+/// Most steps between two times that are asked for.
+const MOST_STEPS: usize = 1_000_000;
+
+/// Rates by a closure.
+struct Rates<F>(RefCell<F>);
+
+impl<F: FnMut(f64, &[f64], &mut [f64]) -> Option<()>> ODE<f64, Vec<f64>> for Rates<F> {
+    fn diff(&self, time_s: f64, state: &Vec<f64>, rates: &mut Vec<f64>) {
+        (self.0.borrow_mut())(time_s, state, rates).unwrap();
+    }
+}
+
+/// States at `times_s`, which grow, from the `start` at the first of them.
+///
+/// `tolerance` is that of a step, relative to each number of the state and to one.
+pub fn path(
+    times_s: &[f64],
+    start: &[f64],
+    tolerance: f64,
+    rates: impl FnMut(f64, &[f64], &mut [f64]) -> Option<()>,
+) -> Vec<Vec<f64>> {
+    let system = Rates(RefCell::new(rates));
+    let mut out = vec![start.to_vec()];
+    for pair in times_s.windows(2) {
+        let from = out[out.len() - 1].clone();
+        let method = ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance).max_steps(MOST_STEPS);
+        let mut solution = IVP::ode(&system, pair[0], pair[1], from).method(method).solve().unwrap();
+        out.push(solution.y.pop().unwrap());
+    }
+    out
+}
+
+/// The path of a swimmer in the plane.
+pub fn in_plane(
+    swimmer: &mut PlanarSwimmer<'_>,
+    times_s: &[f64],
+    start: &PlanarState,
+    tolerance: f64,
+) -> Vec<PlanarState> {
+    let rates = |time_s: f64, numbers: &[f64], out: &mut [f64]| {
+        let found = swimmer.rates(time_s, &PlanarState::of(numbers.try_into().ok()?))?;
+        out.copy_from_slice(&found.numbers());
+        Some(())
+    };
+    let found = path(times_s, &start.numbers(), tolerance, rates);
+    found.iter().map(|n| PlanarState::of(n.as_slice().try_into().unwrap())).collect()
+}
+
+/// The path of a swimmer in three dimensions.
+pub fn in_space(swimmer: &mut Swimmer<'_>, times_s: &[f64], start: &State, tolerance: f64) -> Vec<State> {
+    let rates = |time_s: f64, numbers: &[f64], out: &mut [f64]| {
+        let found = swimmer.rates(time_s, &State::of(numbers.try_into().ok()?))?;
+        out.copy_from_slice(&found.numbers());
+        Some(())
+    };
+    let state = |n: &Vec<f64>| {
+        let state = State::of(n.as_slice().try_into().unwrap());
+        State { attitude: unit(state.attitude), ..state }
+    };
+    path(times_s, &start.numbers(), tolerance, rates).iter().map(state).collect()
+}

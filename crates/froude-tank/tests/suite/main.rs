@@ -1,0 +1,11 @@
+//! Methods of the tank: tests on simulated runs.
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, missing_docs)]
+
+mod decay;
+mod decay_limits;
+mod excited_response;
+mod hostile_sidecars;
+mod oscillation;
+mod rotation;
+mod scenario;
+mod weights;

@@ -1,0 +1,63 @@
+//! The weight-driven rig on its twin: what a single run states of its speed and its drag.
+
+use froude_records::run::Declared;
+use froude_rig::weight_tow::{WeightRig, pull};
+use froude_tank::weight_tow::reduce::{WeightRun, reduce};
+use froude_tank::weight_tow::section::WeightTowSpec;
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64Mcg;
+
+/// Drag of 0.113 N at 0.3 m/s, a third of it linear; 4 kg, 0.8 m, errors of 0.6 mm at 50 frames a second.
+#[test]
+fn the_drag_of_a_run_that_still_accelerates_has_the_error_that_it_states() {
+    let drag = |v: f64| 0.113 * (v / 0.9 + 2.0 / 3.0 * (v / 0.3).powi(2));
+    let spec = WeightTowSpec {
+        scale_m: None,
+        lens: None,
+        moving_mass_kg: Some(Declared::exact(4.0)),
+        friction_n: Declared::exact(0.0),
+        window_m: 0.2,
+        tolerance: 0.02,
+        reached: 0.4,
+        travel_m: 0.8,
+        still_s: 2.0,
+        rate_hz: 50.0,
+    };
+    for weight_n in [0.025, 0.06, 0.113] {
+        let rig = WeightRig {
+            moving_mass_kg: 4.0,
+            below_cell_kg: 3.0,
+            weight_n,
+            friction_n: 0.0,
+            travel_m: 0.8,
+            still_s: 2.0,
+            rate_hz: 50.0,
+        };
+        let trace = pull(rig, &[], &drag, &|_| Vec::new(), &[], 1);
+        let mut rng = Pcg64Mcg::seed_from_u64(5);
+        let (mut square, mut sum, n) = (0.0, 0.0, 300);
+        for _ in 0..n {
+            let mut error = || -> f64 { 6e-4 * rng.sample::<f64, _>(StandardNormal) };
+            let position_m: Vec<f64> = trace.position_m.iter().map(|x| x + error()).collect();
+            let run = WeightRun {
+                id: "a",
+                angle_rad: 0.0,
+                weight_n,
+                time_s: &trace.time_s,
+                position_m: &position_m,
+                loads: Vec::new(),
+            };
+            let found = reduce(&run, &spec, None).unwrap();
+            let v = found.track.speed_m_s;
+            let slope = (drag(v + 1e-4) - drag(v - 1e-4)) / 2e-4;
+            let law = found.moves[3].loads_n[0];
+            let standard = found.drag_standard_n.hypot(slope * found.track.standard_m_s).hypot(law);
+            let z = (found.drag_n - drag(v)) / standard;
+            square += z * z / f64::from(n);
+            sum += z / f64::from(n);
+        }
+        // The mean square of 300 has a standard deviation of 0.08; the law is the same in all of them, and moves their mean.
+        assert!((square - 1.0).abs() < 0.35 && sum.abs() < 0.5, "{weight_n}: {sum} {square}");
+    }
+}
