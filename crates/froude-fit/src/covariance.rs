@@ -18,7 +18,7 @@
 
 use std::collections::BTreeMap;
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
 use crate::block::Block;
 use crate::dense::{Cholesky, dot, row};
@@ -42,7 +42,7 @@ const ALONE: f64 = 1e-10;
 pub(crate) struct Core {
     /// Covariance, rank × rank; NaN where σ is not known.
     pub covariance: Mat<f64>,
-    /// The `rank × n` influence of each data row on the coordinates: `M⁻¹ q d`.
+    /// Influence of each data row on the coordinates, `n × rank`: `M⁻¹ q d`.
     pub influence: Mat<f64>,
     /// Where the degrees of freedom of a combination come from.
     pub freedom: Freedom,
@@ -51,8 +51,9 @@ pub(crate) struct Core {
 }
 
 /// Scores and curvatures of the whitened rows.
-struct Rows {
-    q: Vec<Vec<f64>>,
+struct Rows<'a> {
+    /// The vectors, a row each.
+    q: MatRef<'a, f64>,
     score: Vec<f64>,
     curvature: Vec<f64>,
     dispersion: Vec<Option<f64>>,
@@ -68,41 +69,42 @@ pub(crate) fn core(
     let rank = estimate.qr.rank;
     let n_priors = estimate.n_priors;
     let rows = rows(block, estimate, loss, kind);
-    let mut m = gram(&rows, 0..rows.q.len(), rank);
+    let mut m = gram(&rows, 0..rows.q.nrows(), rank);
     let bread = Cholesky::new(m.as_ref(), ALONE).map(|c| c.inverse());
     // Too many outliers to hold the curvature: the weights hold it instead.
     let (bread, rows) = if let Some(bread) = bread {
         (bread, rows)
     } else {
         let rows = Rows { curvature: estimate.loss_weight.clone(), ..rows };
-        m = gram(&rows, 0..rows.q.len(), rank);
+        m = gram(&rows, 0..rows.q.nrows(), rank);
         let bread = Cholesky::new(m.as_ref(), 0.0).map_or_else(|| Mat::identity(rank, rank), |c| c.inverse());
         (bread, rows)
     };
     let apply = |q: &[f64]| crate::dense::mul_vec(bread.as_ref(), q);
     let mut covariance = Mat::zeros(rank, rank);
-    for q in &rows.q[..n_priors] {
-        add_outer(&mut covariance, &apply(q), 1.0);
+    for i in 0..n_priors {
+        add_outer(&mut covariance, &apply(&row(rows.q, i)), 1.0);
     }
     let freedom = match kind {
         CovarianceKind::Classical => {
-            for (i, q) in rows.q[n_priors..].iter().enumerate() {
-                let phi = rows.dispersion[block.row_component[i]];
-                add_outer(&mut covariance, &apply(q), phi.unwrap_or(f64::NAN));
+            for (i, &component) in block.row_component.iter().enumerate() {
+                let phi = rows.dispersion[component];
+                add_outer(&mut covariance, &apply(&row(rows.q, n_priors + i)), phi.unwrap_or(f64::NAN));
             }
             Freedom::Components
         }
         CovarianceKind::Hc3 => {
             let mut kept = Vec::with_capacity(block.rows.len());
-            for (i, q) in rows.q.iter().enumerate().skip(n_priors) {
-                let moved = apply(q);
-                let rest = 1.0 - rows.curvature[i] * dot(q, &moved);
+            for i in n_priors..rows.q.nrows() {
+                let q = row(rows.q, i);
+                let moved = apply(&q);
+                let rest = 1.0 - rows.curvature[i] * dot(&q, &moved);
                 if rest < ALONE {
                     return Err(FitError::RowDecides { row: block.rows[i - n_priors] });
                 }
                 let factor = rows.score[i] / rest;
                 add_outer(&mut covariance, &moved, factor * factor);
-                kept.push(Row { name: block.rows[i - n_priors], q: q.clone(), moved, rest, score: rows.score[i] });
+                kept.push(Row { name: block.rows[i - n_priors], q, moved, rest, score: rows.score[i] });
             }
             Freedom::Rows { rows: kept, bread: bread.clone() }
         }
@@ -118,8 +120,8 @@ pub(crate) fn core(
                     .ok_or_else(|| FitError::ClusterDecides { cluster, component: component_names(problem, block) })?;
                 let mut change = vec![0.0; rank];
                 for &i in &members {
-                    for (change, q) in change.iter_mut().zip(&rows.q[i]) {
-                        *change += q * rows.score[i];
+                    for (k, change) in change.iter_mut().enumerate() {
+                        *change += rows.q[(i, k)] * rows.score[i];
                     }
                 }
                 factor.solve(&mut change);
@@ -130,11 +132,11 @@ pub(crate) fn core(
         }
     };
     let n = block.rows.len();
-    let mut influence = Mat::zeros(rank, n);
+    let mut influence = Mat::zeros(n, rank);
     for i in 0..n {
-        let moved = apply(&rows.q[n_priors + i]);
+        let moved = apply(&row(rows.q, n_priors + i));
         for k in 0..rank {
-            influence[(k, i)] = moved[k] * rows.curvature[n_priors + i];
+            influence[(i, k)] = moved[k] * rows.curvature[n_priors + i];
         }
     }
     Ok(Core { covariance, influence, freedom, dispersion: rows.dispersion })
@@ -162,9 +164,9 @@ pub(crate) fn component_names(problem: &Problem, block: &Block) -> String {
     names.join(", ")
 }
 
-fn rows(block: &Block, estimate: &Estimate, loss: Loss, kind: CovarianceKind) -> Rows {
+fn rows<'a>(block: &Block, estimate: &'a Estimate, loss: Loss, kind: CovarianceKind) -> Rows<'a> {
     let n_priors = estimate.n_priors;
-    let q: Vec<Vec<f64>> = (0..estimate.residual.len()).map(|i| row(estimate.qr.q.as_ref(), i)).collect();
+    let q = estimate.qr.q.as_ref();
     let plain: Vec<Option<f64>> =
         estimate.sigma.iter().zip(&estimate.whitening).map(|(sigma, w)| sigma.map(|s| (s / w) * (s / w))).collect();
     let Loss::Huber { k } = loss else {
@@ -201,10 +203,10 @@ fn rows(block: &Block, estimate: &Estimate, loss: Loss, kind: CovarianceKind) ->
     Rows { q, score, curvature, dispersion }
 }
 
-fn gram(rows: &Rows, members: impl IntoIterator<Item = usize>, rank: usize) -> Mat<f64> {
+fn gram(rows: &Rows<'_>, members: impl IntoIterator<Item = usize>, rank: usize) -> Mat<f64> {
     let mut out = Mat::zeros(rank, rank);
     for i in members {
-        add_outer(&mut out, &rows.q[i], rows.curvature[i]);
+        add_outer(&mut out, &row(rows.q, i), rows.curvature[i]);
     }
     out
 }

@@ -176,16 +176,16 @@ impl Part {
         (Some(variance.max(0.0).sqrt()), Some(dof))
     }
 
-    /// `∂β/∂y` of the block in the problem's units, columns × rows.
+    /// `∂β/∂y` of the block in the problem's units, rows × columns.
     fn sensitivity(&mut self, problem: &Problem) -> Mat<f64> {
         // Of many rows it is as large as the design, and nothing else reads it.
         let influence = std::mem::replace(&mut self.core.influence, Mat::zeros(0, 0));
-        let mut s = mul(self.lift.as_ref(), influence.as_ref());
+        let mut s = mul(influence.as_ref(), self.lift.transpose());
         drop(influence);
         for (k, &i) in self.block.rows.iter().enumerate() {
             let factor = problem.weight_of(i).sqrt() / self.estimate.whitening[self.block.row_component[k]];
-            for l in 0..s.nrows() {
-                s[(l, k)] *= factor;
+            for l in 0..s.ncols() {
+                s[(k, l)] *= factor;
             }
         }
         s
@@ -201,7 +201,7 @@ fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
     }
     let mut coefficients = held_coefficients(problem, options);
     let mut covariance = Mat::zeros(p, p);
-    let mut sensitivity = Mat::zeros(p, n);
+    let mut of_rows = Mat::zeros(n, p);
     let mut leverage = vec![0.0; n];
     let mut undetermined = Vec::new();
     let mut null_columns: Vec<Vec<f64>> = Vec::new();
@@ -226,7 +226,7 @@ fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
             }
             if part.indeterminacy.determined[l] {
                 for (k, &i) in block.rows.iter().enumerate() {
-                    sensitivity[(j, i)] = s[(l, k)];
+                    of_rows[(i, j)] = s[(k, l)];
                 }
             }
         }
@@ -270,7 +270,7 @@ fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
         residuals,
         leverage,
         undetermined,
-        sensitivity,
+        of_rows,
         optimality,
         report,
         minimiser,

@@ -1,6 +1,6 @@
 //! What a fit returns.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
 use crate::report::Report;
 
@@ -139,9 +139,8 @@ pub struct Fit {
     pub condition_number: f64,
     /// What is determined of the coefficients that are not.
     pub undetermined: Vec<Combination>,
-    /// `∂β/∂y`, `p × n`, of the unconstrained estimate; zero rows like the
-    /// covariance. The way of input errors into coefficients: [`crate::propagate`].
-    pub sensitivity: Mat<f64>,
+    /// [`Self::sensitivity`] transposed, `n × p`: columns of few numbers would be padded to many times their size.
+    pub of_rows: Mat<f64>,
     /// How well the bounds and inequalities are met; `None` without any.
     pub optimality: Option<Optimality>,
     /// How the iterations ended.
@@ -156,6 +155,13 @@ pub struct Fit {
 const ALONG_NULL: f64 = 1e-8;
 
 impl Fit {
+    /// `∂β/∂y`, `p × n`, of the unconstrained estimate; zero rows like the
+    /// covariance. The way of input errors into coefficients: [`crate::propagate`].
+    #[must_use]
+    pub fn sensitivity(&self) -> MatRef<'_, f64> {
+        self.of_rows.transpose()
+    }
+
     /// The response `row · β`, also where only combinations are determined;
     /// `None` when the data do not determine it or the length is not `p`.
     #[must_use]

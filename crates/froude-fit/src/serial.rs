@@ -24,8 +24,8 @@
 //! Restricted likelihood: Harville (1974), Biometrika 61, 383; with a flat prior for correlated errors: Zellner & Tiao (1964), JASA 59, 763. Whitening by Levinson's
 //! recursion: Brockwell & Davis (1991), *Time Series*, 5.2.
 
-use faer::Mat;
 use faer::prelude::*;
+use faer::{Mat, MatRef};
 
 use crate::distribution::{dof_of_factor, root, t_two_sided};
 
@@ -191,7 +191,7 @@ struct Point {
 #[must_use]
 pub fn serial(
     design: &Mat<f64>,
-    sensitivity: &Mat<f64>,
+    sensitivity: MatRef<'_, f64>,
     residual: &[f64],
     run: &[usize],
     errors: &RowErrors,
@@ -205,7 +205,7 @@ pub fn serial(
 #[must_use]
 pub fn to_expect(
     design: &Mat<f64>,
-    sensitivity: &Mat<f64>,
+    sensitivity: MatRef<'_, f64>,
     run: &[usize],
     errors: &RowErrors,
     (rho, sigma): (f64, f64),
@@ -232,7 +232,7 @@ pub fn to_expect(
 /// The mixture for residuals whose Q add up.
 fn mixture(
     design: &Mat<f64>,
-    sensitivity: &Mat<f64>,
+    sensitivity: MatRef<'_, f64>,
     residuals: &[Vec<f64>],
     run: &[usize],
     errors: &RowErrors,
@@ -318,7 +318,7 @@ fn contrasts(columns: &[Vec<f64>], free: usize, run: &[usize], c: &Correlation) 
 }
 
 /// S c Sᵀ.
-fn covariance(s: &Mat<f64>, run: &[usize], c: &Correlation) -> Mat<f64> {
+fn covariance(s: MatRef<'_, f64>, run: &[usize], c: &Correlation) -> Mat<f64> {
     let (p, n) = (s.nrows(), s.ncols());
     let columns: Vec<Vec<f64>> =
         (0..p).map(|j| c.times(&(0..n).map(|i| s[(j, i)]).collect::<Vec<f64>>(), run)).collect();
@@ -491,7 +491,7 @@ mod tests {
                 }
                 let beta: Vec<f64> = (0..2).map(|j| (0..120).map(|i| s[(j, i)] * e[i]).sum()).collect();
                 let residual: Vec<f64> = (0..120).map(|i| e[i] - beta[0] * x[(i, 0)] - beta[1] * x[(i, 1)]).collect();
-                let found = serial(&x, &s, &residual, &run, &errors).unwrap();
+                let found = serial(&x, s.as_ref(), &residual, &run, &errors).unwrap();
                 for j in 0..2 {
                     let t = crate::distribution::coverage_factor(0.95, found.dof[j]);
                     held[j] +=
@@ -511,7 +511,7 @@ mod tests {
         let (x, run) = design();
         let s = sensitivity(&x);
         let errors = RowErrors { window: RowWindow::single(), white: None };
-        let expected = to_expect(&x, &s, &run, &errors, (0.6, 2.0)).unwrap();
+        let expected = to_expect(&x, s.as_ref(), &run, &errors, (0.6, 2.0)).unwrap();
         let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(5);
         let widths = |found: &Serial, j: usize| {
             crate::distribution::coverage_factor(0.95, found.dof[j]) * found.covariance[(j, j)].sqrt()
@@ -525,7 +525,7 @@ mod tests {
             }
             let beta: Vec<f64> = (0..2).map(|j| (0..120).map(|i| s[(j, i)] * e[i]).sum()).collect();
             let residual: Vec<f64> = (0..120).map(|i| e[i] - beta[0] * x[(i, 0)] - beta[1] * x[(i, 1)]).collect();
-            let found = serial(&x, &s, &residual, &run, &errors).unwrap();
+            let found = serial(&x, s.as_ref(), &residual, &run, &errors).unwrap();
             mean.iter_mut().enumerate().for_each(|(j, m)| *m += widths(&found, j) / 400.0);
         }
         // Widths scatter by a quarter, their mean by a hundredth; the mean of a skew quantity lies beside that at the mean by as much or twice.

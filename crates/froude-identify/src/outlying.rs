@@ -166,7 +166,7 @@ fn without(model: &ModelFit, r: usize, n: usize, found: Outlying) -> (Vec<usize>
     let pull = found.residual / (1.0 - model.fit.leverage[k]);
     let moved = |i: usize| {
         (0..model.problem.design.ncols())
-            .map(|j| model.problem.design[(i, j)] * model.fit.sensitivity[(j, k)] * pull)
+            .map(|j| model.problem.design[(i, j)] * model.fit.sensitivity()[(j, k)] * pull)
             .sum::<f64>()
     };
     let weight = |i: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[i]);

@@ -9,7 +9,7 @@
 //! residuals (type A): it is listed, and not added a second time. For
 //! `kind = "cfd"` there is no scatter, so it is added.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 use froude_fit as fit;
 use froude_fit::budget::{Kind, Origin, Part, Shape, one_sided};
 use froude_records::campaign::{BudgetEntry, Shared};
@@ -116,13 +116,13 @@ pub struct Linearised<'a> {
     /// Coefficients (undetermined ones at zero).
     pub coefficients: &'a [f64],
     /// ∂β/∂y, `p × (responses·rows)`.
-    pub sensitivity: &'a Mat<f64>,
+    pub sensitivity: MatRef<'a, f64>,
 }
 
 impl<'a> Linearised<'a> {
     /// About the coefficients of a fit, whose law's come first.
     pub(crate) fn about(law: &'a ForceLaw, data: &'a Dataset, coefficients: &'a [f64], fitted: &'a fit::Fit) -> Self {
-        Self { law, data, coefficients: &coefficients[..law.coefficients.len()], sensitivity: &fitted.sensitivity }
+        Self { law, data, coefficients: &coefficients[..law.coefficients.len()], sensitivity: fitted.sensitivity() }
     }
 }
 

@@ -215,7 +215,7 @@ fn loads(simulation: Simulation<'_>, model: &ModelFit, named: &Named<'_>) -> Res
         law: &model.law,
         data,
         coefficients: model.law_coefficients(),
-        sensitivity: &model.fit.sensitivity,
+        sensitivity: model.fit.sensitivity(),
     };
     let errors: Vec<(ErrorKind, Vec<f64>)> = (simulation.budget.iter())
         .map(|entry| Ok((entry.kind, direction(fit, entry)?)))

@@ -55,7 +55,7 @@ fn a_straight_line_matches_the_textbook() {
     assert_close(r, -0.2 / (0.6_f64 * 0.1).sqrt(), 1e-13);
     // Sensitivity: ∂slope/∂y_i = (x_i − x̄)/Sxx.
     for i in 0..5 {
-        assert_close(fit.sensitivity[(1, i)], (x[i] - 2.0) / 10.0, 1e-14);
+        assert_close(fit.sensitivity()[(1, i)], (x[i] - 2.0) / 10.0, 1e-14);
     }
     assert_close(fit.predict(&[1.0, 6.0]).unwrap(), 2.2 + 5.4, 1e-14);
 }

@@ -88,7 +88,7 @@ fn determined_coefficients_keep_their_values_beside_undetermined_ones() {
     assert_eq!(found.undetermined[0].weights.len(), 2);
     assert_close(found.undetermined[0].weights[1].1, -3.0, 1e-12);
     assert_eq!(found.covariance[(3, 3)], 0.0);
-    assert_eq!(found.sensitivity[(1, 0)], 0.0);
+    assert_eq!(found.sensitivity()[(1, 0)], 0.0);
 }
 
 #[test]

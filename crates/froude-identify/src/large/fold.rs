@@ -270,7 +270,7 @@ impl Hat {
         let variance =
             |c: &fit::ComponentSummary| if is_shared { Some(c.sigma?.powi(2)).filter(|v| *v > 0.0) } else { Some(1.0) };
         let variance: Vec<f64> = model.fit.components.iter().map(variance).collect::<Option<_>>()?;
-        let s = &model.fit.sensitivity;
+        let s = model.fit.sensitivity();
         let scaled = Mat::from_fn(s.nrows(), s.ncols(), |j, i| s[(j, i)] * variance[model.problem.component[i]]);
         Some(Self { inverse: &scaled * s.transpose(), variance })
     }

@@ -14,9 +14,9 @@
 //! Aitken (1935), Proc. R. Soc. Edinb. 55, 42; Patterson & Thompson (1971), Biometrika 58, 545; Giesbrecht & Burns (1985), Biometrics 41, 477 (degrees of freedom).
 
 use froude_fit as fit;
-use froude_fit::faer::Mat;
 use froude_fit::faer::linalg::solvers::DenseSolveCore;
 use froude_fit::faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use froude_fit::faer::{Mat, MatRef};
 use froude_fit::faer::{Par, Side};
 use froude_records::campaign::{BudgetEntry, Shared, SourceKind};
 
@@ -90,7 +90,7 @@ fn declared(
     fitted: &fit::Fit,
 ) -> Result<Vec<Vec<f64>>, IdentifyError> {
     let coefficients: Vec<f64> = fitted.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect();
-    let at = Linearised { law, data, coefficients: &coefficients, sensitivity: &fitted.sensitivity };
+    let at = Linearised { law, data, coefficients: &coefficients, sensitivity: fitted.sensitivity() };
     let n = data.rows;
     let mut out = Vec::new();
     for entry in budget.iter().filter(|entry| matches!(entry.shared, Shared::Run | Shared::Setup)) {
@@ -130,17 +130,17 @@ impl Whitened {
         solve_lower_triangular_in_place(self.root.as_ref(), columns.as_mut(), Par::Seq);
     }
 
-    /// ∂β/∂y from that by the whitened rows.
-    pub(crate) fn of_rows(&self, sensitivity: &Mat<f64>) -> Mat<f64> {
+    /// (∂β/∂y)ᵀ from ∂β/∂y by the whitened rows.
+    pub(crate) fn of_rows(&self, sensitivity: MatRef<'_, f64>) -> Mat<f64> {
         of_rows(&self.root, sensitivity)
     }
 }
 
-/// S = S_w L⁻¹, as Lᵀ Sᵀ = S_wᵀ.
-fn of_rows(root: &Mat<f64>, sensitivity: &Mat<f64>) -> Mat<f64> {
+/// Sᵀ of S = S_w L⁻¹, as Lᵀ Sᵀ = S_wᵀ.
+fn of_rows(root: &Mat<f64>, sensitivity: MatRef<'_, f64>) -> Mat<f64> {
     let mut transposed = sensitivity.transpose().to_owned();
     solve_upper_triangular_in_place(root.transpose(), transposed.as_mut(), Par::Seq);
-    transposed.transpose().to_owned()
+    transposed
 }
 
 fn is_observed(problem: &fit::Problem, i: usize) -> bool {
@@ -220,7 +220,8 @@ impl Solved {
     /// The fit of the whitened rows in place of that by least squares, with σ of the rows alone.
     fn replace(&self, fitted: &mut fit::Fit, found: fit::Fit, problem: &fit::Problem, sigma: &[f64]) {
         let (n, p) = (problem.n_rows(), problem.n_coefficients());
-        let s = of_rows(&self.root, &found.sensitivity);
+        let of_rows = of_rows(&self.root, found.sensitivity());
+        let s = of_rows.transpose();
         let variance: Vec<f64> = (0..n).map(|i| sigma[problem.component[i]].powi(2) / weight(problem, i)).collect();
         let covariance = Mat::from_fn(p, p, |a, b| (0..n).map(|i| s[(a, i)] * s[(b, i)] * variance[i]).sum::<f64>());
         let of_load: Vec<f64> = (0..sigma.len()).map(|c| self.dof(problem, c, sigma[c])).collect();
@@ -243,7 +244,7 @@ impl Solved {
             component.dof = of_load[c];
         }
         fitted.covariance = covariance;
-        fitted.sensitivity = s;
+        fitted.of_rows = of_rows;
         fitted.optimality = found.optimality;
     }
 }

@@ -52,7 +52,7 @@ fn part(
     let moved = Mat::from_fn(p, set.len(), |i, k| match places[k] {
         None => 0.0,
         Some(j) if i == j => 1.0,
-        Some(j) => -(0..x.nrows()).map(|row| fitted.sensitivity[(i, row)] * x[(row, j)]).sum::<f64>(),
+        Some(j) => -(0..x.nrows()).map(|row| fitted.sensitivity()[(i, row)] * x[(row, j)]).sum::<f64>(),
     });
     let covariance = Mat::from_fn(set.len(), set.len(), |a, b| identify.known_covariance[set[a]][set[b]]);
     let of = |text: fn(&PriorSpec) -> String| set.iter().map(|k| text(&identify.known[*k])).collect::<Vec<_>>();

@@ -57,7 +57,7 @@ pub(crate) fn between_runs(
     let is_own = problem.components.iter().all(|load| law.responses.contains(load));
     let measured = law.measured(data).ok().filter(|y| is_own && y.len() == n);
     let measured = measured.unwrap_or_else(|| problem.response.clone());
-    let (at, p, x, s) = (step(fitted), problem.n_coefficients(), &problem.design, &fitted.sensitivity);
+    let (at, p, x, s) = (step(fitted), problem.n_coefficients(), &problem.design, fitted.sensitivity());
     let residual: Vec<f64> =
         (0..n).map(|i| problem.response[i] - (0..p).map(|j| x[(i, j)] * at[j]).sum::<f64>()).collect();
     let rows: Vec<usize> = (0..problem.components.len()).flat_map(|c| problem.rows_of(c)).collect();

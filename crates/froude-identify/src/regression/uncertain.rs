@@ -129,11 +129,11 @@ pub(crate) fn serial(
             return None;
         }
         let design = Mat::from_fn(rows.len(), of_load.len(), |i, k| root(rows[i]) * x[(rows[i], of_load[k])]);
-        let of_row = |k: usize, i: usize| fitted.sensitivity[(of_load[k], rows[i])] / root(rows[i]);
+        let of_row = |k: usize, i: usize| fitted.sensitivity()[(of_load[k], rows[i])] / root(rows[i]);
         let sensitivity = Mat::from_fn(of_load.len(), rows.len(), of_row);
         let residual: Vec<f64> = rows.iter().map(|&i| root(i) * left(i)).collect();
         let of_rows: Vec<usize> = rows.iter().map(|i| run[i % n]).collect();
-        let found = fit::serial::serial(&design, &sensitivity, &residual, &of_rows, errors)?;
+        let found = fit::serial::serial(&design, sensitivity.as_ref(), &residual, &of_rows, errors)?;
         for (a, &j) in of_load.iter().enumerate() {
             dof[j] = found.dof[a];
             for (b, &k) in of_load.iter().enumerate() {

@@ -16,8 +16,8 @@
 
 use froude_fit as fit;
 use froude_fit::budget::Part;
-use froude_fit::faer::Mat;
 use froude_fit::faer::linalg::solvers::Solve as _;
+use froude_fit::faer::{Mat, MatRef};
 use froude_records::campaign::{BudgetEntry, Shared, SourceKind};
 use froude_records::comparison::AddedTerms;
 
@@ -157,24 +157,24 @@ fn declared(
         return Some(Vec::new());
     }
     let is_measured = settings.kind != SourceKind::Cfd;
-    let parts = |of: &ModelFit, sensitivity: &Mat<f64>, budget: &[BudgetEntry]| {
+    let parts = |of: &ModelFit, sensitivity: MatRef<'_, f64>, budget: &[BudgetEntry]| {
         let at = Linearised { law: &of.law, data, coefficients: of.law_coefficients(), sensitivity };
         contributions(at, budget, settings.campaign, settings.shared_errors, is_measured).ok()
     };
     let mut out = if !law.law.responses.iter().any(|own| own == load) {
         let first = other.law.responses.iter().position(|own| own == load)? * data.rows;
-        let sensitivity = Mat::from_fn(fitted.sensitivity.nrows(), other.law.responses.len() * data.rows, |j, i| {
-            if (first..first + data.rows).contains(&i) { fitted.sensitivity[(j, i - first)] } else { 0.0 }
+        let of_rows = Mat::from_fn(other.law.responses.len() * data.rows, fitted.of_rows.ncols(), |i, j| {
+            if (first..first + data.rows).contains(&i) { fitted.of_rows[(i - first, j)] } else { 0.0 }
         });
-        parts(other, &sensitivity, settings.budget)?
+        parts(other, of_rows.transpose(), settings.budget)?
     } else if let Some(whitened) = &law.whitened {
         // Errors shared by runs and setups are already in the row covariance.
         let is_of_all = |entry: &&BudgetEntry| entry.shared == Shared::Campaign;
         let budget: Vec<BudgetEntry> = settings.budget.iter().filter(is_of_all).cloned().collect();
-        parts(law, &whitened.of_rows(&fitted.sensitivity), &budget)?
+        parts(law, whitened.of_rows(fitted.sensitivity()).transpose(), &budget)?
     } else {
         let known = known::parts(&law.law, settings, larger, fitted);
-        [parts(law, &fitted.sensitivity, settings.budget)?, known].concat()
+        [parts(law, fitted.sensitivity(), settings.budget)?, known].concat()
     };
     out.retain(|part| !part.in_scatter);
     Some(out)

@@ -219,7 +219,7 @@ impl Noise<'_> {
         let rho =
             self.force.and_then(|s| s.correlation_s).map_or(0.0, |time| (-sample_s(self.setup.window_s) / time).exp());
         let errors = row_errors(true, moved_kg * of(&own.bend, self.position));
-        to_expect(x, sensitivity, run, &errors, (rho, of(&own.value, self.force))).map(|found| found.dof)
+        to_expect(x, sensitivity.as_ref(), run, &errors, (rho, of(&own.value, self.force))).map(|found| found.dof)
     }
 }
 

@@ -262,7 +262,7 @@ fn mass(declared: Option<Declared>, dry: &[(usize, Rows)], body: usize) -> Optio
         let design = Mat::from_fn(a.len(), 1, |i, _| a[i]);
         let sensitivity = Mat::from_fn(1, a.len(), |_, i| a[i] / squares);
         let errors = by_motion(own.iter().map(|rows| (value_kg, *rows)));
-        let found = serial(&design, &sensitivity, &residual, &run, &errors)?;
+        let found = serial(&design, sensitivity.as_ref(), &residual, &run, &errors)?;
         let (scatter, zeros) = (found.covariance[(0, 0)], by_zeros(&own, squares));
         let zero_dof = own.iter().map(|rows| rows.zero_dof).fold(f64::INFINITY, f64::min);
         let dof = effective_dof(&[(scatter, found.dof[0]), (zeros, zero_dof)]);

@@ -384,7 +384,7 @@ fn of_means(parts: &[&[f64]]) -> (Vec<f64>, f64) {
     // A mean over a block is one of as many points: sixteen are an integral to a thousandth.
     let points = samples.min(16);
     let errors = RowErrors { window: RowWindow::new(vec![1.0; points], points), white: None };
-    match serial(&design, &sensitivity, &residual, &of, &errors) {
+    match serial(&design, sensitivity.as_ref(), &residual, &of, &errors) {
         Some(found) => {
             let standard = |j: usize| found.covariance[(j, j)].sqrt();
             ((0..parts.len()).map(standard).collect(), found.dof.iter().copied().fold(f64::INFINITY, f64::min))

@@ -44,7 +44,7 @@ impl<E: Equation> Problem<'_, E> {
         let of_priors = errors.len();
         for (input, column) in self.inputs.iter().zip(&condensed.errors) {
             let standard = input.declared.standard;
-            let moved = |j: usize| column.iter().enumerate().map(|(i, e)| fit.sensitivity[(j, i)] * e).sum::<f64>();
+            let moved = |j: usize| column.iter().enumerate().map(|(i, e)| fit.sensitivity()[(j, i)] * e).sum::<f64>();
             let sensitivity = (0..p).map(|j| moved(j) / standard).collect();
             errors.push(DeclaredError { name: input.name.clone(), standard, dof: input.declared.dof, sensitivity });
         }
@@ -127,7 +127,7 @@ impl<E: Equation> Problem<'_, E> {
         };
         let BetweenRuns { variance, dof } = between_runs(&parts, &left, left_of)?;
         let p = self.names.len();
-        let moved = |c: &Vec<f64>, j: usize| (0..n).map(|i| fit.sensitivity[(j, i)] * c[i]).sum::<f64>();
+        let moved = |c: &Vec<f64>, j: usize| (0..n).map(|i| fit.sensitivity()[(j, i)] * c[i]).sum::<f64>();
         let moves: Vec<Vec<f64>> = parts.iter().map(|c| (0..p).map(|j| moved(c, j)).collect()).collect();
         let covariance = Mat::from_fn(p, p, |i, j| variance * moves.iter().map(|m| m[i] * m[j]).sum::<f64>());
         Some(part(" and of the drag from run to run", Kind::A, covariance, dof))
