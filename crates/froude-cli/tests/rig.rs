@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use froude::records::run::{RunStatus, read_run};
@@ -27,8 +27,6 @@ const PATIENCE: Duration = Duration::from_mins(2);
 const LATE: Duration = Duration::from_secs(5);
 /// What the board forgives a computer that is busy with other tests; an answer that comes [`LATE`] is later than that.
 const BUSY: Duration = Duration::from_secs(3);
-/// One board at a time: each runs in real time, and so does its host.
-static ONE_BOARD: Mutex<()> = Mutex::new(());
 /// A motor that has moved no farther than this has not been driven, m.
 const STILL_M: f64 = 1e-4;
 
@@ -98,10 +96,6 @@ fn campaign(folder: &Path, port: Option<&Path>, has_warm_up: bool) -> PathBuf {
 
 fn board() -> BoardAtTerminal {
     BoardAtTerminal::new(&BoardConfig { start_m: [0.01, 0.01], patience: BUSY }).unwrap()
-}
-
-fn alone() -> MutexGuard<'static, ()> {
-    ONE_BOARD.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// `froude`, with a person at its standard input.
@@ -213,9 +207,18 @@ fn end_of_record(runs: &Path) -> (RunStatus, f64) {
     (log.meta.status, *log.channels["y/state"].values.last().unwrap())
 }
 
+/// Both at once: a board and its host run in real time, and mostly wait.
+fn both<T: Copy + Send>(cases: [T; 2], case: impl Fn(T) + Sync) {
+    std::thread::scope(|scope| {
+        for of in cases {
+            let case = &case;
+            scope.spawn(move || case(of));
+        }
+    });
+}
+
 #[test]
 fn a_person_may_take_their_time_and_ctrl_c_at_the_prompt_ends_it_without_enter() {
-    let _alone = alone();
     let (folder, board) = (tempfile::tempdir().unwrap(), board());
     let campaign = campaign(folder.path(), Some(&board.port), false);
     let mut driven = Driven::new(&["run", text(&campaign)]);
@@ -253,8 +256,7 @@ fn a_person_may_take_their_time_and_ctrl_c_at_the_prompt_ends_it_without_enter()
 
 #[test]
 fn to_terminate_and_to_hang_up_however_often_stop_under_control() {
-    let _alone = alone();
-    for signal in [Signal::TERM, Signal::HUP] {
+    both([Signal::TERM, Signal::HUP], |signal| {
         let (folder, board) = (tempfile::tempdir().unwrap(), board());
         let campaign = campaign(folder.path(), Some(&board.port), true);
         let runs = folder.path().join("campaign-runs");
@@ -269,14 +271,13 @@ fn to_terminate_and_to_hang_up_however_often_stop_under_control() {
         assert_eq!(status.code(), Some(130), "{said}");
         assert_eq!(end_of_record(&runs), (RunStatus::Interrupted, 1.0), "{said}");
         assert!(board.watched().speed_m_s[0].abs() < 0.05, "{:?}", board.watched());
-    }
+    });
 }
 
 /// `froude run … 2>&1 | tee`, and Ctrl-C, which ends tee as well: once, and twice.
 #[test]
 fn ctrl_c_stops_the_carriage_when_nobody_reads_what_is_said_and_again_cuts_the_torque() {
-    let _alone = alone();
-    for presses in [1, 2] {
+    both([1, 2], |presses| {
         let (folder, board) = (tempfile::tempdir().unwrap(), board());
         let campaign = campaign(folder.path(), Some(&board.port), true);
         let runs = folder.path().join("campaign-runs");
@@ -307,12 +308,11 @@ fn ctrl_c_stops_the_carriage_when_nobody_reads_what_is_said_and_again_cuts_the_t
         assert_eq!(status.code(), Some(130), "{presses} presses: {status:?}");
         let last = if presses == 1 { 1.0 } else { 0.0 };
         assert_eq!(end_of_record(&runs), (RunStatus::Interrupted, last), "{presses} presses");
-    }
+    });
 }
 
 #[test]
 fn without_a_terminal_and_without_yes_nothing_moves() {
-    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let on_twin = campaign(folder.path(), None, false);
     let verbs: [&[&str]; 3] = [&["run"], &["carriage", "tune"], &["carriage", "resonance"]];
@@ -487,7 +487,6 @@ fn resident_kib(pid: u32) -> Option<u64> {
 /// everything and for a stop. What is complete is whole, every end is explained, and the memory does not grow.
 #[test]
 fn a_long_drive_with_prompts_signals_and_a_second_host_on_the_line_stays_in_its_memory() {
-    let _alone = alone();
     let (folder, board) = (tempfile::tempdir().unwrap(), board());
     // In short: both jogs, a signal in the third run, and a stop from the second host while both axes are homed again.
     let [length, each, stop_every] = hours().map_or([45, 25, 40], |s| [s, s / 12, s / 5]).map(Duration::from_secs);
