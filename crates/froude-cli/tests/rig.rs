@@ -207,7 +207,7 @@ fn end_of_record(runs: &Path) -> (RunStatus, f64) {
     (log.meta.status, *log.channels["y/state"].values.last().unwrap())
 }
 
-/// Both at once: a board and its host run in real time, and mostly wait.
+/// Runs both cases at once: a board and its host run in real time and are mostly idle.
 fn both<T: Copy + Send>(cases: [T; 2], case: impl Fn(T) + Sync) {
     std::thread::scope(|scope| {
         for of in cases {

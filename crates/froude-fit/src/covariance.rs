@@ -52,7 +52,7 @@ pub(crate) struct Core {
 
 /// Scores and curvatures of the whitened rows.
 struct Rows<'a> {
-    /// The vectors, a row each.
+    /// Q of the whitened design, one row per data row, priors first.
     q: MatRef<'a, f64>,
     score: Vec<f64>,
     curvature: Vec<f64>,

@@ -201,7 +201,7 @@ fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
     }
     let mut coefficients = held_coefficients(problem, options);
     let mut covariance = Mat::zeros(p, p);
-    let mut of_rows = Mat::zeros(n, p);
+    let mut sensitivity_by_row = Mat::zeros(n, p);
     let mut leverage = vec![0.0; n];
     let mut undetermined = Vec::new();
     let mut null_columns: Vec<Vec<f64>> = Vec::new();
@@ -226,7 +226,7 @@ fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
             }
             if part.indeterminacy.determined[l] {
                 for (k, &i) in block.rows.iter().enumerate() {
-                    of_rows[(i, j)] = s[(k, l)];
+                    sensitivity_by_row[(i, j)] = s[(k, l)];
                 }
             }
         }
@@ -270,7 +270,7 @@ fn assemble(problem: &Problem, options: &Options, parts: &mut [Part]) -> Fit {
         residuals,
         leverage,
         undetermined,
-        of_rows,
+        sensitivity_by_row,
         optimality,
         report,
         minimiser,

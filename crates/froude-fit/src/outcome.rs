@@ -139,8 +139,8 @@ pub struct Fit {
     pub condition_number: f64,
     /// What is determined of the coefficients that are not.
     pub undetermined: Vec<Combination>,
-    /// [`Self::sensitivity`] transposed, `n × p`: columns of few numbers would be padded to many times their size.
-    pub of_rows: Mat<f64>,
+    /// `∂β/∂y` transposed, `n × p`, one row per data row. Stored so because faer pads every column to 64 bytes.
+    pub sensitivity_by_row: Mat<f64>,
     /// How well the bounds and inequalities are met; `None` without any.
     pub optimality: Option<Optimality>,
     /// How the iterations ended.
@@ -159,7 +159,7 @@ impl Fit {
     /// covariance. The way of input errors into coefficients: [`crate::propagate`].
     #[must_use]
     pub fn sensitivity(&self) -> MatRef<'_, f64> {
-        self.of_rows.transpose()
+        self.sensitivity_by_row.transpose()
     }
 
     /// The response `row · β`, also where only combinations are determined;

@@ -262,7 +262,7 @@ pub fn replace(fitted: &mut fit::Fit, design: &Mat<f64>, response: &[f64], resul
         summary.relative_residual = (summary.rss / squares(response)).sqrt();
         summary.durbin_watson = fit::diagnostics::durbin_watson(&fitted.residuals[rows]);
     }
-    fitted.of_rows = result.sensitivity.transpose().to_owned();
+    fitted.sensitivity_by_row = result.sensitivity.transpose().to_owned();
     fitted.covariance = result.covariance;
     fitted.coefficients = result.coefficients;
     fitted.report = result.report;

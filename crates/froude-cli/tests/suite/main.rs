@@ -1,4 +1,4 @@
-//! The program at its verbs, as people run it: one program, so that it is linked once and a campaign is driven once for all tests.
+//! The program at its verbs, as people run it: one test program, so that it is linked once and all tests share one driven campaign.
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, missing_docs)]
 
 mod accelerated;

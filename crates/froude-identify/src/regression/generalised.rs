@@ -130,13 +130,13 @@ impl Whitened {
         solve_lower_triangular_in_place(self.root.as_ref(), columns.as_mut(), Par::Seq);
     }
 
-    /// (∂β/∂y)ᵀ from ∂β/∂y by the whitened rows.
+    /// (∂β/∂y)ᵀ for the original rows, from ∂β/∂y for the whitened rows.
     pub(crate) fn of_rows(&self, sensitivity: MatRef<'_, f64>) -> Mat<f64> {
         of_rows(&self.root, sensitivity)
     }
 }
 
-/// Sᵀ of S = S_w L⁻¹, as Lᵀ Sᵀ = S_wᵀ.
+/// Sᵀ for S = S_w L⁻¹, by solving Lᵀ Sᵀ = S_wᵀ.
 fn of_rows(root: &Mat<f64>, sensitivity: MatRef<'_, f64>) -> Mat<f64> {
     let mut transposed = sensitivity.transpose().to_owned();
     solve_upper_triangular_in_place(root.transpose(), transposed.as_mut(), Par::Seq);
@@ -220,8 +220,8 @@ impl Solved {
     /// The fit of the whitened rows in place of that by least squares, with σ of the rows alone.
     fn replace(&self, fitted: &mut fit::Fit, found: fit::Fit, problem: &fit::Problem, sigma: &[f64]) {
         let (n, p) = (problem.n_rows(), problem.n_coefficients());
-        let of_rows = of_rows(&self.root, found.sensitivity());
-        let s = of_rows.transpose();
+        let by_row = of_rows(&self.root, found.sensitivity());
+        let s = by_row.transpose();
         let variance: Vec<f64> = (0..n).map(|i| sigma[problem.component[i]].powi(2) / weight(problem, i)).collect();
         let covariance = Mat::from_fn(p, p, |a, b| (0..n).map(|i| s[(a, i)] * s[(b, i)] * variance[i]).sum::<f64>());
         let of_load: Vec<f64> = (0..sigma.len()).map(|c| self.dof(problem, c, sigma[c])).collect();
@@ -244,7 +244,7 @@ impl Solved {
             component.dof = of_load[c];
         }
         fitted.covariance = covariance;
-        fitted.of_rows = of_rows;
+        fitted.sensitivity_by_row = by_row;
         fitted.optimality = found.optimality;
     }
 }

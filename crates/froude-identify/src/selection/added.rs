@@ -163,10 +163,10 @@ fn declared(
     };
     let mut out = if !law.law.responses.iter().any(|own| own == load) {
         let first = other.law.responses.iter().position(|own| own == load)? * data.rows;
-        let of_rows = Mat::from_fn(other.law.responses.len() * data.rows, fitted.of_rows.ncols(), |i, j| {
-            if (first..first + data.rows).contains(&i) { fitted.of_rows[(i - first, j)] } else { 0.0 }
+        let by_row = Mat::from_fn(other.law.responses.len() * data.rows, fitted.sensitivity_by_row.ncols(), |i, j| {
+            if (first..first + data.rows).contains(&i) { fitted.sensitivity_by_row[(i - first, j)] } else { 0.0 }
         });
-        parts(other, of_rows.transpose(), settings.budget)?
+        parts(other, by_row.transpose(), settings.budget)?
     } else if let Some(whitened) = &law.whitened {
         // Errors shared by runs and setups are already in the row covariance.
         let is_of_all = |entry: &&BudgetEntry| entry.shared == Shared::Campaign;

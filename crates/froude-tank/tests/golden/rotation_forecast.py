@@ -1,4 +1,4 @@
-"""Intervals to expect of a rotation, by dense covariance matrices: the parent of the figures in tests/rotation.rs and in the validation.
+"""Intervals to expect of a rotation, by dense covariance matrices: the parent of the figures in tests/suite/rotation.rs and in the validation.
 
 Nine runs of five periods of a sine, 100 Hz, three amplitudes at three angular frequencies; torque noise of 1 mN m correlated as exp(-t / 0.5 s); a zero for each
 run; rig and delay known. Needs NumPy; last run with 2.4.6. Prints the relative standard uncertainties and r(lambda_2, lambda_3) of ordinary and of generalised
