@@ -20,6 +20,7 @@ mod common;
 pub mod compare;
 pub mod data_files;
 pub mod dataset;
+pub mod declare;
 pub mod diagnosis;
 pub mod dissipation;
 pub mod eiv;

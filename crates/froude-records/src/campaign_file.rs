@@ -323,7 +323,7 @@ fn plan_block(s: &Section<'_>, input: &Input) -> Result<PlanBlock, RecordError> 
         pitch_rad: s.get("pitch").map_or(Ok(vec![0.0]), |v| series(s, "pitch", v, Dimension::ONE))?,
         repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
     };
-    at_most(s, &numbers(&out), most_of(input).1)?;
+    at_most(&s.place(), &numbers(&out), most_of(input).1)?;
     Ok(out)
 }
 

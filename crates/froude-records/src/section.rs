@@ -76,7 +76,8 @@ impl<'a> Section<'a> {
     }
 
     /// As the section is written: `[fluid]`, `[[source]]`.
-    fn label(&self) -> String {
+    #[must_use]
+    pub fn label(&self) -> String {
         match (self.name.as_str(), self.is_listed) {
             ("", _) => "the file".to_owned(),
             (name, true) => format!("[[{name}]]"),

@@ -1,6 +1,6 @@
 //! Values of a section: counts, words of a list, series.
 
-use crate::error::RecordError;
+use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
 use crate::section::{Section, Value};
 use crate::units::Dimension;
@@ -40,19 +40,20 @@ pub fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Option<usi
     Ok(Some(n as usize))
 }
 
-/// What a section multiplies out to is checked against a limit: each of its numbers may be small, and their product not.
+/// Checks the product of a section's numbers against a limit: each may be small and the product large.
 ///
 /// # Errors
 ///
-/// [`RecordError::Value`] with its place where it is something else.
-pub fn at_most(s: &Section<'_>, numbers: &[(&str, usize)], most: usize) -> Result<(), RecordError> {
+/// The product exceeds `most`.
+pub fn at_most(place: &Place, numbers: &[(&str, usize)], most: usize) -> Result<(), RecordError> {
     let product = product(numbers);
     if product <= most {
         return Ok(());
     }
     let others: Vec<String> = numbers.iter().skip(1).map(|(key, n)| format!(" × `{key}` ({n})")).collect();
     let (first, n) = numbers.first().copied().unwrap_or_default();
-    Err(RecordError::value(s.place(), first, format!("({n}){} is {product}; at most {most} are made", others.concat())))
+    let problem = format!("({n}){} is {product}; at most {most} are made", others.concat());
+    Err(RecordError::value(place.clone(), first, problem))
 }
 
 /// Their product; the largest number where it is larger than that.

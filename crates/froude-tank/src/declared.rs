@@ -3,15 +3,15 @@
 use std::f64::consts::TAU;
 
 use froude_fit::budget::Uncertain;
+use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::campaign::{BudgetEntry, Source};
-use froude_records::run::{Declared, declared, declared_value};
-use froude_records::section::{Section, Value, found};
-use froude_records::section_values::{Asks, MOST_RUNS, OF_RUNS, count, plan_of, series};
+use froude_records::run::{Declared, declared};
+use froude_records::section::Section;
+use froude_records::section_values::{Asks, MOST_RUNS, OF_RUNS, plan_of};
 use froude_records::units::Dimension;
 use froude_rig::swung::Swing;
-use indexmap::IndexMap;
 
 use crate::error::undeclared;
 use crate::motion::Cycles;
@@ -20,8 +20,6 @@ use crate::motion::Cycles;
 pub(crate) const STIFFNESS: Dimension = Dimension::new(0, 1, -2);
 /// kg m².
 pub(crate) const INERTIA: Dimension = Dimension::new(2, 1, 0);
-/// Most periods of a run.
-const MOST_PERIODS: u64 = 100_000;
 
 /// A section of a source, which the method needs; `write` states what to write where there is none.
 pub(crate) fn needed<T>(
@@ -83,48 +81,57 @@ pub(crate) fn above_zero(
     }
 }
 
-/// A number that each configuration has, or all have alike.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ByConfiguration {
-    /// Of all that are not named.
-    pub all: Option<Declared>,
-    /// By configuration.
-    pub named: IndexMap<String, Declared>,
-}
+/// Which cycles are used.
+pub(crate) const CYCLES: Key = Key::new(
+    "cycles",
+    Kind::Table(&[
+        Key::new("skip", Kind::Whole, IfMissing::Is("1"), "left out after the motion has begun"),
+        Key::new("used", Kind::Whole, IfMissing::Nothing("all"), "used after those"),
+        Key::new("fewest", Kind::Whole, IfMissing::Is("5"), "fewest that are accepted"),
+    ]),
+    IfMissing::Is("{ skip = 1, fewest = 5 }"),
+    "`skip`: whole cycles left out at the start of the motion; `used`: cycles used after those (else all, with the incomplete one at the end); `fewest`: fewest whole cycles accepted",
+);
+/// Harmonics of the angle.
+pub(crate) const HARMONICS: Key =
+    Key::new("harmonics", Kind::Count(20), IfMissing::Is("3"), "number of harmonics fitted to the angle");
 
-impl ByConfiguration {
-    /// Reads one number for all, or a table with one for each configuration.
-    pub(crate) fn read(s: &Section<'_>, key: &'static str, dimension: Dimension) -> Result<Self, RecordError> {
-        let mut out = Self::default();
-        let Some(value) = s.get(key) else { return Ok(out) };
-        let table = value.get_ref().as_table().map(|_| s.as_section(key, value)).transpose()?;
-        let Some(table) = table.filter(|table| table.get("value").is_none()) else {
-            return Ok(Self { all: declared(s, key, dimension)?, ..out });
-        };
-        for (configuration, _, value) in table.entries() {
-            let number = declared_value(&table, configuration, value, dimension)?;
-            out.named.insert(configuration.to_owned(), number);
-        }
-        Ok(out)
-    }
-
-    /// That of a configuration.
-    #[must_use]
-    pub fn of(&self, configuration: &str) -> Option<Declared> {
-        self.named.get(configuration).copied().or(self.all)
+/// Of the values of [`CYCLES`].
+pub(crate) fn cycles(values: &Values) -> Cycles {
+    let number = |key: &str| values.table("cycles").and_then(|cycles| cycles.count(key));
+    Cycles {
+        skip: number("skip").unwrap_or_default(),
+        used: number("used"),
+        fewest: number("fewest").unwrap_or_default(),
     }
 }
 
-/// `cycles`: whole ones left out, used, and fewest.
-pub(crate) fn cycles(s: &Section<'_>) -> Result<Cycles, RecordError> {
-    let mut out = Cycles::default();
-    let Some(cycles) = s.section("cycles")? else { return Ok(out) };
-    cycles.only(&["skip", "used", "fewest"])?;
-    let number = |key: &'static str| Ok::<_, RecordError>(cycles.integer(key)?.map(|n| n as usize));
-    out.used = number("used")?;
-    out.skip = number("skip")?.unwrap_or(out.skip);
-    out.fewest = number("fewest")?.unwrap_or(out.fewest);
-    Ok(out)
+/// Frequencies of a motion.
+pub(crate) const FREQUENCY: Key = Key::new(
+    "frequency",
+    Kind::Frequency,
+    IfMissing::Required("write \"0.2 Hz\" or \"70 deg/s\", a list, or { start, stop, step }"),
+    "in Hz, or as an angular frequency in deg/s or rad/s",
+)
+.within(Range::Positive);
+/// Length of a run.
+pub(crate) const PERIODS: Key =
+    Key::new("periods", Kind::Count(100_000), IfMissing::Is("7"), "periods in each run, start-up included");
+/// Time at rest before a run.
+pub(crate) const STILL: Key =
+    Key::new("still", Kind::Quantity(Dimension::TIME), IfMissing::Is("1 s"), "time at rest before each run");
+/// Rate of the log.
+pub(crate) const RATE: Key =
+    Key::new("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), IfMissing::Is("100 Hz"), "sampling rate of the log")
+        .within(Range::Positive);
+/// Repeats of a run.
+pub(crate) const REPEATS: Key =
+    Key::new("repeats", Kind::Count(MOST_RUNS as u64), IfMissing::Is("1"), "number of times each run is made");
+
+/// Amplitudes of a motion; `advice` is what to write.
+pub(crate) const fn amplitude(advice: &'static str) -> Key {
+    Key::new("amplitude", Kind::Axis(Dimension::ANGLE), IfMissing::Required(advice), "amplitude of the angle")
+        .within(Range::Positive)
 }
 
 /// How a motor moves a body in the runs of one block of a plan: every amplitude at every frequency.
@@ -145,29 +152,16 @@ pub struct Swings {
 }
 
 impl Swings {
-    /// Reads `amplitude`, `frequency`, `periods`, `still`, `rate` and `repeats`; `like` is an amplitude in messages.
-    pub(crate) fn read(s: &Section<'_>, like: &str) -> Result<Self, RecordError> {
-        let need = |key: &'static str, example: &str| {
-            s.get(key).ok_or_else(|| s.missing(key, &format!("write {example}, a list, or {{ start, stop, step }}")))
-        };
-        let amplitude = need("amplitude", &format!("\"{like}\""))?;
-        let frequency = need("frequency", "\"0.2 Hz\" or \"70 deg/s\"")?;
-        let out = Self {
-            amplitude_rad: series(s, "amplitude", amplitude, Dimension::ANGLE)?,
-            omega_rad_s: angular(s, frequency)?,
-            periods: count(s, "periods", MOST_PERIODS)?.unwrap_or(7) as f64,
-            still_s: s.quantity("still", Dimension::TIME)?.unwrap_or(1.0),
-            rate_hz: s.positive("rate", Dimension::ANGULAR_SPEED)?.unwrap_or(100.0),
-            repeats: count(s, "repeats", MOST_RUNS as u64)?.unwrap_or(1),
-        };
-        for (key, value, numbers) in
-            [("amplitude", amplitude, &out.amplitude_rad), ("frequency", frequency, &out.omega_rad_s)]
-        {
-            if numbers.iter().any(|x| *x <= 0.0) {
-                return Err(s.wrong(key, value, format!("is {}; all must be larger than zero", found(value))));
-            }
+    /// Of the values of a block of a plan.
+    pub(crate) fn of(values: &Values) -> Self {
+        Self {
+            amplitude_rad: values.numbers("amplitude"),
+            omega_rad_s: values.numbers("frequency"),
+            periods: values.count("periods").unwrap_or_default() as f64,
+            still_s: values.number("still").unwrap_or_default(),
+            rate_hz: values.number("rate").unwrap_or_default(),
+            repeats: values.count("repeats").unwrap_or_default(),
         }
-        Ok(out)
     }
 
     /// Every amplitude at every frequency, as often as each is run.
@@ -187,28 +181,4 @@ impl Swings {
         let mean_s = sum_s / self.omega_rad_s.len().max(1) as f64;
         Asks { count, samples: count as f64 * (mean_s + 2.0 * self.still_s) * self.rate_hz }
     }
-}
-
-/// Frequencies as angular ones: a number of Hz counts periods, any other unit of the kind counts radians.
-fn angular<'a>(s: &Section<'a>, value: &'a Value<'a>) -> Result<Vec<f64>, RecordError> {
-    let is_hertz = |v: &Value<'_>| v.get_ref().as_str().is_some_and(|text| text.trim_end().ends_with("Hz"));
-    let bare = |v: &Value<'_>| v.get_ref().as_str().is_some_and(|text| text.contains("1/s") || text.contains("s^-1"));
-    let parts: Vec<&Value<'_>> = match (value.get_ref().as_array(), value.get_ref().as_table()) {
-        (Some(list), _) => list.iter().collect(),
-        (_, Some(table)) => table.values().collect(),
-        _ => vec![value],
-    };
-    if parts.iter().any(|v| bare(v)) {
-        return Err(s.wrong(
-            "frequency",
-            value,
-            "is in 1/s, which says neither periods nor radians; write Hz, or rad/s",
-        ));
-    }
-    let hertz = parts.iter().filter(|v| is_hertz(v)).count();
-    if hertz > 0 && hertz < parts.len() {
-        return Err(s.wrong("frequency", value, "is partly in Hz and partly an angular frequency; write one of them"));
-    }
-    let factor = if hertz > 0 { TAU } else { 1.0 };
-    Ok(series(s, "frequency", value, Dimension::ANGULAR_SPEED)?.into_iter().map(|x| factor * x).collect())
 }

@@ -349,7 +349,7 @@ fn study(s: &Section<'_>) -> Result<StudySpec, RecordError> {
         ("pitch", out.pitch_rad.len()),
         ("grids + radius", out.grids + out.radius.len()),
     ];
-    at_most(s, &numbers, MOST_STUDIED)?;
+    at_most(&s.place(), &numbers, MOST_STUDIED)?;
     Ok(out)
 }
 

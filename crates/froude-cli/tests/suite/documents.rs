@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use froude::identify::declare::key_table;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
@@ -31,6 +33,23 @@ fn the_files_that_the_start_page_quotes_are_those_of_the_examples() {
     for name in ["Tare-drag.toml", "Perf-tsr_0.toml", "rotor.toml"] {
         let file = read(&format!("examples/unh-rm2/{name}"));
         assert!(quoted.contains(&file), "start.md does not quote {name} as it is now:\n{file}");
+    }
+}
+
+#[test]
+fn the_key_tables_of_the_book_are_those_that_the_methods_declare() {
+    use froude::methods::tank::{oscillation, rotation};
+    for (page, keys) in [
+        ("forced-oscillation", oscillation::section::KEYS),
+        ("forced-oscillation", oscillation::section::PLAN),
+        ("rotation", rotation::section::KEYS),
+        ("rotation", rotation::section::PLAN),
+    ] {
+        let table = key_table(keys);
+        assert!(
+            read(&format!("book/src/{page}.md")).contains(&format!("{table}\n")),
+            "{page}.md has no such table:\n{table}"
+        );
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod advice;
 mod choices;
+mod declare;
 mod drift;
 mod idle;
 mod in_time;

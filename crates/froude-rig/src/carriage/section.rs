@@ -280,7 +280,7 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
     let (settling_dry_s, settling_wet_s) = settling(s)?;
     let speed_m_s = speeds(s, "speeds")?;
     let repeats = count(s, "repeats", 10_000)?.unwrap_or(1);
-    at_most(s, &[("speeds", speed_m_s.len()), ("repeats", repeats)], MOST_RUNS)?;
+    at_most(&s.place(), &[("speeds", speed_m_s.len()), ("repeats", repeats)], MOST_RUNS)?;
     Ok(CarriagePlan {
         axis: one_of(s, "axis", &Axis::NAMES, &Axis::ALL)?.unwrap_or_default(),
         speed_m_s,
@@ -396,7 +396,7 @@ fn warm_up(s: &Section<'_>) -> Result<WarmUp, RecordError> {
 fn friction_sweep(s: &Section<'_>) -> Result<FrictionSweep, RecordError> {
     s.only(&["speeds", "repeats"])?;
     let (speed_m_s, repeats) = (speeds(s, "speeds")?, count(s, "repeats", 10_000)?.unwrap_or(1));
-    at_most(s, &[("speeds", speed_m_s.len()), ("repeats", repeats)], MOST_RUNS)?;
+    at_most(&s.place(), &[("speeds", speed_m_s.len()), ("repeats", repeats)], MOST_RUNS)?;
     Ok(FrictionSweep { speed_m_s, repeats })
 }
 

@@ -14,6 +14,7 @@
 //! steady       = "4 s"
 //! ```
 
+use froude_identify::declare::ByConfiguration;
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Source};
 use froude_records::run::{ACCELERATED_TOW, Declared, declared};
@@ -21,7 +22,7 @@ use froude_records::section::Section;
 use froude_records::section_values::{Asks, MOST_RUNS, at_most, configurations, count, one_of, series};
 use froude_records::units::Dimension;
 
-use crate::declared::{ByConfiguration, runs_of};
+use crate::declared::runs_of;
 
 /// What is declared of an accelerated tow.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +67,8 @@ pub(super) fn accelerated_tow(s: &Section<'_>) -> Result<AcceleratedTowSpec, Rec
             "state which axis of the body lies along the travel: \"x\" (forward) or \"y\" (to starboard); drag and added mass are those along it",
         )
     })?;
-    let mass_kg = ByConfiguration::read(s, "mass", Dimension::MASS)?;
+    let mass = s.get("mass").map(|value| ByConfiguration::read(s, "mass", value, Dimension::MASS)).transpose()?;
+    let mass_kg = mass.unwrap_or_default();
     let wrong = mass_kg.all.iter().chain(mass_kg.named.values()).find(|m| m.value <= 0.0);
     if let (Some(mass), Some(value)) = (wrong, s.get("mass")) {
         return Err(s.wrong("mass", value, format!("is {} kg; a mass is larger than zero", mass.value)));
@@ -122,6 +124,6 @@ fn block(s: &Section<'_>) -> Result<AcceleratedPlan, RecordError> {
         ("acceleration", out.acceleration_m_s2.len()),
         ("repeats", out.repeats),
     ];
-    at_most(s, &numbers, MOST_RUNS)?;
+    at_most(&s.place(), &numbers, MOST_RUNS)?;
     Ok(out)
 }

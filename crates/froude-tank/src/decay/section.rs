@@ -168,6 +168,6 @@ fn block(s: &Section<'_>) -> Result<DecayPlan, RecordError> {
             format!("makes {samples:.0} samples of a release; {MOST_SAMPLES:.0} are the most"),
         ));
     }
-    at_most(s, &[(key, out.displacement.len()), ("repeats", out.repeats)], MOST_RUNS)?;
+    at_most(&s.place(), &[(key, out.displacement.len()), ("repeats", out.repeats)], MOST_RUNS)?;
     Ok(out)
 }

@@ -181,6 +181,6 @@ fn block(s: &Section<'_>) -> Result<ExcitedPlan, RecordError> {
             return Err(s.wrong(key, value, "is negative; a time that passes is not"));
         }
     }
-    at_most(s, &[("period", out.period_s.len()), ("held + free", out.held + out.free)], MOST_RUNS)?;
+    at_most(&s.place(), &[("period", out.period_s.len()), ("held + free", out.held + out.free)], MOST_RUNS)?;
     Ok(out)
 }

@@ -18,14 +18,17 @@
 //! ```
 
 use froude_hydro::swing::Pivot;
+use froude_identify::declare::{ByConfiguration, IfMissing, Key, Kind, Range, Values};
 use froude_records::RecordError;
 use froude_records::campaign::Source;
-use froude_records::run::{Declared, FORCED_OSCILLATION, declared};
+use froude_records::run::{Declared, FORCED_OSCILLATION};
 use froude_records::section::Section;
-use froude_records::section_values::{MOST_RUNS, at_most, configurations, count, one_of, series};
+use froude_records::section_values::MOST_RUNS;
 use froude_records::units::Dimension;
 
-use crate::declared::{ByConfiguration, Swings, cycles, runs_of};
+use crate::declared::{
+    CYCLES, FREQUENCY, HARMONICS, PERIODS, RATE, REPEATS, STILL, Swings, amplitude, cycles, runs_of,
+};
 use crate::motion::Cycles;
 
 /// What is declared of a forced oscillation.
@@ -60,36 +63,82 @@ pub struct OscillationPlan {
     pub swings: Swings,
 }
 
-/// Reads `[source.forced_oscillation]`.
-pub(super) fn oscillation(s: &Section<'_>) -> Result<OscillationSpec, RecordError> {
-    s.only(&["pivot", "radius", "mass", "buoyancy", "delay", "cycles", "harmonics"])?;
-    let pivot = one_of(s, "pivot", &Pivot::NAMES, &Pivot::ALL)?.ok_or_else(|| {
-        s.missing(
-            "pivot",
+/// The keys of `[source.forced_oscillation]`.
+pub const KEYS: &[Key] = &[
+    Key::new(
+        "pivot",
+        Kind::Word(&Pivot::NAMES),
+        IfMissing::Required(
             "state how the pivot axis lies: \"stream\" (along the stream, the body swings across it like a pendulum) or \"upright\" (the body \
              turns its heading into the stream); the two give different velocities and different added masses",
-        )
-    })?;
-    let radius_m = declared(s, "radius", Dimension::LENGTH)?
-        .ok_or_else(|| s.missing("radius", "write radius = { value = \"476 mm\", standard = \"1 mm\" }"))?;
-    if let (true, Some(value)) = (radius_m.value == 0.0, s.get("radius")) {
-        return Err(s.wrong("radius", value, "is zero; the body swings about a pivot that lies away from it"));
-    }
-    let mass_kg = ByConfiguration::read(s, "mass", Dimension::MASS)?;
-    if mass_kg == ByConfiguration::default() {
-        return Err(s.missing(
-            "mass",
+        ),
+        "`stream` or `upright`",
+    ),
+    Key::new(
+        "radius",
+        Kind::Constant(Dimension::LENGTH),
+        IfMissing::Required("write radius = { value = \"476 mm\", standard = \"1 mm\" }"),
+        "from the pivot axis to the body's reference point; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
+    )
+    .within(Range::NotZero("the body swings about a pivot that lies away from it")),
+    Key::new(
+        "mass",
+        Kind::PerConfiguration(Dimension::MASS),
+        IfMissing::Required(
             "write mass = { value = \"1.63 kg\", standard = \"5 g\" }: all that moves below the load cell; by configuration where there are several",
-        ));
-    }
+        ),
+        "all that moves below the load cell: one number, or one for each configuration",
+    ),
+    Key::new(
+        "buoyancy",
+        Kind::PerConfiguration(Dimension::FORCE),
+        IfMissing::Nothing("to be found"),
+        "buoyancy less weight, upwards positive, as far as it is known beforehand",
+    ),
+    Key::new(
+        "delay",
+        Kind::Constant(Dimension::TIME),
+        IfMissing::Nothing("to be found"),
+        "of the force behind the angle, positive where the force is stamped late",
+    ),
+    CYCLES,
+    HARMONICS,
+];
+
+/// The keys of a block of a plan.
+pub const PLAN: &[Key] = &[
+    Key::new(
+        "configurations",
+        Kind::Texts,
+        IfMissing::Nothing("one unnamed body"),
+        "names of the configurations, as in `mass` and `buoyancy`",
+    ),
+    Key::new(
+        "medium",
+        Kind::Word(&["water", "air"]),
+        IfMissing::Is("water"),
+        "`water`, or `air`, which determines only mass and delay",
+    ),
+    amplitude("write \"10 deg\", a list, or { start, stop, step }"),
+    FREQUENCY,
+    Key::new("flow", Kind::Axis(Dimension::SPEED), IfMissing::Is("0 m/s"), "speed of the stream"),
+    PERIODS,
+    STILL,
+    RATE,
+    REPEATS,
+];
+
+/// Reads `[source.forced_oscillation]`.
+pub(super) fn oscillation(s: &Section<'_>) -> Result<OscillationSpec, RecordError> {
+    let values = Values::read(s, KEYS)?;
     Ok(OscillationSpec {
-        pivot,
-        radius_m,
-        mass_kg,
-        buoyancy_n: ByConfiguration::read(s, "buoyancy", Dimension::FORCE)?,
-        delay_s: declared(s, "delay", Dimension::TIME)?,
-        cycles: cycles(s)?,
-        harmonics: count(s, "harmonics", 20)?.unwrap_or(3),
+        pivot: values.word("pivot", &Pivot::ALL).unwrap_or(Pivot::Stream),
+        radius_m: values.constant("radius").unwrap_or_default(),
+        mass_kg: values.by_configuration("mass"),
+        buoyancy_n: values.by_configuration("buoyancy"),
+        delay_s: values.constant("delay"),
+        cycles: cycles(&values),
+        harmonics: values.count("harmonics").unwrap_or_default(),
     })
 }
 
@@ -104,21 +153,13 @@ pub fn plan(source: &Source) -> Result<Vec<OscillationPlan>, RecordError> {
 
 /// Reads a `[[source.plan]]` that names an amplitude.
 fn block(s: &Section<'_>) -> Result<OscillationPlan, RecordError> {
-    s.only(&["configurations", "medium", "amplitude", "frequency", "flow", "periods", "still", "rate", "repeats"])?;
-    let swings = Swings::read(s, "10 deg")?;
-    let out = OscillationPlan {
-        configurations: configurations(s)?,
-        in_air: one_of(s, "medium", &["water", "air"], &[false, true])?.unwrap_or(false),
-        flow_m_s: s.get("flow").map_or(Ok(vec![0.0]), |v| series(s, "flow", v, Dimension::SPEED))?,
-        swings,
-    };
-    let numbers = [
-        ("configurations", out.configurations.len()),
-        ("amplitude", out.swings.amplitude_rad.len()),
-        ("frequency", out.swings.omega_rad_s.len()),
-        ("flow", out.flow_m_s.len()),
-        ("repeats", out.swings.repeats),
-    ];
-    at_most(s, &numbers, MOST_RUNS)?;
-    Ok(out)
+    let values = Values::read(s, PLAN)?;
+    values.at_most(MOST_RUNS)?;
+    let named = values.texts("configurations");
+    Ok(OscillationPlan {
+        configurations: if named.is_empty() { vec![String::new()] } else { named.to_vec() },
+        in_air: values.word("medium", &[false, true]).unwrap_or(false),
+        flow_m_s: values.numbers("flow"),
+        swings: Swings::of(&values),
+    })
 }

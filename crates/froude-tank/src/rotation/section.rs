@@ -18,16 +18,20 @@
 
 use froude_fit::budget::Uncertain;
 use froude_hydro::swing::Pivot;
+use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
-use froude_records::run::{ROTATION, Role, declared};
+use froude_records::run::{ROTATION, Role};
 use froude_records::section::Section;
-use froude_records::section_values::{MOST_RUNS, at_most, count, one_of};
+use froude_records::section_values::MOST_RUNS;
 use froude_records::units::Dimension;
 
 use super::setup::Setup;
-use crate::declared::{INERTIA, Swings, cycles, gain as gain_of, needed, runs_of, uncertain};
+use crate::declared::{
+    CYCLES, FREQUENCY, HARMONICS, INERTIA, PERIODS, RATE, REPEATS, STILL, Swings, amplitude, cycles, gain as gain_of,
+    needed, runs_of, uncertain,
+};
 use crate::error::undeclared;
 use crate::fluid::density_kg_m3;
 use crate::logs;
@@ -41,24 +45,78 @@ pub struct RotationPlan {
     pub swings: Swings,
 }
 
-/// Reads `[source.rotation]`; what other sections say of water, link and errors is not in it.
-pub(super) fn rotation(s: &Section<'_>) -> Result<Setup, RecordError> {
-    s.only(&["axis", "inertia", "tare_inertia", "restoring", "delay", "cycles", "harmonics"])?;
-    let axis = one_of(s, "axis", &Pivot::NAMES, &Pivot::ALL)?.ok_or_else(|| {
-        s.missing(
-            "axis",
+/// The keys of `[source.rotation]`.
+pub const KEYS: &[Key] = &[
+    Key::new(
+        "axis",
+        Kind::Word(&Pivot::NAMES),
+        IfMissing::Required(
             "state how the axis of rotation lies: \"upright\" (gravity does nothing) or \"stream\" (level, along the stream: weight and buoyancy \
              restore, and their moment is taken off)",
-        )
-    })?;
-    let restoring_n_m = declared(s, "restoring", Dimension::MOMENT)?;
-    match (axis, s.get("restoring")) {
-        (Pivot::Upright, Some(value)) => {
+        ),
+        "`upright` or `stream` (level, along the tank)",
+    ),
+    Key::new(
+        "inertia",
+        Kind::Constant(INERTIA),
+        IfMissing::Nothing("from runs in air"),
+        "dry, of all that moves below the torque cell; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
+    )
+    .within(Range::NotNegative("an inertia is not")),
+    Key::new(
+        "tare_inertia",
+        Kind::Constant(INERTIA),
+        IfMissing::Nothing("required with runs of the shaft alone"),
+        "the same without the body",
+    )
+    .within(Range::NotNegative("an inertia is not")),
+    Key::new(
+        "restoring",
+        Kind::Constant(Dimension::MOMENT),
+        IfMissing::Nothing("required about a level axis, refused about an upright one"),
+        "K, from the torque at rest at two angles; with a standard uncertainty it is known beforehand and improved by the runs",
+    ),
+    Key::new(
+        "delay",
+        Kind::Constant(Dimension::TIME),
+        IfMissing::Nothing("to be found"),
+        "of the torque behind the angle, positive where the torque is stamped late",
+    ),
+    CYCLES,
+    HARMONICS,
+];
+
+/// Roles that a planned run may have, and their names.
+const ROLES: [Role; 3] = [Role::Test, Role::DryAir, Role::Tare];
+const ROLE_NAMES: [&str; 3] = ["test", "dry_air", "tare"];
+
+/// The keys of a block of a plan.
+pub const PLAN: &[Key] = &[
+    Key::new(
+        "role",
+        Kind::Word(&ROLE_NAMES),
+        IfMissing::Is("test"),
+        "`test`; `dry_air`: the same motion in air; `tare`: the shaft without the body, in water",
+    ),
+    amplitude("write \"45 deg\", a list, or { start, stop, step }"),
+    FREQUENCY,
+    PERIODS,
+    STILL,
+    RATE,
+    REPEATS,
+];
+
+/// Reads `[source.rotation]`; what other sections say of water, link and errors is not in it.
+pub(super) fn rotation(s: &Section<'_>) -> Result<Setup, RecordError> {
+    let values = Values::read(s, KEYS)?;
+    let (axis, restoring) = (values.word("axis", &Pivot::ALL).unwrap_or(Pivot::Upright), values.constant("restoring"));
+    match (axis, restoring) {
+        (Pivot::Upright, Some(_)) => {
             let problem = "about an upright axis gravity restores nothing; leave it out, or write axis = \"stream\"";
-            return Err(s.wrong("restoring", value, problem));
+            return Err(values.wrong("restoring", problem));
         }
         (Pivot::Stream, None) => {
-            return Err(s.missing(
+            return Err(values.missing(
                 "restoring",
                 "about a level axis weight and buoyancy give a moment K sin θ, in phase with the added inertia: declare K, restoring = { value = \"2 mN m\", standard = \
                  \"0.2 mN m\" }, from the torque at rest at two angles; \"0 N m\" where the body is trimmed",
@@ -66,24 +124,14 @@ pub(super) fn rotation(s: &Section<'_>) -> Result<Setup, RecordError> {
         }
         _ => {}
     }
-    let inertia = |key: &'static str| {
-        let number = declared(s, key, INERTIA)?;
-        match (number, s.get(key)) {
-            (Some(number), Some(value)) if number.value < 0.0 => {
-                Err(s.wrong(key, value, "is negative; an inertia is not"))
-            }
-            _ => Ok(number.map(uncertain)),
-        }
-    };
-    let inertia_kg_m2 = inertia("inertia")?;
     Ok(Setup {
         axis,
-        tare_inertia_kg_m2: inertia("tare_inertia")?,
-        restoring_n_m: restoring_n_m.map(uncertain),
-        delay_s: declared(s, "delay", Dimension::TIME)?.map(uncertain),
-        cycles: cycles(s)?,
-        harmonics: count(s, "harmonics", 20)?.unwrap_or(3),
-        ..Setup::new(inertia_kg_m2)
+        tare_inertia_kg_m2: values.constant("tare_inertia").map(uncertain),
+        restoring_n_m: restoring.map(uncertain),
+        delay_s: values.constant("delay").map(uncertain),
+        cycles: cycles(&values),
+        harmonics: values.count("harmonics").unwrap_or_default(),
+        ..Setup::new(values.constant("inertia").map(uncertain))
     })
 }
 
@@ -133,15 +181,17 @@ pub fn plan(source: &Source) -> Result<Vec<RotationPlan>, RecordError> {
 
 /// Reads a `[[source.plan]]` of rotations.
 fn block(s: &Section<'_>) -> Result<RotationPlan, RecordError> {
-    s.only(&["role", "amplitude", "frequency", "periods", "still", "rate", "repeats"])?;
-    let swings = Swings::read(s, "45 deg")?;
-    let roles = [Role::Test, Role::DryAir, Role::Tare];
-    let role = one_of(s, "role", &roles.map(Role::name), &roles)?.unwrap_or(Role::Test);
-    let numbers = [
-        ("amplitude", swings.amplitude_rad.len()),
-        ("frequency", swings.omega_rad_s.len()),
-        ("repeats", swings.repeats),
-    ];
-    at_most(s, &numbers, MOST_RUNS)?;
-    Ok(RotationPlan { role, swings })
+    let values = Values::read(s, PLAN)?;
+    values.at_most(MOST_RUNS)?;
+    Ok(RotationPlan { role: values.word("role", &ROLES).unwrap_or(Role::Test), swings: Swings::of(&values) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roles_are_called_by_their_names() {
+        assert_eq!(ROLES.map(Role::name), ROLE_NAMES);
+    }
 }

@@ -129,6 +129,6 @@ fn block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
         ("angle", out.angle_rad.len()),
         ("repeats", out.repeats),
     ];
-    at_most(s, &numbers, MOST_RUNS)?;
+    at_most(&s.place(), &numbers, MOST_RUNS)?;
     Ok(out)
 }

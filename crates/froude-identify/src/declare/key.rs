@@ -1,0 +1,103 @@
+//! The keys of a section.
+
+use froude_records::units::Dimension;
+
+/// A key of a section.
+#[derive(Debug, Clone, Copy)]
+pub struct Key {
+    /// As it is written.
+    pub name: &'static str,
+    /// What its value is.
+    pub kind: Kind,
+    /// Which values it may have.
+    pub range: Range,
+    /// What applies if it is missing.
+    pub default: IfMissing,
+    /// What it means, for the book.
+    pub doc: &'static str,
+}
+
+impl Key {
+    /// A key whose value may be any of its kind.
+    #[must_use]
+    pub const fn new(name: &'static str, kind: Kind, default: IfMissing, doc: &'static str) -> Self {
+        Self { name, kind, range: Range::Any, default, doc }
+    }
+
+    /// The same with a range, which a quantity, a constant and an axis may have.
+    ///
+    /// # Panics
+    ///
+    /// Where its kind has none: while the program is compiled, of a key that is a `const`.
+    #[must_use]
+    pub const fn within(self, range: Range) -> Self {
+        let has_range = matches!(
+            self.kind,
+            Kind::Quantity(_) | Kind::Constant(_) | Kind::PerConfiguration(_) | Kind::Axis(_) | Kind::Frequency
+        );
+        assert!(has_range, "a key of this kind has no range");
+        Self { range, ..self }
+    }
+}
+
+/// What the value of a key is.
+#[derive(Debug, Clone, Copy)]
+pub enum Kind {
+    /// A quantity with its unit.
+    Quantity(Dimension),
+    /// The same, or `{ value, standard }`.
+    Constant(Dimension),
+    /// A constant, or a table with one for each configuration.
+    PerConfiguration(Dimension),
+    /// A quantity, a list of them, or `{ start, stop, step }`: one factor of a run matrix.
+    Axis(Dimension),
+    /// The same of frequencies, stored as angular: Hz is multiplied by 2π, deg/s and rad/s are not.
+    Frequency,
+    /// A whole number from 1 to this.
+    Count(u64),
+    /// A whole number, zero or larger.
+    Whole,
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// A text or a list of texts; another factor of a run matrix.
+    Texts,
+    /// A table of its own.
+    Table(&'static [Key]),
+}
+
+/// Allowed values of a quantity; for an axis, of each number. The text gives the reason.
+#[derive(Debug, Clone, Copy)]
+pub enum Range {
+    /// All.
+    Any,
+    /// Larger than zero.
+    Positive,
+    /// Zero or larger.
+    NotNegative(&'static str),
+    /// All but zero.
+    NotZero(&'static str),
+}
+
+/// What applies if a key is missing.
+#[derive(Debug, Clone, Copy)]
+pub enum IfMissing {
+    /// No value; the text says what is done instead.
+    Nothing(&'static str),
+    /// The section is refused; the text says what to write.
+    Required(&'static str),
+    /// This value, as it would be written.
+    Is(&'static str),
+}
+
+/// The key table of the book, in Markdown.
+#[must_use]
+pub fn key_table(keys: &[Key]) -> String {
+    let default = |key: &Key| match (key.default, key.kind) {
+        (IfMissing::Required(_), _) => "required".to_owned(),
+        (IfMissing::Nothing(words), _) => words.to_owned(),
+        (IfMissing::Is(value), Kind::Count(_) | Kind::Whole) => value.to_owned(),
+        (IfMissing::Is(value), _) => format!("`{value}`"),
+    };
+    let row = |key: &Key| format!("| `{}` | {} | {} |\n", key.name, default(key), key.doc);
+    format!("| key | default | what |\n| --- | --- | --- |\n{}", keys.iter().map(row).collect::<String>())
+}
