@@ -130,10 +130,10 @@ fn main() -> ExitCode {
         }
         if wants("two-mass") {
             flexible::coverage(claims, if full { 200 } else { 30 })?;
-            two_mass_rig::coverage(claims, if full { 60 } else { 12 })?;
+            two_mass_rig::coverage(claims, if full { 60 } else { 6 })?;
         }
         if wants("sweeps") {
-            sweeps::coverage(claims, if full { 200 } else { 40 })?;
+            sweeps::coverage(claims, if full { 200 } else { 20 })?;
         }
         if wants("carriage") {
             carriage::all(claims, if full { 400 } else { 60 });
@@ -156,7 +156,7 @@ fn main() -> ExitCode {
             steady::all(claims, &root, if full { 4_000 } else { 60 })?;
         }
         if wants("weights") {
-            weights::all(claims, &root, if full { 2_000 } else { 30 })?;
+            weights::all(claims, &root, if full { 2_000 } else { 20 })?;
         }
         if wants("accelerated") {
             accelerated::all(claims, &root, if full { 4_000 } else { 40 })?;
@@ -170,7 +170,7 @@ fn main() -> ExitCode {
             swim_sources::all(claims, &root, (full && (chosen.is_empty() || is_part)).then_some(pages.as_path()))?;
         }
         if wants("swim-coverage") {
-            swim_coverage::all(claims, &root, if full { 200 } else { 10 })?;
+            swim_coverage::all(claims, &root, if full { 200 } else { 6 })?;
         }
         if wants("clocks") {
             clocks::all(claims, &shared)?;
