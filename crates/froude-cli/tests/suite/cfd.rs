@@ -9,10 +9,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use crate::bench::has_openfoam;
-
-const BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
-     link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }\nends = { length = \"31 mm\" }\n";
+use crate::bench::{SMOOTH_BODY, has_openfoam};
 
 const CAMPAIGN: &str = r#"schema = 1
 name = "computed"
@@ -46,7 +43,7 @@ models = ["f1"]
 "#;
 
 fn campaign(folder: &Path) -> PathBuf {
-    std::fs::write(folder.join("body.toml"), BODY).unwrap();
+    std::fs::write(folder.join("body.toml"), SMOOTH_BODY).unwrap();
     let path = folder.join("campaign.toml");
     std::fs::write(&path, CAMPAIGN).unwrap();
     path
@@ -158,9 +155,9 @@ fn a_campaign_that_was_killed_goes_on_and_is_identified() {
     std::fs::write(&path, CAMPAIGN.replace("\"0.4 m/s\"", "\"0.5 m/s\"")).unwrap();
     assert_eq!(is_outdated(), [true; 4]);
     std::fs::write(&path, CAMPAIGN).unwrap();
-    std::fs::write(folder.path().join("body.toml"), BODY.replace("\"31 mm\"", "\"32 mm\"")).unwrap();
+    std::fs::write(folder.path().join("body.toml"), SMOOTH_BODY.replace("\"31 mm\"", "\"32 mm\"")).unwrap();
     assert_eq!(is_outdated(), [true; 4]);
-    std::fs::write(folder.path().join("body.toml"), BODY).unwrap();
+    std::fs::write(folder.path().join("body.toml"), SMOOTH_BODY).unwrap();
     assert_eq!(is_outdated(), [false; 4]);
 
     // Edited by hand: it reaches no fit, and is said.
@@ -295,7 +292,7 @@ periods   = 3
 #[test]
 fn a_swing_is_computed_and_identified_as_a_tank_s() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("body.toml"), BODY).unwrap();
+    std::fs::write(folder.path().join("body.toml"), SMOOTH_BODY).unwrap();
     let path = folder.path().join("campaign.toml");
     let with = |from: &str, to: &str| std::fs::write(&path, SWING.replacen(from, to, 1)).unwrap();
     with("\"stream\"", "\"upright\"");
@@ -371,7 +368,7 @@ fn what_cannot_be_computed_is_refused() {
         let found = with(from, to);
         assert!(found.contains(said), "{to}: {found}");
     }
-    let necked = BODY.replace("ends =", "joint = { length = \"60 mm\", scale = 0.7, ramp = \"4 mm\" }\nends =");
+    let necked = SMOOTH_BODY.replace("ends =", "joint = { length = \"60 mm\", scale = 0.7, ramp = \"4 mm\" }\nends =");
     std::fs::write(folder.path().join("body.toml"), necked).unwrap();
     std::fs::write(&path, CAMPAIGN).unwrap();
     let found = refused(&["cfd", "plan", text(&path)]);
@@ -599,7 +596,7 @@ fn necks_and_tanks_are_meshed_by_cubes() {
         std::fs::write(&path, text).unwrap();
         json(&["cfd", "plan", self::text(&path)])
     };
-    let necked = BODY.replace("ends =", "joint = { length = \"60 mm\", scale = 0.7, ramp = \"4 mm\" }\nends =");
+    let necked = SMOOTH_BODY.replace("ends =", "joint = { length = \"60 mm\", scale = 0.7, ramp = \"4 mm\" }\nends =");
     std::fs::write(folder.path().join("body.toml"), necked).unwrap();
     let planned = with("mesh = \"coarse\"");
     assert_eq!(planned["configurations"][0]["mesher"].as_str(), Some("snappyHexMesh"));

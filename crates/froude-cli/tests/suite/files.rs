@@ -8,6 +8,8 @@ use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process};
 
+use crate::bench::SMOOTH_BODY;
+
 /// Longest that anything here takes to end.
 const PATIENCE: Duration = Duration::from_mins(1);
 
@@ -45,16 +47,13 @@ speed = "0.4 m/s"
 angle = ["0 deg", "90 deg"]
 "#;
 
-const BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
-     link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }\nends = { length = \"31 mm\" }\n";
-
 /// A folder with a CFD campaign in `lab/`.
 fn cfd(from: &str, to: &str) -> tempfile::TempDir {
     assert!(CFD.contains(from), "{from}");
     let folder = tempfile::tempdir().unwrap();
     let lab = folder.path().join("lab");
     std::fs::create_dir(&lab).unwrap();
-    std::fs::write(lab.join("body.toml"), BODY).unwrap();
+    std::fs::write(lab.join("body.toml"), SMOOTH_BODY).unwrap();
     std::fs::write(lab.join("c.toml"), CFD.replacen(from, to, 1)).unwrap();
     folder
 }
@@ -335,7 +334,7 @@ fn a_plan_is_counted_before_it_is_made() {
     let study = format!("[[source.cfd.study]]\nspeed = \"0.4 m/s\"\nradius = [{}]\n[[source.plan]]", radii.join(", "));
     let many = CFD.replace("\"H1LT\"", &names.join(", ")).replace("[[source.plan]]", &study);
     std::fs::write(at.join("c.toml"), many).unwrap();
-    std::fs::write(at.join("body.toml"), BODY).unwrap();
+    std::fs::write(at.join("body.toml"), SMOOTH_BODY).unwrap();
     let (code, found) = outcome(at, &["cfd", "plan", "c.toml"]);
     assert!(code == Some(2) && found.contains("asks for 12369 meshes") && found.contains("at most 10000"), "{found}");
 }

@@ -12,6 +12,8 @@ use froude::records::hash::sha256_of_file;
 
 use crate::bench::SHORT;
 
+use crate::bench::SMOOTH_BODY;
+
 const PAGE: &str = include_str!("../../../../book/src/limits.md");
 
 const CFD: &str = "schema = 1\nname = \"computed\"\n[fluid]\ndensity = \"1025 kg/m^3\"\nkinematic_viscosity = \"1.19e-6 m^2/s\"\n\
@@ -25,8 +27,6 @@ const SWUNG: &str = "runs = \"swung\"\nmethod = \"forced_oscillation\"\nmodels =
      [source.forced_oscillation]\npivot = \"stream\"\nradius = \"476 mm\"\nmass = \"1.5 kg\"\nbuoyancy = \"0 N\"\ncycles = { skip = 1, fewest = 2 }\n\
      [source.cfd]\nbody = \"body.toml\"\nmodel = \"laminar\"\nmesh = { stations = 20, layers = 20, azimuth = 8, first_layer = \"0.5 mm\" }\n\
      [[source.plan]]\nconfigurations = [\"H1LT\"]\namplitude = \"2 deg\"\nfrequency = \"80 deg/s\"\nflow = \"0 m/s\"\nperiods = 3\n";
-const BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
-     link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }\nends = { length = \"31 mm\" }\n";
 const PIECE: &str = "schema = 1\nname = \"piece\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n[body]\nshape = \"ellipsoid\"\n\
      semi_axis_x = \"1 m\"\nsemi_axis_y = \"0.8 m\"\nsemi_axis_z = \"0.8 m\"\n";
 const TABLE: &str = "speed [m/s],f_x [N]\n0.1,-0.5\n0.2,-2.0\n0.3,-4.4\n0.4,-8.1\n0.5,-12.4\n";
@@ -102,7 +102,7 @@ fn lab() -> tempfile::TempDir {
         ("steady.toml", &example("mamba-steady/campaign.toml")),
         ("piece.toml", PIECE),
         ("twice.obj", DUPLICATE_VERTEX),
-        ("body.toml", BODY),
+        ("body.toml", SMOOTH_BODY),
         ("cfd.toml", &computed),
         ("swing.toml", &swung),
     ] {

@@ -15,6 +15,10 @@ pub const SHORT_WAITS: [(&str, &str); 2] = [
     (r#"still = "5 s""#, r#"still = "2 s""#),
 ];
 
+/// A body file: a smooth robot of links.
+pub const SMOOTH_BODY: &str = "schema = 1\nname = \"smooth\"\n[body]\nshape = \"robot\"\n\
+     link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }\nends = { length = \"31 mm\" }\n";
+
 /// The example, shortened to two pairs at one speed, jogs and pulses.
 pub const SHORT: [(&str, &str); 8] = [
     (SIX_SPEEDS, r#"speeds = ["0.5 m/s"]"#),

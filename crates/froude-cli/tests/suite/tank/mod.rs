@@ -53,3 +53,18 @@ pub fn replace_in(path: &Path, from: &str, to: &str) {
     assert!(text.contains(from), "{text}");
     std::fs::write(path, text.replace(from, to)).unwrap();
 }
+
+/// That each interval of an estimate is near the truth of its plan, and as wide as the plan says within `ratios`.
+pub fn is_as_planned(plan: &serde_json::Value, estimate: &serde_json::Value, ratios: std::ops::Range<f64>) {
+    for expected in plan["sources"][0]["expected"].as_array().unwrap() {
+        let name = expected["coefficient"].as_str().unwrap();
+        let interval = &estimate["coefficients"][name]["interval_95"];
+        let (low, high) = (interval[0].as_f64().unwrap(), interval[1].as_f64().unwrap());
+        let truth = expected["value"].as_f64().unwrap();
+        // One campaign: an interval of 95 % may miss by a little.
+        let half = 0.5 * (high - low);
+        assert!((truth - 0.5 * (low + high)).abs() < 1.5 * half, "{name}: {truth} not near [{low}, {high}]");
+        let ratio = half / expected["half_width_95"].as_f64().unwrap();
+        assert!(ratios.contains(&ratio), "{name}: {ratio}");
+    }
+}
