@@ -488,6 +488,7 @@ pub fn found(value: &Value<'_>) -> String {
         DeValue::Integer(i) => i.as_str().to_owned(),
         DeValue::Float(f) => f.as_str().to_owned(),
         DeValue::Boolean(b) => b.to_string(),
+        DeValue::Array(_) => "a list".to_owned(),
         other => format!("a {}", other.type_str()),
     }
 }

@@ -168,13 +168,12 @@ pub fn series<'a>(
         );
         return Err(s.wrong(key, value, problem));
     }
-    let steps = steps as usize;
     // In the written unit 0.02 + 49·0.02 is exactly what a person means; converted once.
     let of = |k: usize| {
         let value = start.unit.from_si(start.value_si) + k as f64 * start.unit.from_si(step.value_si);
         start.unit.to_si((value * 1e12).round() / 1e12)
     };
-    Ok((0..=steps).map(of).collect())
+    Ok((0..=steps as usize).map(of).collect())
 }
 
 /// Two steps that divide `way` (of either sign), next to where `count` of them would: short numbers, where there are any.

@@ -97,13 +97,10 @@ pub(crate) const HARMONICS: Key =
     Key::new("harmonics", Kind::Count(20), IfMissing::Is("3"), "number of harmonics fitted to the angle");
 
 /// Of the values of [`CYCLES`].
-pub(crate) fn cycles(values: &Values) -> Cycles {
-    let number = |key: &str| values.table("cycles").and_then(|cycles| cycles.count(key));
-    Cycles {
-        skip: number("skip").unwrap_or_default(),
-        used: number("used"),
-        fewest: number("fewest").unwrap_or_default(),
-    }
+pub(crate) fn cycles(values: &Values) -> Result<Cycles, RecordError> {
+    let cycles = values.need("cycles", values.table("cycles"))?;
+    let number = |key: &str| cycles.need(key, cycles.count(key));
+    Ok(Cycles { skip: number("skip")?, used: cycles.count("used"), fewest: number("fewest")? })
 }
 
 /// Frequencies of a motion.
@@ -119,7 +116,8 @@ pub(crate) const PERIODS: Key =
     Key::new("periods", Kind::Count(100_000), IfMissing::Is("7"), "periods in each run, start-up included");
 /// Time at rest before a run.
 pub(crate) const STILL: Key =
-    Key::new("still", Kind::Quantity(Dimension::TIME), IfMissing::Is("1 s"), "time at rest before each run");
+    Key::new("still", Kind::Quantity(Dimension::TIME), IfMissing::Is("1 s"), "time at rest before each run")
+        .within(Range::NotNegative("a time that passes is not"));
 /// Rate of the log.
 pub(crate) const RATE: Key =
     Key::new("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), IfMissing::Is("100 Hz"), "sampling rate of the log")
@@ -153,15 +151,17 @@ pub struct Swings {
 
 impl Swings {
     /// Of the values of a block of a plan.
-    pub(crate) fn of(values: &Values) -> Self {
-        Self {
+    pub(crate) fn of(values: &Values) -> Result<Self, RecordError> {
+        let count = |key: &str| values.need(key, values.count(key));
+        let number = |key: &str| values.need(key, values.number(key));
+        Ok(Self {
             amplitude_rad: values.numbers("amplitude"),
             omega_rad_s: values.numbers("frequency"),
-            periods: values.count("periods").unwrap_or_default() as f64,
-            still_s: values.number("still").unwrap_or_default(),
-            rate_hz: values.number("rate").unwrap_or_default(),
-            repeats: values.count("repeats").unwrap_or_default(),
-        }
+            periods: count("periods")? as f64,
+            still_s: number("still")?,
+            rate_hz: number("rate")?,
+            repeats: count("repeats")?,
+        })
     }
 
     /// Every amplitude at every frequency, as often as each is run.

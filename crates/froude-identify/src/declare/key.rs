@@ -81,9 +81,9 @@ pub enum Range {
 /// What applies if a key is missing.
 #[derive(Debug, Clone, Copy)]
 pub enum IfMissing {
-    /// No value; the text says what is done instead.
+    /// No value. The text names the value or the source that the method uses instead.
     Nothing(&'static str),
-    /// The section is refused; the text says what to write.
+    /// The section is rejected with this advice on what to write.
     Required(&'static str),
     /// This value, as it would be written.
     Is(&'static str),

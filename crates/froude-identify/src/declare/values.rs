@@ -118,6 +118,15 @@ impl Values {
         self.of(key, |parsed| if let Parsed::Table(x) = parsed { Some(x) } else { None })
     }
 
+    /// What a required key or one with a default has, which [`Self::read`] has seen to.
+    ///
+    /// # Errors
+    ///
+    /// Nothing was found: the program asks for a key that its section does not declare so.
+    pub fn need<T>(&self, key: &str, found: Option<T>) -> Result<T, RecordError> {
+        found.ok_or_else(|| self.missing(key, "the method needs it"))
+    }
+
     /// The error of a key that contradicts another one, at its value.
     #[must_use]
     pub fn wrong(&self, key: &str, problem: impl Into<String>) -> RecordError {
@@ -170,32 +179,47 @@ fn missing(s: &Section<'_>, key: &Key) -> Result<Option<Parsed>, RecordError> {
 
 fn parsed<'a>(s: &Section<'a>, key: &Key, value: &'a Value<'a>) -> Result<Parsed, RecordError> {
     let name = key.name;
-    let within = |si: f64, all: &str| match key.range {
+    // A number that is out of range is shown where it stands: an item of a list, a configuration of a table.
+    let within = |at: &Value<'_>, si: f64, all: &str| match key.range {
         Range::Positive if si.is_nan() || si <= 0.0 => {
-            Err(s.wrong(name, value, format!("is {}; {all} must be larger than zero", found(value))))
+            Err(s.wrong(name, at, format!("is {}; {all} must be larger than zero", found(at))))
         }
-        Range::NotNegative(why) if si < 0.0 => Err(s.wrong(name, value, format!("is negative; {why}"))),
-        Range::NotZero(why) if si == 0.0 => Err(s.wrong(name, value, format!("is zero; {why}"))),
+        Range::NotNegative(why) if si < 0.0 => Err(s.wrong(name, at, format!("is negative; {why}"))),
+        Range::NotZero(why) if si == 0.0 => Err(s.wrong(name, at, format!("is zero; {why}"))),
         _ => Ok(()),
+    };
+    let numbers = |of_axis: Vec<f64>| {
+        let items = value.get_ref().as_array();
+        let each = |(i, si): (usize, &f64)| match items.and_then(|items| items.get(i)) {
+            Some(item) => within(item, *si, "it"),
+            None => within(value, *si, "all"),
+        };
+        of_axis.iter().enumerate().try_for_each(each)?;
+        Ok::<_, RecordError>(Parsed::Numbers(of_axis))
     };
     Ok(match key.kind {
         Kind::Quantity(dimension) => {
             let si = s.as_quantity_of(name, value, dimension)?;
-            within(si, "it")?;
+            within(value, si, "it")?;
             Parsed::Number(si)
         }
         Kind::Constant(dimension) => {
             let constant = declared_value(s, name, value, dimension)?;
-            within(constant.value, "it")?;
+            within(value, constant.value, "it")?;
             Parsed::Constant(constant)
         }
         Kind::PerConfiguration(dimension) => {
             let constants = ByConfiguration::read(s, name, value, dimension)?;
-            constants.all.iter().chain(constants.named.values()).try_for_each(|c| within(c.value, "all"))?;
+            constants.all.iter().try_for_each(|all| within(value, all.value, "it"))?;
+            let entries = value.get_ref().as_table().into_iter().flat_map(|table| table.iter());
+            for (configuration, at) in entries {
+                let own = constants.named.get(configuration.get_ref().as_ref());
+                own.map_or(Ok(()), |own| within(at, own.value, "it"))?;
+            }
             Parsed::PerConfiguration(constants)
         }
-        Kind::Axis(dimension) => numbers(series(s, name, value, dimension)?, within)?,
-        Kind::Frequency => numbers(angular(s, name, value)?, within)?,
+        Kind::Axis(dimension) => numbers(series(s, name, value, dimension)?)?,
+        Kind::Frequency => numbers(angular(s, name, value)?)?,
         Kind::Count(most) => Parsed::Count(count(s, name, most)?.unwrap_or_default()),
         Kind::Whole => Parsed::Count(s.integer(name)?.unwrap_or_default() as usize),
         Kind::Word(words) => {
@@ -205,9 +229,4 @@ fn parsed<'a>(s: &Section<'a>, key: &Key, value: &'a Value<'a>) -> Result<Parsed
         Kind::Texts => Parsed::Texts(s.texts(name)?),
         Kind::Table(keys) => Parsed::Table(Values::read(&s.as_section(name, value)?, keys)?),
     })
-}
-
-fn numbers(of_axis: Vec<f64>, within: impl Fn(f64, &str) -> Result<(), RecordError>) -> Result<Parsed, RecordError> {
-    of_axis.iter().try_for_each(|si| within(*si, "all"))?;
-    Ok(Parsed::Numbers(of_axis))
 }

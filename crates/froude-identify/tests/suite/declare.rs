@@ -72,21 +72,25 @@ fn every_kind_is_read_in_si() {
 
 #[test]
 fn what_is_wrong_is_said_where_it_stands() {
-    for (text, told) in [
+    for (text, expected) in [
         ("", "c.toml:1:1: [source.swing] has no `mass`; write mass = \"1 kg\""),
         ("mass = {}", "c.toml:1:1: [source.swing] has no `mass`; write mass = \"1 kg\""),
         ("mas = \"1 kg\"", "c.toml:1:1: unknown key `mas` in [source.swing]; did you mean `mass`?"),
         ("mass = \"-1 kg\"", "c.toml:1:8: `mass` is negative; a mass is not"),
-        ("mass = { a = \"1 kg\", b = \"-1 kg\" }", "c.toml:1:8: `mass` is negative; a mass is not"),
+        ("mass = { a = \"1 kg\", b = \"-1 kg\" }", "c.toml:1:26: `mass` is negative; a mass is not"),
         ("mass = \"1 kg\"\nradius = \"0 m\"", "c.toml:2:10: `radius` is zero; the body swings about a pivot"),
-        ("mass = \"1 kg\"\nfrequency = [\"1 Hz\", \"0 Hz\"]", "; all must be larger than zero"),
+        (
+            "mass = \"1 kg\"\nfrequency = [\"1 Hz\", \"0 Hz\"]",
+            "c.toml:2:22: `frequency` is \"0 Hz\"; it must be larger than zero",
+        ),
+        ("mass = \"1 kg\"\nfrequency = \"0 Hz\"", "c.toml:2:13: `frequency` is \"0 Hz\"; all must be larger than zero"),
         ("mass = \"1 kg\"\nfrequency = [\"1 Hz\", \"1 rad/s\"]", "c.toml:2:13: `frequency` is partly in Hz"),
         ("mass = \"1 kg\"\nrole = \"tar\"", "c.toml:2:8: `role` is \"tar\"; did you mean `tare`?"),
         ("mass = \"1 kg\"\nrepeats = 10", "c.toml:2:11: `repeats` is 10; it must lie between 1 and 9"),
         ("mass = \"1 kg\"\ncycles = { skp = 1 }", "unknown key `skp` in [source.swing.cycles]; did you mean `skip`?"),
     ] {
-        let said = refused(text);
-        assert!(said.contains(told), "{text}: {said}");
+        let message = refused(text);
+        assert!(message.contains(expected), "{text}: {message}");
     }
     let values = read("mass = \"1 kg\"\nrole = \"tare\"").unwrap();
     assert_eq!(values.wrong("role", "stands alone").to_string(), "c.toml:2:8: `role` stands alone");

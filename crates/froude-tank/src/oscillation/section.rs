@@ -88,7 +88,8 @@ pub const KEYS: &[Key] = &[
             "write mass = { value = \"1.63 kg\", standard = \"5 g\" }: all that moves below the load cell; by configuration where there are several",
         ),
         "all that moves below the load cell: one number, or one for each configuration",
-    ),
+    )
+    .within(Range::NotNegative("a mass is not")),
     Key::new(
         "buoyancy",
         Kind::PerConfiguration(Dimension::FORCE),
@@ -132,13 +133,13 @@ pub const PLAN: &[Key] = &[
 pub(super) fn oscillation(s: &Section<'_>) -> Result<OscillationSpec, RecordError> {
     let values = Values::read(s, KEYS)?;
     Ok(OscillationSpec {
-        pivot: values.word("pivot", &Pivot::ALL).unwrap_or(Pivot::Stream),
-        radius_m: values.constant("radius").unwrap_or_default(),
+        pivot: values.need("pivot", values.word("pivot", &Pivot::ALL))?,
+        radius_m: values.need("radius", values.constant("radius"))?,
         mass_kg: values.by_configuration("mass"),
         buoyancy_n: values.by_configuration("buoyancy"),
         delay_s: values.constant("delay"),
-        cycles: cycles(&values),
-        harmonics: values.count("harmonics").unwrap_or_default(),
+        cycles: cycles(&values)?,
+        harmonics: values.need("harmonics", values.count("harmonics"))?,
     })
 }
 
@@ -158,8 +159,8 @@ fn block(s: &Section<'_>) -> Result<OscillationPlan, RecordError> {
     let named = values.texts("configurations");
     Ok(OscillationPlan {
         configurations: if named.is_empty() { vec![String::new()] } else { named.to_vec() },
-        in_air: values.word("medium", &[false, true]).unwrap_or(false),
+        in_air: values.need("medium", values.word("medium", &[false, true]))?,
         flow_m_s: values.numbers("flow"),
-        swings: Swings::of(&values),
+        swings: Swings::of(&values)?,
     })
 }

@@ -109,10 +109,11 @@ pub const PLAN: &[Key] = &[
 /// Reads `[source.rotation]`; what other sections say of water, link and errors is not in it.
 pub(super) fn rotation(s: &Section<'_>) -> Result<Setup, RecordError> {
     let values = Values::read(s, KEYS)?;
-    let (axis, restoring) = (values.word("axis", &Pivot::ALL).unwrap_or(Pivot::Upright), values.constant("restoring"));
+    let axis = values.need("axis", values.word("axis", &Pivot::ALL))?;
+    let restoring = values.constant("restoring");
     match (axis, restoring) {
         (Pivot::Upright, Some(_)) => {
-            let problem = "about an upright axis gravity restores nothing; leave it out, or write axis = \"stream\"";
+            let problem = "stands with an upright axis, about which gravity restores nothing; leave it out, or write axis = \"stream\"";
             return Err(values.wrong("restoring", problem));
         }
         (Pivot::Stream, None) => {
@@ -129,8 +130,8 @@ pub(super) fn rotation(s: &Section<'_>) -> Result<Setup, RecordError> {
         tare_inertia_kg_m2: values.constant("tare_inertia").map(uncertain),
         restoring_n_m: restoring.map(uncertain),
         delay_s: values.constant("delay").map(uncertain),
-        cycles: cycles(&values),
-        harmonics: values.count("harmonics").unwrap_or_default(),
+        cycles: cycles(&values)?,
+        harmonics: values.need("harmonics", values.count("harmonics"))?,
         ..Setup::new(values.constant("inertia").map(uncertain))
     })
 }
@@ -183,7 +184,7 @@ pub fn plan(source: &Source) -> Result<Vec<RotationPlan>, RecordError> {
 fn block(s: &Section<'_>) -> Result<RotationPlan, RecordError> {
     let values = Values::read(s, PLAN)?;
     values.at_most(MOST_RUNS)?;
-    Ok(RotationPlan { role: values.word("role", &ROLES).unwrap_or(Role::Test), swings: Swings::of(&values) })
+    Ok(RotationPlan { role: values.need("role", values.word("role", &ROLES))?, swings: Swings::of(&values)? })
 }
 
 #[cfg(test)]
