@@ -209,13 +209,6 @@ pub enum FitError {
         what: &'static str,
     },
 
-    /// A coefficient is asked for that the data do not determine.
-    #[error("coefficient {name:?} is not determined by the data; ask for a determined one")]
-    Undetermined {
-        /// The coefficient.
-        name: String,
-    },
-
     /// A component has no degrees of freedom left where some are needed.
     #[error(
         "component {component:?} has {n} rows for {rank} coefficients: none is left to \

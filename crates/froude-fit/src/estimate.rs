@@ -9,13 +9,12 @@
 //!
 //! with `H` the hat matrix of the whitened rows, priors included: the
 //! restricted maximum likelihood equation of Patterson & Thompson (1971) for a
-//! diagonal covariance. Huber's loss takes σ from the median absolute residual.
+//! diagonal covariance.
 
 use faer::Mat;
 
 use crate::block::Block;
 use crate::dense::{mul_vec, norm, row};
-use crate::options::Loss;
 use crate::rank::PivotedQr;
 use crate::report::{End, Report};
 
@@ -28,8 +27,6 @@ const SIGMA_ITERATIONS: usize = 500;
 const SIGMA_FLOOR: f64 = 1e-8;
 /// Degrees of freedom below this are none.
 const NO_DOF: f64 = 1e-6;
-/// The MAD scale of Huber's loss is held from this iteration on.
-const HOLD_SCALE_AFTER: usize = 50;
 
 /// An unconstrained estimate, in whitened coordinates.
 ///
@@ -54,17 +51,8 @@ pub(crate) struct Estimate {
     pub sigma: Vec<Option<f64>>,
     /// Degrees of freedom of each component.
     pub dof: Vec<f64>,
-    /// Weights of the loss, one per whitened row (all one for squares).
-    pub loss_weight: Vec<f64>,
     /// How the iteration ended.
     pub report: Report,
-}
-
-pub(crate) fn estimate(block: &Block, loss: Loss) -> Estimate {
-    match loss {
-        Loss::Squares => squares(block),
-        Loss::Huber { k } => huber(block, k),
-    }
 }
 
 /// Whitens the block and factors it.
@@ -157,7 +145,7 @@ fn separate_sigmas(block: &Block, floor: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-fn squares(block: &Block) -> Estimate {
+pub(crate) fn estimate(block: &Block) -> Estimate {
     let needs_sigma = block.components.len() > 1 || !block.priors.is_empty();
     let floor = floors(block);
     let mut whitening = if needs_sigma { separate_sigmas(block, &floor) } else { vec![1.0] };
@@ -184,7 +172,6 @@ fn squares(block: &Block) -> Estimate {
         let is_done = !needs_sigma || change < SIGMA_TOLERANCE;
         if is_done || iterations == SIGMA_ITERATIONS {
             return Estimate {
-                loss_weight: vec![1.0; residual.len()],
                 design: whitened.design,
                 response: whitened.response,
                 n_priors: block.priors.len(),
@@ -198,74 +185,5 @@ fn squares(block: &Block) -> Estimate {
             };
         }
         whitening = next;
-    }
-}
-
-/// Huber's weights of whitened residuals; a prior is not an outlier.
-pub(crate) fn huber_weights(residual: &[f64], n_priors: usize, k: f64) -> Vec<f64> {
-    residual.iter().enumerate().map(|(i, r)| if i < n_priors || r.abs() <= k { 1.0 } else { k / r.abs() }).collect()
-}
-
-/// Least squares with extra row weights, `gamma`.
-fn weighted_solve(whitened: &Whitened, weight: &[f64]) -> Vec<f64> {
-    let root: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
-    let design = Mat::from_fn(root.len(), whitened.design.ncols(), |i, j| root[i] * whitened.design[(i, j)]);
-    let response: Vec<f64> = whitened.response.iter().zip(&root).map(|(y, w)| y * w).collect();
-    PivotedQr::new(design.as_ref()).solve(&response)
-}
-
-/// Iteratively reweighted least squares, σ from the median absolute residual.
-fn huber(block: &Block, k: f64) -> Estimate {
-    let floor = floors(block);
-    let start = squares(block);
-    let dof = start.dof.clone();
-    let n_priors = block.priors.len();
-    let n = block.n_rows_of();
-    let mut whitening = start.whitening.clone();
-    let mut residual_now = start.residual.clone();
-    let mut iterations = 0;
-    loop {
-        iterations += 1;
-        if iterations <= HOLD_SCALE_AFTER {
-            let raw: Vec<f64> =
-                block.row_component.iter().zip(&residual_now[n_priors..]).map(|(&c, r)| r * whitening[c]).collect();
-            let old = whitening.clone();
-            for c in 0..whitening.len() {
-                let of_component: Vec<f64> = raw
-                    .iter()
-                    .zip(&block.row_component)
-                    .filter(|&(_, &component)| component == c)
-                    .map(|(r, _)| r.abs())
-                    .collect();
-                // Fitting makes residuals smaller: n/(n − p) as for squares.
-                let inflation = (n[c] as f64 / dof[c].max(1.0)).sqrt();
-                whitening[c] = (crate::robust::mad_scale(of_component) * inflation).max(floor[c]);
-            }
-            for (i, &c) in block.row_component.iter().enumerate() {
-                residual_now[n_priors + i] *= old[c] / whitening[c];
-            }
-        }
-        let whitened = whiten(block, &whitening);
-        let weight = huber_weights(&residual_now, n_priors, k);
-        let gamma = weighted_solve(&whitened, &weight);
-        let next = residual(&whitened, &gamma);
-        let change = next.iter().zip(&residual_now).map(|(new, old)| (new - old).abs()).fold(0.0, f64::max);
-        residual_now = next;
-        let is_done = change < 1e-11 * (1.0 + norm(&whitened.response));
-        if is_done || iterations == SIGMA_ITERATIONS {
-            return Estimate {
-                qr: PivotedQr::new(whitened.design.as_ref()),
-                loss_weight: huber_weights(&residual_now, n_priors, k),
-                design: whitened.design,
-                response: whitened.response,
-                n_priors,
-                gamma,
-                residual: residual_now,
-                sigma: whitening.iter().zip(&dof).map(|(&s, &dof)| (dof > 0.0).then_some(s)).collect(),
-                whitening,
-                dof,
-                report: Report { end: if is_done { End::Converged } else { End::IterationLimit }, iterations },
-            };
-        }
     }
 }

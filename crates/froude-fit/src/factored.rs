@@ -4,14 +4,14 @@
 //! factored once; each response then costs two products with `Q`.
 
 use crate::block::blocks;
-use crate::covariance::{FEWEST_WITH_FREEDOM, clusters};
+use crate::covariance::clusters;
 use crate::dense::{Cholesky, mul, row};
 use crate::determined::Indeterminacy;
 use crate::distribution::coverage_factor;
 use crate::error::FitError;
 use crate::estimate::estimate;
 use crate::freedom::Form;
-use crate::options::{Bound, CovarianceKind, Loss, Options};
+use crate::options::{Bound, CovarianceKind, Options};
 use crate::problem::Problem;
 
 /// A leave-one-out pivot below this means that the rest determines too little.
@@ -81,7 +81,7 @@ impl Factored {
                     what: "coefficients shared by two components",
                 });
             }
-            let estimate = estimate(&block, Loss::Squares);
+            let estimate = estimate(&block);
             let qr = &estimate.qr;
             let rank = qr.rank;
             let null = Indeterminacy::new(qr.null_space().as_ref());
@@ -102,7 +102,7 @@ impl Factored {
                     Some((groups, n))
                 }
                 CovarianceKind::Cr3 => {
-                    let clusters = clusters(problem, &block, FEWEST_WITH_FREEDOM)?;
+                    let clusters = clusters(problem, &block)?;
                     let mut groups = vec![0; n];
                     for (g, members) in clusters.values().enumerate() {
                         for &i in members {
@@ -264,8 +264,7 @@ fn decides(problem: &Problem, block: &crate::block::Block, kind: CovarianceKind,
     if kind == CovarianceKind::Hc3 {
         return FitError::RowDecides { row: block.rows[group] };
     }
-    let cluster =
-        clusters(problem, block, FEWEST_WITH_FREEDOM).ok().and_then(|c| c.keys().nth(group).copied()).unwrap_or(group);
+    let cluster = clusters(problem, block).ok().and_then(|c| c.keys().nth(group).copied()).unwrap_or(group);
     FitError::ClusterDecides { cluster, component: crate::covariance::component_names(problem, block) }
 }
 

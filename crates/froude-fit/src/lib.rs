@@ -1,7 +1,7 @@
 //! Least squares with a realistic uncertainty; independent of any fluid.
 //!
 //! A [`Problem`] (design, responses of one or several components, weights,
-//! clusters) and [`Options`] (bounds, constraints, priors, loss, covariance)
+//! clusters) and [`Options`] (bounds, constraints, priors, covariance)
 //! go into [`fit`]; out comes a [`Fit`] in which every number is either
 //! supported by the data or absent: what cannot be determined is `None`, and
 //! the combinations that can are named.
@@ -11,7 +11,6 @@
 //! | [`linear`]      | the fit: pivoted QR, separate σ per component                        |
 //! | [`bounded`]     | bounds, by an exact active-set method                                |
 //! | `constrained`   | linear inequalities: interior point, polished by QR                  |
-//! | [`robust`]      | Huber's loss                                                         |
 //! | `covariance`    | classical, HC3, CR3                                                  |
 //! | [`rank`]        | what is determined                                                   |
 //! | [`diagnostics`] | serial correlation, collinearity                                     |
@@ -19,7 +18,6 @@
 //! | [`nonlinear`]   | models that are not linear in their parameters, by runs              |
 //! | [`odr`]         | orthogonal distance regression: uncertain inputs                     |
 //! | [`stream`]      | more rows than memory holds, one pass                                |
-//! | [`wild`]        | wild cluster bootstrap                                               |
 //! | [`propagate`]   | combined and expanded uncertainty, effective degrees of freedom      |
 //! | [`budget`]      | what each error does to the coefficients, intervals, jackknife       |
 //! | [`residuals`], [`ratio`] | residuals of a component, exact tests of their independence and equal variances |
@@ -30,7 +28,7 @@
 //! | [`factored`]    | one design, many responses                                           |
 //! | [`coverage`]    | whether an interval covers as often as it says                       |
 //!
-//! All of it runs on one thread except [`wild`] and [`stream::reduce_columns`], whose results do not
+//! All of it runs on one thread except [`stream::reduce_columns`], whose result does not
 //! depend on how many there are.
 //!
 //! Not here: correlated noise other than by cluster (and, for one long run, by
@@ -72,13 +70,11 @@ pub mod ratio;
 pub mod replicates;
 mod report;
 pub mod residuals;
-pub mod robust;
 pub mod select;
 pub mod serial;
 pub mod series;
 mod shape;
 pub mod stream;
-pub mod wild;
 
 pub use complement::complement;
 pub use covariance::FEWEST_CLUSTERS;
@@ -86,7 +82,7 @@ pub use error::FitError;
 pub use factored::{Factored, Solution};
 pub use faer;
 pub use linear::fit;
-pub use options::{Bound, Constraint, CovarianceKind, Loss, Options, Prior};
+pub use options::{Bound, Constraint, CovarianceKind, Options, Prior};
 pub use outcome::{Combination, ComponentSummary, Fit, FitCoefficient, Optimality, Status};
 pub use problem::Problem;
 pub use report::{End, Report};

@@ -21,7 +21,7 @@ use crate::diagnostics::{condition_number, durbin_watson};
 use crate::distribution::coverage_factor;
 use crate::error::FitError;
 use crate::estimate::{Estimate, estimate};
-use crate::options::{CovarianceKind, Loss, Options};
+use crate::options::Options;
 use crate::outcome::{Combination, ComponentSummary, Fit, FitCoefficient, Optimality, Status};
 use crate::problem::Problem;
 use crate::report::{End, Report};
@@ -69,20 +69,20 @@ pub fn fit(problem: &Problem, options: &Options) -> Result<Fit, FitError> {
 }
 
 /// A fitted block.
-pub(crate) struct Part {
-    pub block: Block,
-    pub estimate: Estimate,
-    pub core: Core,
+struct Part {
+    block: Block,
+    estimate: Estimate,
+    core: Core,
     /// From `Qᵀ b` to the block's coefficients in the problem's units, columns × rank.
-    pub lift: Mat<f64>,
-    pub indeterminacy: Indeterminacy,
+    lift: Mat<f64>,
+    indeterminacy: Indeterminacy,
     shaped: Option<Shaped>,
 }
 
 impl Part {
-    pub(crate) fn new(problem: &Problem, options: &Options, block: Block) -> Result<Self, FitError> {
-        let estimate = estimate(&block, options.loss);
-        let core = core(problem, &block, &estimate, options.loss, options.covariance)?;
+    fn new(problem: &Problem, options: &Options, block: Block) -> Result<Self, FitError> {
+        let estimate = estimate(&block);
+        let core = core(problem, &block, &estimate, options.covariance)?;
         let mut lift = estimate.qr.lift();
         for l in 0..block.columns.len() {
             for k in 0..lift.ncols() {
@@ -90,12 +90,12 @@ impl Part {
             }
         }
         let indeterminacy = Indeterminacy::new(estimate.qr.null_space().as_ref());
-        let shaped = if block.is_constrained() { Some(shape(&block, &estimate, options.loss)?) } else { None };
+        let shaped = if block.is_constrained() { Some(shape(&block, &estimate)?) } else { None };
         Ok(Self { block, estimate, core, lift, indeterminacy, shaped })
     }
 
     /// Estimate without bounds and inequalities, in the problem's units.
-    pub(crate) fn unconstrained(&self) -> Vec<f64> {
+    fn unconstrained(&self) -> Vec<f64> {
         self.unscale(&self.estimate.gamma)
     }
 
@@ -124,7 +124,7 @@ impl Part {
     /// Degrees of freedom of `Σ_l a_l β_l`, where `a` comes as its row of the lift.
     ///
     /// Those of a robust variance, else Welch–Satterthwaite over the components; priors count as exactly known.
-    pub(crate) fn dof_of(&self, lifted: &[f64]) -> f64 {
+    fn dof_of(&self, lifted: &[f64]) -> f64 {
         if let Some(robust) = self.core.freedom.of(lifted) {
             let total = dot(lifted, &mul_vec(self.core.covariance.as_ref(), lifted));
             // A fit without scatter has the degrees of freedom that one would have.
@@ -367,11 +367,7 @@ fn component(problem: &Problem, options: &Options, part: &Part, k: usize, residu
     let is_rounding = rss <= ROUNDING * ROUNDING * size;
     let is_single = part.block.components.len() == 1;
     let durbin_watson = if n < 3 || is_rounding || is_condensed { None } else { durbin_watson(&weighted) };
-    let aicc = if options.loss == Loss::Squares && !is_rounding {
-        crate::select::aicc(n, rss, n as f64 - dof).ok()
-    } else {
-        None
-    };
+    let aicc = if is_rounding { None } else { crate::select::aicc(n, rss, n as f64 - dof).ok() };
     ComponentSummary {
         name: problem.components[c].clone(),
         n,
@@ -421,20 +417,4 @@ fn largest_correlation(covariance: &Mat<f64>) -> Option<(usize, usize, f64)> {
         }
     }
     largest
-}
-
-/// The part of a coefficient's block, for methods that need only that.
-pub(crate) fn part_of(
-    problem: &Problem,
-    options: &Options,
-    index: usize,
-    kind: CovarianceKind,
-) -> Result<(Part, usize), FitError> {
-    let options = Options { covariance: kind, ..options.unconstrained() };
-    for block in blocks(problem, &options)? {
-        if let Some(local) = block.columns.iter().position(|&j| j == index) {
-            return Ok((Part::new(problem, &options, block)?, local));
-        }
-    }
-    Err(FitError::Unsupported { method: "an interval", what: "a coefficient that is fixed or excluded" })
 }

@@ -6,7 +6,7 @@ use faer::{Mat, Par, Side};
 use crate::error::FitError;
 use crate::problem::{Problem, size};
 
-/// Bounds, constraints, prior knowledge, loss and kind of covariance.
+/// Bounds, constraints, prior knowledge and kind of covariance.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Bounds of the coefficients: empty (all free) or one per coefficient.
@@ -19,8 +19,6 @@ pub struct Options {
     pub fixed: Vec<(usize, f64)>,
     /// Coefficients held at zero.
     pub excluded: Vec<usize>,
-    /// What is minimised.
-    pub loss: Loss,
     /// Where the standard uncertainties come from.
     pub covariance: CovarianceKind,
     /// Probability of the intervals, 0.95 by default.
@@ -28,8 +26,8 @@ pub struct Options {
     /// Observations behind the rows of each component: empty, each row is one, or one number per component.
     ///
     /// `R` and `Qᵀy` of `[X | y] = Q·R` have the minimiser and the sum of squares of all their rows under any constraint and prior: such
-    /// rows stand for more observations than they are. Clusters condensed one by one keep CR3; HC3, Huber's loss and Durbin–Watson need the
-    /// rows themselves.
+    /// rows stand for more observations than they are. Clusters condensed one by one keep CR3; HC3 and Durbin–Watson need the rows
+    /// themselves.
     pub observations: Vec<usize>,
 }
 
@@ -41,7 +39,6 @@ impl Default for Options {
             priors: Vec::new(),
             fixed: Vec::new(),
             excluded: Vec::new(),
-            loss: Loss::Squares,
             covariance: CovarianceKind::Classical,
             confidence: 0.95,
             observations: Vec::new(),
@@ -122,19 +119,6 @@ impl Prior {
     }
 }
 
-/// What is minimised.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Loss {
-    /// The weighted sum of squares.
-    Squares,
-    /// Huber's loss: squares up to `k` standard deviations, linear beyond.
-    Huber {
-        /// Where the loss turns linear, in σ. 1.345 keeps 95 % efficiency on
-        /// normal errors.
-        k: f64,
-    },
-}
-
 /// Where the standard uncertainties come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CovarianceKind {
@@ -188,20 +172,10 @@ impl Options {
         if !(self.confidence > 0.0 && self.confidence < 1.0) {
             return Err(FitError::Option { option: "confidence", value: self.confidence, must: "between 0 and 1" });
         }
-        if let Loss::Huber { k } = self.loss
-            && !(k > 0.0 && k.is_finite())
-        {
-            return Err(FitError::Option { option: "Huber's k", value: k, must: "positive and finite" });
-        }
         if !self.observations.is_empty() {
             size("observations", self.observations.len(), problem.components.len(), "one per component")?;
-            let needs_rows = match (self.loss, self.covariance) {
-                (Loss::Huber { .. }, _) => Some("Huber's loss"),
-                (_, CovarianceKind::Hc3) => Some("HC3"),
-                _ => None,
-            };
-            if let Some(what) = needs_rows {
-                return Err(FitError::Unsupported { method: "a fit of condensed rows", what });
+            if self.covariance == CovarianceKind::Hc3 {
+                return Err(FitError::Unsupported { method: "a fit of condensed rows", what: "HC3" });
             }
         }
         if self.covariance == CovarianceKind::Cr3 && problem.cluster.is_none() {

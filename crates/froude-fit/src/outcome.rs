@@ -79,8 +79,7 @@ pub struct ComponentSummary {
     /// where a prior or another component shares in one.
     pub dof: f64,
     /// Standard deviation of a row of weight one, from the fit without bounds
-    /// and inequalities; `None` without degrees of freedom. With Huber's loss,
-    /// the scale from the median absolute residual.
+    /// and inequalities; `None` without degrees of freedom.
     pub sigma: Option<f64>,
     /// Weighted sum of squared residuals of the constrained fit.
     pub rss: f64,

@@ -3,14 +3,9 @@
 use crate::block::Block;
 use crate::bounded::{Side, bounded_least_squares};
 use crate::constrained::{Inequality, constrained};
-use crate::dense::{mul_vec, norm};
 use crate::error::FitError;
-use crate::estimate::{Estimate, huber_weights};
-use crate::options::Loss;
-use crate::report::{End, Report};
-
-/// Iterations of Huber's weights under constraints.
-const WEIGHT_ITERATIONS: usize = 200;
+use crate::estimate::Estimate;
+use crate::report::Report;
 
 /// A block's constrained estimate, in scaled units.
 #[derive(Debug, Clone)]
@@ -34,50 +29,10 @@ enum Tag {
     Inequality(usize),
 }
 
-pub(crate) fn shape(block: &Block, estimate: &Estimate, loss: Loss) -> Result<Shaped, FitError> {
-    let Loss::Huber { k } = loss else {
-        return solve(block, estimate, &vec![1.0; estimate.residual.len()]);
-    };
-    let mut weight = estimate.loss_weight.clone();
-    let mut previous: Option<Vec<f64>> = None;
-    let mut iterations = 0;
-    loop {
-        iterations += 1;
-        let mut shaped = solve(block, estimate, &weight)?;
-        let residual: Vec<f64> = mul_vec(estimate.design.as_ref(), &shaped.beta)
-            .iter()
-            .zip(&estimate.response)
-            .map(|(f, y)| y - f)
-            .collect();
-        let change = previous
-            .as_ref()
-            .map_or(f64::INFINITY, |old| shaped.beta.iter().zip(old).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max));
-        let is_done = change <= 1e-11 * norm(&shaped.beta);
-        if is_done || iterations == WEIGHT_ITERATIONS {
-            shaped.report = shaped
-                .report
-                .merge(Report { end: if is_done { End::Converged } else { End::IterationLimit }, iterations });
-            return Ok(shaped);
-        }
-        weight = huber_weights(&residual, estimate.n_priors, k);
-        previous = Some(shaped.beta);
-    }
-}
-
-fn solve(block: &Block, estimate: &Estimate, weight: &[f64]) -> Result<Shaped, FitError> {
-    let mut design = estimate.design.clone();
-    let mut response = estimate.response.clone();
-    for i in 0..response.len() {
-        if weight[i] != 1.0 {
-            let root = weight[i].sqrt();
-            response[i] *= root;
-            for l in 0..design.ncols() {
-                design[(i, l)] *= root;
-            }
-        }
-    }
+pub(crate) fn shape(block: &Block, estimate: &Estimate) -> Result<Shaped, FitError> {
+    let (design, response) = (estimate.design.as_ref(), &estimate.response);
     if block.inequalities.is_empty() {
-        let found = bounded_least_squares(design.as_ref(), &response, &block.lower, &block.upper);
+        let found = bounded_least_squares(design, response, &block.lower, &block.upper);
         return Ok(Shaped {
             beta: found.x,
             at_bound: found.active,
@@ -87,7 +42,7 @@ fn solve(block: &Block, estimate: &Estimate, weight: &[f64]) -> Result<Shaped, F
         });
     }
     let (constraints, tags) = constraints_of(block);
-    let found = constrained(design.as_ref(), &response, &constraints)?;
+    let found = constrained(design, response, &constraints)?;
     let mut beta = found.x;
     let mut at_bound = vec![None; beta.len()];
     let mut active_inequalities = Vec::new();

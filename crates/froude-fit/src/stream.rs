@@ -21,8 +21,8 @@
 //!
 //! Then [`Factor::solve`] gives coefficients, σ and classical covariance. A cluster's
 //! triangle replaces its rows exactly, so that it is enough for CR3 too. HC3 and HAC
-//! weigh each row by its final residual, hence need a second pass over the rows;
-//! Huber's loss needs several. They are not here.
+//! weigh each row by its final residual, hence need a second pass over the rows:
+//! they are not here.
 //!
 //! # Accuracy
 //!

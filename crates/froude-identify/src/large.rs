@@ -110,7 +110,7 @@ pub(crate) fn identify_source(
     progress("all rows of a long table");
     let fitted = regressed(campaign, source, &facts, &ends, &reduced)?;
     let (fitted, leverage) = with_residuals(campaign, source, fitted, &reduced.data)?;
-    let mut result = conclude(reduced, &campaign.identify, fitted, progress)?;
+    let mut result = conclude(reduced, &campaign.identify, fitted)?;
     for ((estimate, model), leverage) in result.estimates.iter_mut().zip(&result.models).zip(leverage) {
         let diagnostics = &mut estimate.diagnostics;
         diagnostics.largest_leverage = leverage;
@@ -170,7 +170,6 @@ fn at_once(campaign: &Campaign, source: &Source) -> Option<&'static str> {
         (!source.uncertainty.is_empty(), "[[source.uncertainty]] (its errors go through every row)"),
         (identify.errors_in_variables, "errors_in_variables (each row has a true speed of its own)"),
         (!identify.known.is_empty(), "known (its error goes through every row)"),
-        (identify.huber.is_some(), "huber (its weights are iterated row by row)"),
         (identify.angle_offset == AngleOffset::Estimate, "angle_offset = \"estimate\" (it is iterated over the rows)"),
         (identify.fitted_weights, "weights = \"fitted\" (each row weighs by the fitted load)"),
         (identify.group_offset, "group_offset = \"estimate\" (each group has columns of its own)"),
@@ -180,7 +179,6 @@ fn at_once(campaign: &Campaign, source: &Source) -> Option<&'static str> {
         ),
         (is_hc3, "covariance = \"HC3\" (each row weighs by its residual); \"cluster\" goes with it"),
         (!identify.cross_validation.is_empty(), "cross_validation (its blocks are fitted by themselves)"),
-        (identify.wild_bootstrap.is_some(), "wild_bootstrap (it draws the residuals of all rows)"),
     ];
     asked.into_iter().find(|(is_asked, _)| *is_asked).map(|(_, what)| what)
 }

@@ -14,7 +14,6 @@
 
 pub mod answer;
 pub mod asked;
-pub mod bootstrap;
 pub mod columns;
 mod common;
 pub mod compare;

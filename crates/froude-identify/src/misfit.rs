@@ -93,7 +93,6 @@ fn shapes(model: &ModelFit, data: &Dataset) -> Vec<Shape> {
         && model.whitened.is_none()
         && !model.in_variables
         && !model.law.in_logarithms()
-        && model.options.loss == fit::Loss::Squares
         && model.options.priors.is_empty()
         && data.sample.is_none()
         && !motions::is_in_time(data);

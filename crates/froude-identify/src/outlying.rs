@@ -10,8 +10,8 @@
 //! (−2 ln L falls by 4, and by 12 where it alone names a row). For example, the noise of a load cell mounted across the rail enters f_x in proportion to the sine of the angle.
 //! Otherwise, if the scatter grows without a row or weights were fitted, the row is judged by σ² = a + b z² alone. Where the variance is fitted, t has a third of the degrees of freedom,
 //! because it rests on the few rows near that z. HC3 without weights declares that the scatter is uneven and not how: the level is then 0.04 %, and the second of these tests is
-//! left out. Skipped for rows in time, for a sample of the rows, and where σ is not a least-squares σ: with errors in variables, Huber's loss, and
-//! constraints that hold.
+//! left out. Skipped for rows in time, for a sample of the rows, and where σ is not a least-squares σ: with errors in variables and with constraints
+//! that hold.
 //!
 //! **Source.** Cook & Weisberg (1982), *Residuals and Influence in Regression*, 2.2.2.
 

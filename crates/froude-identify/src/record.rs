@@ -214,9 +214,6 @@ fn method(model: &ModelFit, data: &Dataset) -> String {
     if !model.options.priors.is_empty() {
         out += ", with published values as prior";
     }
-    if let fit::Loss::Huber { k } = model.options.loss {
-        out += &format!(", Huber loss with k = {k}");
-    }
     if model.is_weighted() {
         let has_std = model.law.responses.iter().any(|load| data.values(&format!("std_{load}")).is_some());
         out += if has_std { ", weighted by the table's standard deviations" } else { ", weighted by the fitted loads" };

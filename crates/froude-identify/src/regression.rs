@@ -157,11 +157,11 @@ fn errors_in_variables(
             ),
         });
     }
-    let has_other = options.loss != fit::Loss::Squares || options.covariance != fit::CovarianceKind::Classical;
+    let has_other = options.covariance != fit::CovarianceKind::Classical;
     if has_bounds || has_more || has_other || !options.excluded.is_empty() || is_uneven(problem) {
         return Err(IdentifyError::Campaign {
             place: place(),
-            what: "errors_in_variables goes with neither bounds, priors, known, fixed or excluded coefficients, dissipative, huber, HC3, cluster, weights, nor \
+            what: "errors_in_variables goes with neither bounds, priors, known, fixed or excluded coefficients, dissipative, HC3, cluster, weights, nor \
                    std columns; leave one of them out. Where the terms with the errors have coefficients that are held, leave out errors_in_variables: their errors are scatter then, \
                    and move no other coefficient"
                 .to_owned(),
@@ -273,7 +273,6 @@ fn options(law: &ForceLaw, specs: &[CoefficientSpec], settings: Settings<'_>) ->
             .filter_map(|(name, value)| Some((position(name)?, value)))
             .collect(),
         excluded: identify.exclude.iter().filter_map(|n| position(n)).collect(),
-        loss: identify.huber.map_or(fit::Loss::Squares, |k| fit::Loss::Huber { k }),
         covariance: settings.scatter.of_residuals(),
         ..fit::Options::default()
     })

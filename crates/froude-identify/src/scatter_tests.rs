@@ -45,8 +45,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// What contradicts the scatter that the intervals assume.
 pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, usize)]) -> Vec<(String, Finding)> {
-    // Huber's loss answers for rows that do not fit in.
-    if data.rows < FEWEST_ROWS || model.in_variables || model.options.loss != fit::Loss::Squares {
+    if data.rows < FEWEST_ROWS || model.in_variables {
         return Vec::new();
     }
     let residuals = match &model.whitened {

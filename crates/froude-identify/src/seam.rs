@@ -10,14 +10,13 @@ use froude_records::campaign::{Identify, StatedUnit};
 use froude_records::finding::{Finding, Severity};
 use froude_records::units::parse_unit;
 
-use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
-use crate::regression::{ModelFit, Settings, regress};
+use crate::regression::{ModelFit, regress};
 use crate::result::{NotFitted, SourceResult};
 use crate::selection::{Recommendation, Score, added_terms, leave_one_out, range_block, recommend};
 use crate::source::handed::TABLE;
-use crate::{bootstrap, diagnosis, idle, record, uncertainty, zero};
+use crate::{diagnosis, idle, record, zero};
 
 pub use crate::seam::reduced::{Choice, Derived, Reduced, Stated};
 
@@ -45,7 +44,7 @@ pub fn fit(mut reduced: Reduced, identify: &Identify, progress: &dyn Fn(&str)) -
             fitted = each(&reduced);
         }
     }
-    conclude(reduced, identify, fitted, progress)
+    conclude(reduced, identify, fitted)
 }
 
 /// Compares the laws that could be fitted, chooses and makes the records.
@@ -53,7 +52,6 @@ pub(crate) fn conclude(
     mut reduced: Reduced,
     identify: &Identify,
     fitted: Vec<Result<ModelFit, (String, IdentifyError)>>,
-    progress: &dyn Fn(&str),
 ) -> Result<SourceResult, IdentifyError> {
     check_units(identify, &reduced.laws)?;
     let mut findings = std::mem::take(&mut reduced.findings);
@@ -92,20 +90,8 @@ pub(crate) fn conclude(
     };
     let mut estimates = Vec::new();
     for (i, model) in models.iter().enumerate() {
-        let mut diagnostics = diagnosis::diagnostics(model, data, &scores[i])?;
+        let diagnostics = diagnosis::diagnostics(model, data, &scores[i])?;
         let chosen = recommendation.as_ref().filter(|r| by_data && r.index == i);
-        // Draws are fitted by least squares alone.
-        if let Some(draws) = identify.monte_carlo.filter(|_| chosen.is_some() && model.whitened.is_none()) {
-            progress(&format!("{} by {draws} Monte Carlo draws", model.law.name));
-            diagnostics.notes.extend(monte_carlo_note(model, data, settings, draws));
-        }
-        if let Some(resamples) = identify.wild_bootstrap.filter(|_| chosen.is_some()) {
-            progress(&format!("{} by {resamples} wild cluster resamples", model.law.name));
-            match bootstrap::note(model, resamples) {
-                Ok(note) => diagnostics.notes.push(note),
-                Err(finding) => findings.push(finding),
-            }
-        }
         estimates.push(record::estimate(model, &reduced, diagnostics, chosen));
     }
     if let Some(chosen) = &recommendation {
@@ -172,38 +158,4 @@ fn nothing_fitted(failed: Vec<(String, IdentifyError)>, findings: &[Finding]) ->
         Ok([only]) => IdentifyError::NothingFitted { reasons: vec![only], found },
         Err(reasons) => IdentifyError::NothingFitted { reasons, found },
     }
-}
-
-/// Type B uncertainties by Monte Carlo beside the linear ones: where they differ, the propagation is not linear.
-fn monte_carlo_note(model: &ModelFit, data: &Dataset, settings: Settings<'_>, draws: usize) -> Option<String> {
-    /// Seed of the draws; the same campaign gives the same note.
-    const SEED: u64 = 1;
-    // Entries that are part of the scatter are not drawn: the linear figure does not hold them either.
-    let (shared, drawn): (Vec<_>, Vec<_>) = settings
-        .budget
-        .iter()
-        .zip(model.budget.iter().filter(|part| part.kind.is_type_b()))
-        .filter(|(_, part)| !part.in_scatter)
-        .map(|(entry, part)| (entry.clone(), part))
-        .unzip();
-    if shared.is_empty() {
-        return None;
-    }
-    let bare = Settings { budget: &[], shared_errors: &[], ..settings };
-    let covariance = uncertainty::monte_carlo(data, &shared, draws, SEED, |moved| {
-        regress(&model.law, moved, bare)
-            .ok()
-            .map(|m| m.fit.coefficients.iter().map(|c| c.unconstrained.unwrap_or(0.0)).collect())
-    })?;
-    let parts: Vec<String> = model
-        .specs
-        .iter()
-        .enumerate()
-        .filter_map(|(j, s)| {
-            model.combined[j]?;
-            let linear: f64 = drawn.iter().map(|part| part.covariance[(j, j)]).sum();
-            Some(format!("{} {:.2e} ({:.2e})", s.name, covariance[(j, j)].max(0.0).sqrt(), linear.max(0.0).sqrt()))
-        })
-        .collect();
-    Some(format!("type B by {draws} Monte Carlo draws (linear in parentheses): {}", parts.join(", ")))
 }

@@ -52,7 +52,7 @@ pub struct Recommendation {
 /// differently, and would not be comparable without it.
 ///
 /// n ln(RSS/n) + 2K + 2K(K+1)/(n − K − 1) per load, summed over the loads; K counts σ. The Jacobian adds 2 Σ ln|F|, F in N or N m. Only differences
-/// between models of the same rows have a meaning; below 2 they are no evidence. `None` for an exact fit, a robust loss, or n ≤ K + 1.
+/// between models of the same rows have a meaning; below 2 they are no evidence. `None` for an exact fit, or n ≤ K + 1.
 ///
 /// # Source
 ///

@@ -15,9 +15,7 @@ use froude_fit::budget::{Kind, Origin, Part, Shape, one_sided};
 use froude_records::campaign::{BudgetEntry, Shared};
 use froude_records::estimate::ErrorKind;
 use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
-use rayon::prelude::*;
 
 use crate::dataset::{Dataset, labels};
 use crate::error::IdentifyError;
@@ -417,49 +415,6 @@ pub fn scatter(fit: &fit::Fit) -> Part {
 #[must_use]
 pub fn coverage_factor(dof: f64) -> f64 {
     froude_fit::distribution::coverage_factor(0.95, dof)
-}
-
-/// Type B covariance by Monte Carlo (JCGM 101:2008): every shared error drawn, the fit repeated.
-///
-/// `refit` fits perturbed observations and gives the coefficients. Seeded: draw `d` uses stream `d`,
-/// so the answer does not depend on the number of threads. Returns the covariance of the draws that fitted.
-///
-/// `p × p`, in the product of the units of two coefficients. `None` without a draw that fitted, or where a quantity of the budget is not a channel.
-pub fn monte_carlo(
-    data: &Dataset,
-    budget: &[BudgetEntry],
-    draws: usize,
-    seed: u64,
-    refit: impl Fn(&Dataset) -> Option<Vec<f64>> + Sync,
-) -> Option<Mat<f64>> {
-    let samples: Vec<Vec<f64>> = (0..draws)
-        .into_par_iter()
-        .filter_map(|d| {
-            let mut rng = Pcg64::new(u128::from(seed), d as u128);
-            let mut moved = data.clone();
-            for entry in budget {
-                let quantity = data.meant(&entry.quantity);
-                let groups = groups(data, entry.shared);
-                let count = groups.iter().max().map_or(0, |m| m + 1);
-                let errors: Vec<f64> = (0..count).map(|_| StandardNormal.sample(&mut rng)).collect();
-                let values = data.values(quantity)?;
-                let shift: Vec<f64> = (0..data.rows)
-                    .map(|i| {
-                        let scale = if entry.relative { entry.standard * values[i] } else { entry.standard };
-                        scale * errors[groups[i]]
-                    })
-                    .collect();
-                moved = moved.shifted(quantity, &shift);
-            }
-            refit(&moved)
-        })
-        .collect();
-    let p = samples.first()?.len();
-    let count = samples.len() as f64;
-    let mean: Vec<f64> = (0..p).map(|j| samples.iter().map(|s| s[j]).sum::<f64>() / count).collect();
-    Some(Mat::from_fn(p, p, |a, b| {
-        samples.iter().map(|s| (s[a] - mean[a]) * (s[b] - mean[b])).sum::<f64>() / (count - 1.0)
-    }))
 }
 
 /// A generator for seeded draws elsewhere in the crate.

@@ -325,14 +325,8 @@ pub struct Identify {
     pub cross_validation: Vec<RangeBlock>,
     /// What to do about the angle between sensor and body.
     pub angle_offset: AngleOffset,
-    /// Huber's constant in standard deviations; squares when `None`.
-    pub huber: Option<f64>,
     /// Whether the fit is held to f·v ≤ 0.
     pub dissipative: bool,
-    /// Draws of a Monte Carlo propagation of the budget; linear only when `None`.
-    pub monte_carlo: Option<usize>,
-    /// Resamples of a wild cluster bootstrap of the recommended model; none when `None`.
-    pub wild_bootstrap: Option<usize>,
     /// Models written by the user.
     pub user_models: Vec<UserModel>,
     /// Whether speed and angle are uncertain too (`errors_in_variables = true`).

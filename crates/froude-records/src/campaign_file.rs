@@ -386,7 +386,30 @@ fn coefficient_value<'a>(s: &Section<'a>, key: &str, value: &'a Value<'a>) -> Re
     }
 }
 
+/// Keys of `[identify]` that earlier versions read: why each went, and what to do instead.
+const REMOVED: [(&str, &str); 3] = [
+    (
+        "huber",
+        "was removed: its intervals covered less often than they claim; use `keep` to \
+     leave out a row that does not belong, for a reason that you can state (the finding `outlying-row` names such rows)",
+    ),
+    (
+        "wild_bootstrap",
+        "was removed: its p values covered the scatter alone; write covariance = \"cluster\", whose intervals have \
+         degrees of freedom of their own",
+    ),
+    (
+        "monte_carlo",
+        "was removed: it only checked the linear propagation of the budget, which every interval has; delete it",
+    ),
+];
+
 fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
+    for (key, _, value) in s.entries() {
+        if let Some((_, why)) = REMOVED.iter().find(|(removed, _)| *removed == key) {
+            return Err(s.wrong(key, value, *why));
+        }
+    }
     let (mut fixed, mut stated_units) = (IndexMap::new(), Vec::new());
     if let Some(table) = s.section("fixed")? {
         for (name, _, value) in table.entries() {
@@ -399,7 +422,6 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
     let angle_offset =
         one_of(s, "angle_offset", &["ignore", "estimate"], &[AngleOffset::Ignore, AngleOffset::Estimate])?
             .unwrap_or_default();
-    let huber = positive_number(s, "huber")?;
     let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
     let out = Identify {
         models,
@@ -418,10 +440,7 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
         group_offset: one_of(s, "group_offset", &["ignore", "estimate"], &[false, true])?.unwrap_or_default(),
         cross_validation: s.sections("cross_validation")?.iter().map(range_block).collect::<Result<_, _>>()?,
         angle_offset,
-        huber,
         dissipative: s.flag("dissipative")?.unwrap_or(false),
-        monte_carlo: count(s, "monte_carlo", 1_000_000)?,
-        wild_bootstrap: count(s, "wild_bootstrap", 1_000_000)?,
         user_models: s.sections("model")?.iter().map(user_model).collect::<Result<_, _>>()?,
         errors_in_variables: s.flag("errors_in_variables")?.unwrap_or(false),
     };

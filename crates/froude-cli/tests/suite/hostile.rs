@@ -440,7 +440,7 @@ fn cases() -> Vec<Case> {
     let mine = b"schema = 1\nname = \"x\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n[body]\nreference_length = \"1 m\"\nreference_area = \"0.1 m^2\"\n\
         [[source]]\nname = \"tank\"\nkind = \"tank\"\ntable = \"tank.csv\"\nkeep = \"speed > 0.05 m/s\"\n[[source.uncertainty]]\n\
         quantity = \"f_x\"\nstandard = \"1 %\"\nshared = \"campaign\"\ndof = 9\n[[source.uncertainty]]\nquantity = \"speed\"\n\
-        standard = \"1 mm/s\"\nshared = \"sample\"\n[identify]\nmodels = [\"quadratic\", \"power_law\"]\nmonte_carlo = 20\n\
+        standard = \"1 mm/s\"\nshared = \"sample\"\n[identify]\nmodels = [\"quadratic\", \"power_law\"]\n\
         fixed = { D_x_I = 0.5 }\nbounds = { D_x_II = [0.1, 30] }\n[[identify.model]]\nname = \"mine\"\nf_x = \"-a*v_x - b*v_x*abs(v_x)\"\n";
     add("c.toml", mine, &[("tank.csv", tank)], &[&["identify", "c.toml"], &["inspect", "c.toml"]]);
     for (_, seed) in seeds("estimate_json") {

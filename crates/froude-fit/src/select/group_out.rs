@@ -8,7 +8,7 @@ use super::{ComponentScore, predicting, training};
 use crate::block::{Block, blocks};
 use crate::error::FitError;
 use crate::linear::fit;
-use crate::options::{Loss, Options};
+use crate::options::Options;
 use crate::problem::{Problem, size};
 
 /// Fewest groups: with two, each would be predicted from a single other one.
@@ -75,11 +75,11 @@ fn not_scored(problem: &Problem, reason: &str) -> Vec<ComponentScore<f64>> {
     problem.components.iter().map(score).collect()
 }
 
-/// Whether the coefficients are independent of how the components' scatters compare: no two components share one, nothing is known before,
-/// and every row counts by its square.
+/// Whether the coefficients are independent of how the components' scatters compare: no two components share one, and nothing is known
+/// before.
 fn is_weighed_alone(problem: &Problem, options: &Options) -> Result<bool, FitError> {
     let is_alone = |block: &Block| block.components.len() == 1 && block.priors.is_empty();
-    Ok(options.loss == Loss::Squares && blocks(problem, options)?.iter().all(is_alone))
+    Ok(blocks(problem, options)?.iter().all(is_alone))
 }
 
 /// The problem without one group.

@@ -1,7 +1,7 @@
 //! Each thing wrong with the input, in the words a user meets.
 
 use faer::Mat;
-use froude_fit::{Bound, Constraint, CovarianceKind, FitError, Loss, Options, Prior, Problem, fit};
+use froude_fit::{Bound, Constraint, CovarianceKind, FitError, Options, Prior, Problem, fit};
 
 use crate::single;
 
@@ -93,10 +93,6 @@ fn options_that_cannot_be() {
          coefficient to take a value as exact)",
     );
     with(Options { confidence: 95.0, ..Options::default() }, "confidence is 95; it must be between 0 and 1");
-    with(
-        Options { loss: Loss::Huber { k: 0.0 }, ..Options::default() },
-        "Huber's k is 0; it must be positive and finite",
-    );
     with(
         Options { covariance: CovarianceKind::Cr3, ..Options::default() },
         "cluster-robust covariance needs a cluster for every row, and none are given: name the column that has them, group = \"run\" say",

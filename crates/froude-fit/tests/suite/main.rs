@@ -18,10 +18,8 @@ mod odr;
 mod priors;
 mod propagation;
 mod rank;
-mod robust;
 mod scaling;
 mod selection;
-mod wild;
 
 use faer::Mat;
 use froude_fit::Problem;

@@ -241,9 +241,8 @@ fn what_needs_all_rows_at_once_is_refused_with_the_way_out() {
     let table = "table = \"record.csv\"";
     let said = refused(table, "covariance = \"HC3\"");
     assert!(said.contains("more than 2000000 rows") && said.contains("give fewer rows"), "{said}");
-    for (identify, key) in [("huber = 1.345", "huber"), ("angle_offset = \"estimate\"", "angle_offset")] {
-        assert!(refused(table, identify).contains(key), "{identify}");
-    }
+    let said = refused(table, "angle_offset = \"estimate\"");
+    assert!(said.contains("angle_offset"), "{said}");
 }
 
 #[test]

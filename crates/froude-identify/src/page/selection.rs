@@ -17,7 +17,7 @@ pub(super) fn rows(source: &SourceResult) -> Vec<SelectionRow> {
         let best = source.models.iter().filter_map(|m| aicc_of(m, &source.data, load)).fold(f64::INFINITY, f64::min);
         aicc_of(model, &source.data, load)
             .map(|a| a - best)
-            .ok_or_else(|| "no AICc: an exact fit, a robust loss, or too few observations".to_owned())
+            .ok_or_else(|| "no AICc: an exact fit, or too few observations".to_owned())
     };
     let mut out = Vec::new();
     for (i, model) in source.models.iter().enumerate() {

@@ -50,7 +50,6 @@ pub(crate) fn generalised(
         && matches!(settings.scatter, Scatter::Classical | Scatter::Runs)
         && settings.condensed.is_none()
         && !law.is_nonlinear()
-        && options.loss == fit::Loss::Squares
         && options.priors.is_empty()
         && options.fixed.is_empty()
         && options.excluded.is_empty()

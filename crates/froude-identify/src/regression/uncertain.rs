@@ -60,7 +60,7 @@ impl Uncertainty {
             }
             Scatter::Serial(errors) => Some(serial(data, problem, fitted, errors)),
             // Declared errors of the runs are already weights of the fit.
-            Scatter::Runs if !in_variables && !is_whitened && settings.identify.huber.is_none() => {
+            Scatter::Runs if !in_variables && !is_whitened => {
                 between_runs(law, data, problem, fitted).map(|runs| Some(runs.part))
             }
             Scatter::Runs | Scatter::Classical | Scatter::Hc3 | Scatter::Cluster => None,

@@ -110,12 +110,7 @@ pub(crate) fn widened(
     if p == 0 {
         let observations = other.law.responses.iter().position(|own| own == load);
         let observations = observations.and_then(|r| other.options.observations.get(r).copied()).into_iter().collect();
-        options = fit::Options {
-            covariance: options.covariance,
-            loss: options.loss,
-            observations,
-            ..fit::Options::default()
-        };
+        options = fit::Options { covariance: options.covariance, observations, ..fit::Options::default() };
     }
     let fitted = fit::fit(&larger, &options).ok()?;
     let gamma: Vec<f64> = fitted.coefficients[p..].iter().map(|c| c.value).collect::<Option<_>>()?;
@@ -126,7 +121,7 @@ pub(crate) fn widened(
         (part.covariance, fewest)
     };
     let (scatter, dof) = match &law.scatter {
-        Scatter::Runs if law.whitened.is_none() && !law.in_variables && settings.identify.huber.is_none() => {
+        Scatter::Runs if law.whitened.is_none() && !law.in_variables => {
             match between_runs(&law.law, data, &larger, &fitted) {
                 Some(runs) => fewest(runs.part),
                 None => (fitted.covariance.clone(), dof),

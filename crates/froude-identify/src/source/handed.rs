@@ -65,7 +65,7 @@ pub(crate) fn merges_motions(campaign: &Campaign, source: &Source) -> bool {
 /// That groups are named and change no interval, where nobody said how they count.
 fn group_not_used(campaign: &Campaign, source: &Source) -> Option<Finding> {
     let identify = &campaign.identify;
-    let is_used = identify.covariance.is_some() || identify.group_offset || identify.wild_bootstrap.is_some();
+    let is_used = identify.covariance.is_some() || identify.group_offset;
     let is_open = !is_used && source.kind != SourceKind::Cfd;
     let group = source.group.as_ref().filter(|_| is_open)?;
     let text = format!(

@@ -128,10 +128,8 @@ fixed = { C_f = 0.0046, m = "2 t" }
 exclude = ["C_XY_II"]
 covariance = "HC3"
 angle_offset = "estimate"
-huber = 1.345
 dissipative = true
 errors_in_variables = true
-monte_carlo = 10000
 [[identify.prior]]
 coefficient = "C_d"
 value = 0.36
@@ -173,10 +171,9 @@ bias = "-1 mN"
     let identify = &c.identify;
     assert_eq!((identify.bounds.default, identify.bounds.named["C_XY_I"]), (BoundKind::NonNegative, BoundKind::None));
     assert_eq!((identify.fixed["C_f"], identify.fixed["m"]), (0.0046, 2000.0));
-    assert_eq!((identify.covariance.as_deref(), identify.huber), (Some("HC3"), Some(1.345)));
+    assert_eq!(identify.covariance.as_deref(), Some("HC3"));
     assert_eq!(identify.angle_offset, AngleOffset::Estimate);
     assert!(identify.dissipative && identify.errors_in_variables);
-    assert_eq!(identify.monte_carlo, Some(10_000));
     assert_eq!(identify.prior[0].model.as_deref(), Some("f1"));
     assert!((identify.cross_validation[0].low + 0.20943951023931953).abs() < 1e-15);
     let simulate = c.simulate.unwrap();
@@ -383,14 +380,37 @@ fn numbers_that_make_no_sense_are_refused_and_not_bent() {
         "lab/campaign.toml:26:9: `angle` must go from start to stop in at most 100000 steps of the step's sign"
     );
     refused(
-        "bounds = \"non-negative\"",
-        "huber = -1",
-        "lab/campaign.toml:25:9: `huber` is -1; it must be larger than zero",
+        "shared   = \"setup\"",
+        "shared   = \"setup\"\ndof = -1",
+        "lab/campaign.toml:22:7: `dof` is -1; it must be larger than zero",
     );
     refused(
         "bounds = \"non-negative\"",
         "covariance = \"hc3\"",
         "lab/campaign.toml:25:14: `covariance` is \"hc3\"; did you mean `HC3`?",
+    );
+}
+
+#[test]
+fn removed_keys_are_refused_with_what_to_do_instead() {
+    let bounds = "bounds = \"non-negative\"";
+    refused(
+        bounds,
+        "huber = 1.345",
+        "lab/campaign.toml:25:9: `huber` was removed: its intervals covered less often than they claim; use `keep` to \
+         leave out a row that does not belong, for a reason that you can state (the finding `outlying-row` names such rows)",
+    );
+    refused(
+        bounds,
+        "wild_bootstrap = 9999",
+        "lab/campaign.toml:25:18: `wild_bootstrap` was removed: its p values covered the scatter alone; write \
+         covariance = \"cluster\", whose intervals have degrees of freedom of their own",
+    );
+    refused(
+        bounds,
+        "monte_carlo = 10000",
+        "lab/campaign.toml:25:15: `monte_carlo` was removed: it only checked the linear propagation of the budget, which \
+         every interval has; delete it",
     );
 }
 

@@ -318,7 +318,7 @@ pub fn short(claims: &mut Claims, runs: u64) {
         "[[source.uncertainty]]\nquantity = \"f_x\"\nstandard = \"5 %\"\nshared = \"setup\"\n",
         "[identify]\nbounds = { D_x_I = \"non-negative\", D_x_II = \"non-negative\" }\n",
         "[identify]\nprior = [{ coefficient = \"D_x_II\", value = 1, standard_uncertainty = 0.1 }]\n",
-        "[identify]\nhuber = 1.345\n",
+        "[identify]\nangle_offset = \"estimate\"\n",
     ];
     let mut broken = Vec::new();
     let [mut fitted, mut refused] = [0_u64; 2];
