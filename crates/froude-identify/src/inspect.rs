@@ -213,8 +213,10 @@ pub fn campaign(path: &Path) -> Result<(Campaign, Inspection), IdentifyError> {
 }
 
 fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Vec<Finding>), IdentifyError> {
+    // Runs that a method plans in a form of its own are none of rows.
+    let rows = source.rows().unwrap_or_default();
     let planned: usize =
-        source.plan.iter().map(|p| p.configurations.len() * p.speed_m_s.len() * p.angle_rad.len() * p.repeats).sum();
+        rows.iter().map(|p| p.configurations.len() * p.speed_m_s.len() * p.angle_rad.len() * p.repeats).sum();
     let input = match source.input {
         Input::Table(_) => "table",
         Input::Record { .. } => "record",
@@ -233,7 +235,7 @@ fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Ve
         columns: Vec::new(),
         models: Vec::new(),
         budget: source.uncertainty.iter().map(budget_facts).collect(),
-        planned_runs: Some(planned).filter(|_| !source.plan.is_empty()),
+        planned_runs: Some(planned).filter(|_| !rows.is_empty()),
     };
     let mut findings = Vec::new();
     match &source.input {

@@ -62,6 +62,11 @@ pub trait Method: Debug + Sync {
         Ok(None)
     }
 
+    /// Keys of a source that belong to the rows of a table, to a free decay or to a computed flow, and that the method takes for its runs too.
+    fn takes(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// Which tables are logs for this method; `None` if it reads none.
     fn logs(&self) -> Option<Logs> {
         None

@@ -8,8 +8,9 @@
 pub mod tables;
 
 use froude_hydro::fluid::Water;
-use froude_records::campaign::{Campaign, Source, Truth};
+use froude_records::campaign::{Campaign, Source, StatedTruth, Truth};
 use froude_records::json::read_estimates;
+use froude_records::nearest::suggestion;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit, parse_unit};
 use rand_distr::{Distribution, StandardNormal};
@@ -117,15 +118,40 @@ pub fn truth(campaign: &Campaign, data: &Dataset) -> Result<(ForceLaw, Vec<f64>)
                     })
                 })
                 .collect::<Result<_, _>>()?;
-            if let Some(unknown) = values.keys().find(|n| law.position(n).is_none()) {
-                return Err(IdentifyError::Campaign {
-                    place: "[simulate.coefficients]".to_owned(),
-                    what: format!("model {model} has no coefficient {unknown}"),
-                });
-            }
+            let own: Vec<(&str, &str)> = law.coefficients.iter().map(|c| (c.name.as_str(), c.unit.as_str())).collect();
+            let stated = campaign.simulate.as_ref().map_or(&[][..], |simulate| &simulate.stated);
+            check_stated(stated, model, &own, &[])?;
             Ok((law, chosen))
         }
     }
+}
+
+/// Refuses a true coefficient that `model` does not have, or that is stated in a unit of another kind; `own` are those that it has, with their units, `others`
+/// names that it may have beside them.
+///
+/// # Errors
+///
+/// The first such coefficient, with its place.
+pub fn check_stated(
+    stated: &[StatedTruth],
+    model: &str,
+    own: &[(&str, &str)],
+    others: &[String],
+) -> Result<(), IdentifyError> {
+    for StatedTruth { coefficient: name, unit, place } in stated {
+        let what = match (own.iter().find(|(own, _)| own == name), unit) {
+            (Some((_, own)), Some(unit)) if parse_unit(own).is_ok_and(|own| own.dimension != unit.dimension) => {
+                format!("{name} of {model} is in {own}, and is stated in {}: write it in its unit", unit.text)
+            }
+            (None, _) if !others.contains(name) => {
+                let names = own.iter().map(|(name, _)| *name);
+                format!("model {model} has no coefficient {name}; {}", suggestion(name, names.collect::<Vec<_>>()))
+            }
+            _ => continue,
+        };
+        return Err(IdentifyError::Campaign { place: place.to_string(), what });
+    }
+    Ok(())
 }
 
 /// The observations of a source as its sensors would report them.

@@ -147,8 +147,6 @@ pub struct OwnSections {
     pub(crate) document: Document,
     /// Which of its sources, from 0.
     pub(crate) index: usize,
-    /// The method whose form the blocks of the plan have.
-    pub(crate) planned_by: Option<&'static str>,
 }
 
 impl OwnSections {
@@ -436,10 +434,23 @@ pub struct Simulate {
     pub seed: u64,
     /// The true coefficients.
     pub truth: Truth,
+    /// Where each of them is written, and in which unit.
+    pub stated: Vec<StatedTruth>,
     /// The sensors.
     pub sensors: Vec<SensorSpec>,
     /// Angle between sensor and body.
     pub misalignment_rad: Option<f64>,
+}
+
+/// How a true coefficient is written in the campaign.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StatedTruth {
+    /// Its name.
+    pub coefficient: String,
+    /// Its unit; `None` of a plain number, which is in SI.
+    pub unit: Option<Unit>,
+    /// Where.
+    pub place: Place,
 }
 
 /// True coefficients of a simulation.
@@ -561,8 +572,8 @@ impl Source {
     /// Whether it plans runs of its method, not rows of a table.
     #[must_use]
     pub fn plans_runs(&self) -> bool {
-        let has_own = self.own.as_ref().is_some_and(|own| own.planned_by.is_some());
-        matches!(self.input, Input::Runs { .. }) && (has_own || !self.plan.is_empty())
+        let blocks = || self.own_section().ok()??.get("plan");
+        matches!(self.input, Input::Runs { .. }) && blocks().is_some()
     }
 
     /// A section that belongs to a method, `[source.NAME]`.
@@ -571,8 +582,12 @@ impl Source {
     ///
     /// [`RecordError::Value`] with its place where it is no table.
     pub fn section(&self, name: &'static str) -> Result<Option<Section<'_>>, RecordError> {
-        let Some(own) = &self.own else { return Ok(None) };
-        own.source()?.map_or(Ok(None), |source| source.section(name))
+        self.own_section()?.map_or(Ok(None), |source| source.section(name))
+    }
+
+    /// The whole of it as it is written; `None` where no campaign names it.
+    pub(crate) fn own_section(&self) -> Result<Option<Section<'_>>, RecordError> {
+        self.own.as_ref().map_or(Ok(None), OwnSections::source)
     }
 
     /// Whether it has such a section.
@@ -581,14 +596,16 @@ impl Source {
         self.section(name).is_ok_and(|section| section.is_some())
     }
 
-    /// The blocks of its plan, where they have the form of this method.
+    /// The blocks of its plan, where its runs are of this method.
     ///
     /// # Errors
     ///
     /// [`RecordError::Value`] with its place where they are no tables.
     pub fn blocks(&self, method: &str) -> Result<Vec<Section<'_>>, RecordError> {
-        let Some(own) = self.own.as_ref().filter(|own| own.planned_by == Some(method)) else { return Ok(Vec::new()) };
-        own.source()?.map_or(Ok(Vec::new()), |source| source.sections("plan"))
+        if !self.methods.iter().any(|own| own == method) {
+            return Ok(Vec::new());
+        }
+        self.own_section()?.map_or(Ok(Vec::new()), |source| source.sections("plan"))
     }
 
     /// A table or a log that fits are held against, and that none is fitted to.

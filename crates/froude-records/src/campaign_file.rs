@@ -10,7 +10,7 @@ use crate::body_axis::BodyAxis;
 use crate::campaign::{
     AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, OwnSections,
     PlanBlock, PriorRecord, PriorSpec, ROOT_KEYS, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind,
-    StatedUnit, Tank, Tare, Truth, UserModel,
+    StatedTruth, StatedUnit, Tank, Tare, Truth, UserModel,
 };
 use crate::document::Document;
 use crate::error::RecordError;
@@ -18,10 +18,10 @@ use crate::estimate::ErrorKind;
 use crate::hash::short_key;
 use crate::keep::parse_keep;
 use crate::known_columns::known_dimension;
+use crate::nearest::nearest;
 use crate::plausible;
 use crate::prior_record;
 use crate::read;
-use crate::run::{ACCELERATED_TOW, EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, ROTATION, STEADY, WEIGHT_TOW};
 use crate::section::{Section, Value, found};
 use crate::section_values::{
     Asks, MOST_RUNS, OF_RUNS, at_most, configurations, count, one_of, plan_of, product, series,
@@ -134,26 +134,28 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
     Ok(out)
 }
 
-/// Methods of the tank with a section of their own, and the keys that they have in common with tables.
-const TANK_METHODS: [(&str, &[&str]); 6] = [
-    (FORCED_OSCILLATION, &["models", "uncertainty", "plan"]),
-    (ROTATION, &["uncertainty", "plan"]),
-    (EXCITED_RESPONSE, &["uncertainty", "plan"]),
-    // Each of its windows becomes a row.
-    (STEADY, &["models", "uncertainty", "plan", "keep", "group", "tare"]),
-    (WEIGHT_TOW, &["models", "uncertainty", "plan", "keep", "group", "tare"]),
-    (ACCELERATED_TOW, &["models", "uncertainty", "plan"]),
-];
-
 /// What belongs to the rows of a table, and would be passed over elsewhere.
 const OF_TABLES: [&str; 7] = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
 
-/// The keys of a source, beside its inputs, what belongs to rows, and the sections of the methods of the tank.
+/// The keys of a source, beside its inputs, what belongs to rows, and the section of each of its methods.
 const SOURCE_KEYS: [&str; 8] = ["name", "kind", "role", "select", "method", "added_mass", "decay", "cfd"];
 
 fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Source, RecordError> {
-    let of_tank = TANK_METHODS.map(|(name, _)| name);
-    s.only(&[&SOURCE_KEYS[..], &INPUTS, &OF_TABLES, &of_tank].concat())?;
+    let (methods, method_places): (Vec<String>, Vec<_>) = s.placed_texts("method")?.into_iter().unzip();
+    let known = [&SOURCE_KEYS[..], &INPUTS, &OF_TABLES].concat();
+    s.asks(|key| methods.iter().any(|method| method == key));
+    let is_section = |(key, _, value): &(&str, usize, &Value<'_>)| !known.contains(key) && value.get_ref().is_table();
+    if let Some((key, _, value)) = s.others().into_iter().find(is_section) {
+        let problem = match (nearest(key, methods.iter().map(String::as_str)), nearest(key, known.iter().copied())) {
+            (Some(method), _) => format!("is not called as the method is, {method:?}: name both alike"),
+            (None, Some(near)) => format!("is no section of a source; did you mean `{near}`?"),
+            _ => format!(
+                "is neither a key of a source nor one of its methods; write method = {key:?}, or delete the section"
+            ),
+        };
+        return Err(s.wrong(key, value, problem));
+    }
+    s.only(&known)?;
     let name = s.need_text("name", "write name = \"circulation tank\", for example")?.to_owned();
     let kinds = [SourceKind::Tank, SourceKind::Towing, SourceKind::Cfd, SourceKind::Potential, SourceKind::Published];
     let kind = one_of(s, "kind", &SourceKind::NAMES, &kinds)?.ok_or_else(|| {
@@ -197,37 +199,20 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
         })
         .transpose()?;
     let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
-    let (methods, method_places): (Vec<String>, Vec<_>) = s.placed_texts("method")?.into_iter().unzip();
     let has_runs = matches!(input, Input::Runs { .. } | Input::Table(_));
     s.refuse("method", !has_runs, "says how runs are reduced, but the source names no runs")?;
-    let is_method = |name: &str| methods.iter().any(|method| method == name);
-    let is_decay = methods.iter().any(|method| method.starts_with("decay"));
-    let has_own = |key: &str| TANK_METHODS.iter().any(|(name, own)| is_method(name) && own.contains(&key));
-    let is_own = |key: &&str| has_own(key) || (is_decay && *key == "plan");
-    let of_table =
-        OF_TABLES.into_iter().filter(|key| !is_own(key)).find_map(|key| s.get(key).map(|value| (key, value)));
-    if let (Some((key, value)), Some(instead)) = (of_table, why_no_rows(&input)) {
-        return Err(s.wrong(key, value, format!("belongs to the rows of a table; {instead}")));
+    if matches!(input, Input::Mesh(_)) {
+        takes(s, &[], "a mesh has none, and says its numerical uncertainty itself")?;
     }
     let problem = "says what is asked of a mesh, but the source names none: write mesh = \"hull.stl\", or a body file";
     s.refuse("added_mass", !matches!(input, Input::Mesh(_)), problem)?;
-    let problem = "says how a flow is computed, but the source names no cases: write cases = \"cases\", the folder for them, or method = \"forced_oscillation\"";
-    s.refuse("cfd", !matches!(input, Input::Cases(_)) && !is_method(FORCED_OSCILLATION), problem)?;
-    let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
-    s.refuse("decay", !is_decay, problem)?;
-    for method in of_tank {
-        let problem =
-            format!("describes runs of {method}, but that is no method of the source: write method = {method:?}");
-        s.refuse(method, !is_method(method), problem)?;
-    }
-    of_tank.into_iter().chain(["added_mass", "decay", "cfd"]).try_for_each(|name| s.section(name).map(drop))?;
+    let has_methods = has_runs && !methods.is_empty();
+    s.refuse("cfd", !matches!(input, Input::Cases(_)) && !has_methods, NO_CASES)?;
+    s.refuse("decay", !has_methods, NO_DECAY)?;
+    ["added_mass", "decay", "cfd"].into_iter().try_for_each(|name| s.section(name).map(drop))?;
     let blocks = s.sections("plan")?;
-    // The blocks of a plan are of the first method that has a form of its own; steady tows have that of tables.
-    let planned =
-        of_tank.into_iter().find(|name| *name != STEADY && is_method(name)).or(is_decay.then_some(FREE_DECAY));
-    let planned_by = planned.filter(|_| !blocks.is_empty());
-    let rows = if planned_by.is_some() { &[] } else { blocks.as_slice() };
-    let (of_rows, most_rows) = most_of(&input);
+    // Runs are planned in the form of their method, which reads them.
+    let plan = if matches!(input, Input::Runs { .. }) { Vec::new() } else { rows_of(&blocks, &input)? };
     Ok(Source {
         name,
         kind,
@@ -242,14 +227,8 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
         uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,
         tare,
         given: Vec::new(),
-        own: Some(OwnSections { document: document.clone(), index, planned_by }),
-        plan: plan_of(
-            rows,
-            of_rows,
-            most_rows,
-            |b| plan_block(b, &input),
-            |p| Asks { count: product(&numbers(p)), samples: 0.0 },
-        )?,
+        own: Some(OwnSections { document: document.clone(), index }),
+        plan,
         place: INPUTS
             .into_iter()
             .find_map(|key| s.get(key))
@@ -258,15 +237,61 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
     })
 }
 
-/// Why an input has no rows that something could be said of.
-fn why_no_rows(input: &Input) -> Option<&'static str> {
-    match input {
-        Input::Runs { .. } => Some(
-            "the budget of runs follows from the campaign that they were driven by (runs of the tank methods have a budget and a plan of their own, and steady, weight_tow, accelerated_tow and forced_oscillation take models)",
-        ),
-        Input::Mesh(_) => Some("a mesh has none, and says its numerical uncertainty itself"),
-        _ => None,
+const NO_CASES: &str = "says how a flow is computed, but the source names no cases: write cases = \"cases\", the folder for them, or method = \"forced_oscillation\"";
+const NO_DECAY: &str =
+    "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
+
+/// Refuses what belongs to the rows of a table, but for these keys; `instead` is why the source has no rows.
+fn takes(s: &Section<'_>, keys: &[&str], instead: &str) -> Result<(), RecordError> {
+    let is_refused = |key: &&str| !keys.contains(key);
+    match OF_TABLES.into_iter().filter(is_refused).find_map(|key| Some((key, s.get(key)?))) {
+        Some((key, value)) => Err(s.wrong(key, value, format!("belongs to the rows of a table; {instead}"))),
+        None => Ok(()),
     }
+}
+
+impl Source {
+    /// Refuses keys that none of the methods which reduce its runs takes; `keys` are those that one of them does.
+    ///
+    /// # Errors
+    ///
+    /// The first of the others, with its place.
+    pub fn takes(&self, keys: &[&str]) -> Result<(), RecordError> {
+        let Some(s) = self.own_section()? else { return Ok(()) };
+        let is_own = |key: &str| self.methods.iter().any(|method| method == key) && !keys.contains(&key);
+        if let Some((key, _, value)) = s.entries().find(|(key, ..)| is_own(key)) {
+            return Err(s.wrong(key, value, "is a method without a section of its own: delete the section"));
+        }
+        let has_runs = matches!(self.input, Input::Runs { .. });
+        if has_runs || (matches!(self.input, Input::Table(_)) && !self.methods.is_empty()) {
+            s.refuse("cfd", !keys.contains(&"cfd"), NO_CASES)?;
+            s.refuse("decay", !keys.contains(&"decay"), NO_DECAY)?;
+        }
+        if !has_runs {
+            return Ok(());
+        }
+        let instead = "the budget of runs follows from the campaign that they were driven by (runs of the tank methods have a budget and a plan of their own, and steady, weight_tow, accelerated_tow and forced_oscillation take models)";
+        takes(&s, keys, instead)
+    }
+
+    /// The blocks of its plan as settings of rows.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Value`] with its place where they are something else.
+    pub fn rows(&self) -> Result<Vec<PlanBlock>, RecordError> {
+        if !matches!(self.input, Input::Runs { .. }) {
+            return Ok(self.plan.clone());
+        }
+        let blocks = self.own_section()?.map(|s| s.sections("plan")).transpose()?.unwrap_or_default();
+        rows_of(&blocks, &self.input)
+    }
+}
+
+fn rows_of(blocks: &[Section<'_>], input: &Input) -> Result<Vec<PlanBlock>, RecordError> {
+    let (of_rows, most_rows) = most_of(input);
+    let asks = |p: &PlanBlock| Asks { count: product(&numbers(p)), samples: 0.0 };
+    plan_of(blocks, of_rows, most_rows, |b| plan_block(b, input), asks)
 }
 
 fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
@@ -557,15 +582,18 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
     let select = s.text("select")?.map(str::to_owned);
     let model = s.text("model")?;
     let record = s.text("record")?.map(|r| Truth::Record { path: s.source.relative(r), select });
+    let mut stated = Vec::new();
     let written = s
         .section("coefficients")?
         .map(|table| -> Result<Truth, RecordError> {
             let model =
                 model.ok_or_else(|| s.missing("model", "name the force model that the coefficients belong to"))?;
-            let values = table
-                .entries()
-                .map(|(name, _, v)| Ok((name.to_owned(), coefficient_value(&table, name, v)?.0)))
-                .collect::<Result<_, RecordError>>()?;
+            let mut values = IndexMap::new();
+            for (name, start, value) in table.entries() {
+                let (truth, unit) = coefficient_value(&table, name, value)?;
+                values.insert(name.to_owned(), truth);
+                stated.push(StatedTruth { coefficient: name.to_owned(), unit, place: s.source.place(start) });
+            }
             Ok(Truth::Coefficients { model: model.to_owned(), values })
         })
         .transpose()?;
@@ -578,6 +606,7 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
             .integer("seed")?
             .ok_or_else(|| s.missing("seed", "write seed = 1, for example; the same seed gives the same table"))?,
         truth,
+        stated,
         sensors: s.sections("sensor")?.iter().map(sensor).collect::<Result<_, _>>()?,
         misalignment_rad: s.quantity("misalignment", Dimension::ONE)?,
     })

@@ -66,8 +66,7 @@ pub use import::{
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog, median};
 pub use meta::{
-    ACCELERATED_TOW, Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Direction, EXCITED_RESPONSE,
-    FORCED_OSCILLATION, FREE_DECAY, Mounted, ROTATION, Role, RunMeta, RunStatus, STEADY, TOW, WEIGHT_TOW,
+    Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Direction, Mounted, Role, RunMeta, RunStatus, TOW,
 };
 pub use reader::{Block, RunReader, head_of, read_run};
 pub use recorder::{Packing, Recorder};

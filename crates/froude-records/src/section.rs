@@ -65,7 +65,7 @@ pub struct Section<'a> {
     is_listed: bool,
     table: &'a DeTable<'a>,
     start: usize,
-    asked: RefCell<BTreeSet<&'static str>>,
+    asked: RefCell<BTreeSet<&'a str>>,
 }
 
 impl<'a> Section<'a> {
@@ -106,6 +106,11 @@ impl<'a> Section<'a> {
         // The table is sorted by key; people mean the order that they wrote.
         entries.sort_by_key(|(_, start, _)| *start);
         entries.into_iter()
+    }
+
+    /// Takes the keys of which `is_known` is true as known.
+    pub fn asks(&self, is_known: impl Fn(&str) -> bool) {
+        self.asked.borrow_mut().extend(self.entries().map(|(key, ..)| key).filter(|key| is_known(key)));
     }
 
     /// Entries whose keys were not asked for by name.

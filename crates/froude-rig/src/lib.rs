@@ -14,8 +14,7 @@
 //! | [`closed_loop`], [`defaults`] | the controller on the twin, and its configuration for this rig |
 //! | [`injection`] | what can be broken |
 //! | [`decay`] | a body on springs, let go |
-//! | [`oscillation`] | a body on a rod that a servo swings |
-//! | [`rotation`] | a body that a motor turns to and fro about its own centre |
+//! | [`swung`] | a servo that moves a body to and fro, and the log of motion and loads |
 //! | [`excited_response`] | a section in waves, held and free |
 //!
 //! The twin runs the same `froude_control::Controller` as the carriage. It reads no clock; all chance comes from one seed.
@@ -57,11 +56,9 @@ pub mod force_sensor;
 pub mod injection;
 pub mod load;
 pub mod noise;
-pub mod oscillation;
 pub mod parameters;
 pub mod plant;
 pub mod propagator;
-pub mod rotation;
 pub mod steady;
 pub mod swung;
 pub mod twin;

@@ -1,9 +1,11 @@
-//! A servo that swings a body, and the log of angle and load: what every rig with a motor and a load cell has in common.
+//! A servo that moves a body to and fro, and the log of motion and loads: the twin of every rig with a motor and load cells.
 //!
-//! The servo follows α sin ωt from rest as a second-order system, overshoot and start-up included. The load is stamped late by a delay, with its zero,
-//! drift, white and slow noise and its resolution.
+//! The servo follows α sin ωt from rest as a second-order system, overshoot and start-up included. The loads are stamped late by a delay, each with its zero,
+//! drift, white or slow noise and resolution.
 //!
-//! **Units.** SI; angles in radians; loads in N or N m.
+//! **Units.** SI: the motion is an angle, rad, or a displacement, m; loads in N or N m.
+//!
+//! Not here: rods that bend, waves in the tank, a motor that saturates.
 //!
 //! # Source
 //!
@@ -16,19 +18,19 @@ use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
 use crate::noise::OrnsteinUhlenbeck;
-use crate::steady::stepped;
+use crate::steady::{Reading, stepped};
 
-/// Longest step of the servo, as part of its own radian: (0.05)⁵/120 = 3e-9 of the angle in a step.
+/// Longest step of the servo, as part of its own radian: (0.05)⁵/120 = 3e-9 of the motion in a step.
 const STEP_RAD: f64 = 0.05;
 
-/// Angle, its rate and second derivative, rad over s.
-pub(crate) type Angle = [f64; 3];
+/// Position and its first two derivatives: rad or m, per s, per s².
+pub type Motion = [f64; 3];
 
-/// How a body swings: α sin ωt.
+/// How a body is moved: α sin ωt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swing {
-    /// α, rad.
-    pub amplitude_rad: f64,
+    /// α, rad or m.
+    pub amplitude: f64,
     /// ω, rad/s.
     pub omega_rad_s: f64,
     /// Time at rest on the log before it begins, s.
@@ -45,48 +47,17 @@ impl Swing {
     }
 }
 
-/// What is read, and how well; the load in its own unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What is logged of a run, and how well. Each channel is sensed in its own unit; a gain scales all that it shows.
+#[derive(Debug, Clone, PartialEq)]
 pub struct SwungSensor {
     /// Samples a second.
     pub rate_hz: f64,
-    /// Standard deviation of the angle's white noise, rad.
-    pub angle_noise_rad: f64,
-    /// Step of the angle, rad; 0 is none.
-    pub angle_step_rad: f64,
-    /// Standard deviation of the load's white noise.
-    pub load_noise: f64,
-    /// Standard deviation of its slow noise, …
-    pub slow_noise: f64,
-    /// … and the time over which that is correlated, s.
-    pub correlation_s: f64,
-    /// Step of the load; 0 is none.
-    pub load_step: f64,
-    /// Zero of the load cell.
-    pub zero: f64,
-    /// Drift of the zero over a second.
-    pub drift_per_s: f64,
-    /// The load is stamped so much later than the angle, s.
+    /// The motion: white noise and step.
+    pub motion: Reading,
+    /// The loads.
+    pub loads: Vec<Reading>,
+    /// The loads are stamped so much later than the motion, s.
     pub delay_s: f64,
-}
-
-impl SwungSensor {
-    /// One that shows the truth, 100 times a second.
-    #[must_use]
-    pub fn exact() -> Self {
-        Self {
-            rate_hz: 100.0,
-            angle_noise_rad: 0.0,
-            angle_step_rad: 0.0,
-            load_noise: 0.0,
-            slow_noise: 0.0,
-            correlation_s: 0.5,
-            load_step: 0.0,
-            zero: 0.0,
-            drift_per_s: 0.0,
-            delay_s: 0.0,
-        }
-    }
 }
 
 /// What is logged of a run.
@@ -94,48 +65,52 @@ impl SwungSensor {
 pub struct SwungTrace {
     /// Time, s, in even steps from 0.
     pub time_s: Vec<f64>,
-    /// Angle as sensed, rad.
-    pub angle_rad: Vec<f64>,
-    /// Load of the rig on the body as sensed, N or N m.
-    pub load: Vec<f64>,
+    /// Motion as sensed, rad or m.
+    pub motion: Vec<f64>,
+    /// Loads of the rig on the body as sensed, N or N m.
+    pub loads: Vec<Vec<f64>>,
 }
 
-impl SwungTrace {
-    /// With gains of angle and load that err.
-    #[must_use]
-    pub fn scaled(mut self, angle: f64, load: f64) -> Self {
-        self.angle_rad.iter_mut().for_each(|x| *x *= angle);
-        self.load.iter_mut().for_each(|x| *x *= load);
-        self
-    }
-}
-
-/// The log of a run; `servo` is its natural frequency, rad/s, and its damping ratio, `load` gives that of the rig on the body. The same seed gives the same log, bit for bit.
-pub(crate) fn log(
+/// The log of a run; `servo` is its natural frequency, rad/s, and its damping ratio. `loads` gives each load of the rig on the body at all samples, from the
+/// motion and its first two derivatives there. The same seed gives the same log, bit for bit.
+///
+/// # Errors
+///
+/// That of `loads`.
+pub fn log<E>(
     asked: Swing,
     servo: (f64, f64),
-    sensor: SwungSensor,
-    load: &dyn Fn(Angle) -> f64,
+    sensor: &SwungSensor,
+    loads: impl FnOnce(&[Motion]) -> Result<Vec<Vec<f64>>, E>,
     seed: u64,
-) -> SwungTrace {
+) -> Result<SwungTrace, E> {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let step_s = 1.0 / sensor.rate_hz;
-    let mut slow = OrnsteinUhlenbeck::new(sensor.slow_noise, sensor.correlation_s, step_s, &mut rng);
+    let noise = |reading: &Reading, rng: &mut Pcg64Mcg| {
+        let (white, slow) = if reading.correlation_s.is_some() { (0.0, reading.noise) } else { (reading.noise, 0.0) };
+        (white, OrnsteinUhlenbeck::new(slow, reading.correlation_s.unwrap_or(1.0), step_s, rng))
+    };
+    let mut of_loads: Vec<(f64, OrnsteinUhlenbeck)> = sensor.loads.iter().map(|r| noise(r, &mut rng)).collect();
     let samples = libm::round((asked.still_s + asked.periods * TAU / asked.omega_rad_s) * sensor.rate_hz) as usize;
-    let mut out = SwungTrace::default();
-    // The angle at the time of the stamp and at that of the load lie a fixed delay apart: two servos, one late.
+    let time_s: Vec<f64> = (0..samples).map(|i| i as f64 * step_s).collect();
+    // The motion at the time of the stamp and at that of the loads lie a fixed delay apart: two servos, one late.
     let (mut now, mut then) = (Servo::new(asked, servo), Servo::new(asked, servo));
-    for i in 0..samples {
-        let t = i as f64 * step_s;
-        let [angle, ..] = now.at(t);
-        let moved = then.at(t - sensor.delay_s);
-        let z: [f64; 2] = core::array::from_fn(|_| rng.sample(StandardNormal));
-        let there = load(moved) + sensor.zero + sensor.drift_per_s * t + sensor.load_noise * z[1] + slow.step(&mut rng);
-        out.time_s.push(t);
-        out.angle_rad.push(stepped(angle + sensor.angle_noise_rad * z[0], sensor.angle_step_rad));
-        out.load.push(stepped(there, sensor.load_step));
+    let late: Vec<Motion> = time_s.iter().map(|t| then.at(t - sensor.delay_s)).collect();
+    let there = loads(&late)?;
+    let mut out = SwungTrace { loads: vec![Vec::with_capacity(samples); there.len()], ..SwungTrace::default() };
+    for (i, t) in time_s.iter().enumerate() {
+        let [place, ..] = now.at(*t);
+        let shown = place + sensor.motion.noise * rng.sample::<f64, _>(StandardNormal);
+        out.motion.push(sensor.motion.gain * stepped(shown, sensor.motion.step));
+        let white: Vec<f64> = of_loads.iter().map(|_| rng.sample(StandardNormal)).collect();
+        for (k, (reading, (size, slow))) in sensor.loads.iter().zip(&mut of_loads).enumerate() {
+            let drift = reading.drift_per_s * t;
+            let shown = there[k][i] + reading.zero + drift + *size * white[k] + slow.step(&mut rng);
+            out.loads[k].push(reading.gain * stepped(shown, reading.step));
+        }
     }
-    out
+    out.time_s = time_s;
+    Ok(out)
 }
 
 /// The servo, stepped forward in time.
@@ -152,14 +127,14 @@ impl Servo {
         Self { asked, natural_and_damping, time_s: f64::NEG_INFINITY, state: [0.0; 2] }
     }
 
-    fn second(&self, t: f64, [angle, rate]: [f64; 2]) -> f64 {
+    fn second(&self, t: f64, [place, rate]: [f64; 2]) -> f64 {
         let (natural, damping) = self.natural_and_damping;
-        let asked = self.asked.amplitude_rad * libm::sin(self.asked.omega_rad_s * (t - self.asked.still_s));
-        natural * natural * (asked - angle) - 2.0 * damping * natural * rate
+        let asked = self.asked.amplitude * libm::sin(self.asked.omega_rad_s * (t - self.asked.still_s));
+        natural * natural * (asked - place) - 2.0 * damping * natural * rate
     }
 
-    /// The angle at a time; times increase from call to call. At rest until the motion begins.
-    fn at(&mut self, time_s: f64) -> Angle {
+    /// The motion at a time; times increase from call to call. At rest until the motion begins.
+    fn at(&mut self, time_s: f64) -> Motion {
         let begins = self.asked.still_s;
         if time_s <= begins {
             return [0.0; 3];
@@ -181,5 +156,66 @@ impl Servo {
         }
         self.time_s = time_s;
         [self.state[0], self.state[1], self.second(time_s, self.state)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SERVO: (f64, f64) = (30.0, 0.6);
+    const SWING: Swing = Swing { amplitude: 0.2, omega_rad_s: 1.2, still_s: 1.0, periods: 6.0 };
+
+    fn exact(rate_hz: f64, delay_s: f64) -> SwungSensor {
+        let reading = Reading { gain: 1.0, ..Reading::default() };
+        SwungSensor { rate_hz, motion: reading, loads: vec![reading], delay_s }
+    }
+
+    /// The log with a load of J a + D v + Q v|v|.
+    fn logged(swing: Swing, sensor: &SwungSensor, [inertia, linear, square]: [f64; 3]) -> SwungTrace {
+        let load = |[_, v, a]: &Motion| inertia * a + linear * v + square * v * v.abs();
+        log::<()>(swing, SERVO, sensor, |all| Ok(vec![all.iter().map(load).collect()]), 1).unwrap()
+    }
+
+    /// The gain of a second-order system, 1/|1 − x² + 2iζx| at x = ω/ω_s.
+    fn gain(omega_rad_s: f64) -> f64 {
+        let x = omega_rad_s / SERVO.0;
+        1.0 / ((1.0 - x * x).powi(2) + (2.0 * SERVO.1 * x).powi(2)).sqrt()
+    }
+
+    #[test]
+    fn the_servo_settles_to_the_gain_of_its_formula() {
+        let trace = logged(SWING, &exact(100.0, 0.0), [0.0; 3]);
+        let late = &trace.motion[trace.motion.len() - 600..];
+        let largest = late.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        // A sample may lie 5 ms from the peak: (ω·0.005)²/2 = 1.8e-5.
+        assert!((largest / (0.2 * gain(1.2)) - 1.0).abs() < 3e-5, "{}", largest / (0.2 * gain(1.2)));
+    }
+
+    /// Work over a whole period: π D ω A² + (8/3) Q ω² A³; inertia takes none.
+    #[test]
+    fn over_a_whole_period_the_work_is_that_of_the_damping() {
+        let swing = Swing { amplitude: 0.8, ..SWING };
+        let [inertia, linear, square] = [10.3e-3, 2.1e-3, 3.7e-3];
+        let trace = logged(swing, &exact(500.0, 0.0), [inertia, linear, square]);
+        let (omega, n) = (swing.omega_rad_s, (TAU / swing.omega_rad_s * 500.0).round() as usize);
+        let first = trace.time_s.len() - n - 10;
+        let way = |i: usize| 0.5 * (trace.motion[i + 1] - trace.motion[i - 1]);
+        let work: f64 = (first..first + n).map(|i| trace.loads[0][i] * way(i)).sum();
+        let amplitude = swing.amplitude * gain(omega);
+        let lost =
+            0.5 * TAU * linear * omega * amplitude.powi(2) + 8.0 / 3.0 * square * omega.powi(2) * amplitude.powi(3);
+        // The period is no whole number of samples: half of one in 2618 of the mean of a squared sine.
+        assert!((work / lost - 1.0).abs() < 5e-4, "{work} {lost}");
+    }
+
+    #[test]
+    fn a_delay_shifts_the_load_and_not_the_motion() {
+        let [now, late] = [0.0, 0.05].map(|delay_s| logged(SWING, &exact(100.0, delay_s), [1.0, 4.0, 0.0]));
+        assert_eq!(now.motion, late.motion);
+        for i in 300..now.time_s.len() {
+            // The two servos take other steps: a few times 3e-9 of the load.
+            assert!((now.loads[0][i - 5] - late.loads[0][i]).abs() < 1e-6, "{i}");
+        }
     }
 }

@@ -14,7 +14,7 @@
 //!
 //! Every step stands in [`TankLog::done`]; what a reader should know of it is a finding.
 //!
-//! Not here: windows of a method, which leave marks out themselves ([`stretches::MARK_AWARE`]).
+//! Not here: windows of a method, which leave marks out themselves (all but those of [`stretches::MARK_UNAWARE`]).
 
 pub mod align;
 pub mod clipped;

@@ -54,7 +54,8 @@ pub(crate) fn runs_of<T>(
 }
 
 /// As a budget takes it.
-pub(crate) fn uncertain(declared: Declared) -> Uncertain {
+#[must_use]
+pub fn uncertain(declared: Declared) -> Uncertain {
     Uncertain::new(declared.value, declared.standard_uncertainty)
 }
 
@@ -82,7 +83,7 @@ pub(crate) fn above_zero(
 }
 
 /// Which cycles are used.
-pub(crate) const CYCLES: Key = Key::new(
+pub const CYCLES: Key = Key::new(
     "cycles",
     Kind::Table(&[
         Key::new("skip", Kind::Whole, IfMissing::Is("1"), "left out after the motion has begun"),
@@ -93,8 +94,8 @@ pub(crate) const CYCLES: Key = Key::new(
     "`skip`: whole cycles left out at the start of the motion; `used`: cycles used after those (else all, with the incomplete one at the end); `fewest`: fewest whole cycles accepted",
 );
 /// Harmonics of the angle.
-pub(crate) const HARMONICS: Key =
-    Key::new("harmonics", Kind::Count(20), IfMissing::Is("3"), "number of harmonics fitted to the angle");
+pub const HARMONICS: Key =
+    Key::new("harmonics", Kind::Count(20), IfMissing::Is("3"), "number of harmonics fitted to the motion");
 
 /// Of the values of [`CYCLES`].
 pub(crate) fn cycles(values: &Values) -> Result<Cycles, RecordError> {
@@ -104,7 +105,7 @@ pub(crate) fn cycles(values: &Values) -> Result<Cycles, RecordError> {
 }
 
 /// Frequencies of a motion.
-pub(crate) const FREQUENCY: Key = Key::new(
+pub const FREQUENCY: Key = Key::new(
     "frequency",
     Kind::Frequency,
     IfMissing::Required("write \"0.2 Hz\" or \"70 deg/s\", a list, or { start, stop, step }"),
@@ -112,31 +113,31 @@ pub(crate) const FREQUENCY: Key = Key::new(
 )
 .within(Range::Positive);
 /// Length of a run.
-pub(crate) const PERIODS: Key =
+pub const PERIODS: Key =
     Key::new("periods", Kind::Count(100_000), IfMissing::Is("7"), "periods in each run, start-up included");
 /// Time at rest before a run.
-pub(crate) const STILL: Key =
+pub const STILL: Key =
     Key::new("still", Kind::Quantity(Dimension::TIME), IfMissing::Is("1 s"), "time at rest before each run")
         .within(Range::NotNegative("a time that passes is not"));
 /// Rate of the log.
-pub(crate) const RATE: Key =
+pub const RATE: Key =
     Key::new("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), IfMissing::Is("100 Hz"), "sampling rate of the log")
         .within(Range::Positive);
 /// Repeats of a run.
-pub(crate) const REPEATS: Key =
+pub const REPEATS: Key =
     Key::new("repeats", Kind::Count(MOST_RUNS as u64), IfMissing::Is("1"), "number of times each run is made");
 
 /// Amplitudes of a motion; `advice` is what to write.
-pub(crate) const fn amplitude(advice: &'static str) -> Key {
-    Key::new("amplitude", Kind::Axis(Dimension::ANGLE), IfMissing::Required(advice), "amplitude of the angle")
-        .within(Range::Positive)
+#[must_use]
+pub const fn amplitude(dimension: Dimension, advice: &'static str, doc: &'static str) -> Key {
+    Key::new("amplitude", Kind::Axis(dimension), IfMissing::Required(advice), doc).within(Range::Positive)
 }
 
 /// How a motor moves a body in the runs of one block of a plan: every amplitude at every frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swings {
-    /// Amplitudes of the angle.
-    pub amplitude_rad: Vec<f64>,
+    /// Amplitudes, rad or m.
+    pub amplitude: Vec<f64>,
     /// Angular frequencies.
     pub omega_rad_s: Vec<f64>,
     /// Periods of each run, start-up included.
@@ -155,7 +156,7 @@ impl Swings {
         let count = |key: &str| values.need(key, values.count(key));
         let number = |key: &str| values.need(key, values.number(key));
         Ok(Self {
-            amplitude_rad: values.numbers("amplitude"),
+            amplitude: values.numbers("amplitude"),
             omega_rad_s: values.numbers("frequency"),
             periods: count("periods")? as f64,
             still_s: number("still")?,
@@ -167,15 +168,15 @@ impl Swings {
     /// Every amplitude at every frequency, as often as each is run.
     pub(crate) fn each(&self) -> impl Iterator<Item = Swing> + '_ {
         let (still_s, periods) = (self.still_s, self.periods);
-        let swing = move |amplitude_rad, omega_rad_s| Swing { amplitude_rad, omega_rad_s, still_s, periods };
+        let swing = move |amplitude, omega_rad_s| Swing { amplitude, omega_rad_s, still_s, periods };
         let of_amplitude = move |a: f64| self.omega_rad_s.iter().map(move |w| swing(a, *w));
-        let all = self.amplitude_rad.iter().copied().flat_map(of_amplitude);
+        let all = self.amplitude.iter().copied().flat_map(of_amplitude);
         all.flat_map(|swing| std::iter::repeat_n(swing, self.repeats))
     }
 
     /// What they ask for, `times` over: the periods of each, with still water before and behind them.
     pub(crate) fn asks(&self, times: usize) -> Asks {
-        let count = times * self.amplitude_rad.len() * self.omega_rad_s.len() * self.repeats;
+        let count = times * self.amplitude.len() * self.omega_rad_s.len() * self.repeats;
         // Every frequency stands in an equal part of the runs.
         let sum_s = self.omega_rad_s.iter().map(|w| TAU * self.periods / w).sum::<f64>();
         let mean_s = sum_s / self.omega_rad_s.len().max(1) as f64;

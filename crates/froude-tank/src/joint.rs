@@ -1,7 +1,10 @@
-//! The joint fit in time: what a load cell shows while a motor swings a body, as known motions times unknown coefficients.
+//! The joint fit in time: what load cells show while a motor moves a body, as known motions times unknown coefficients.
 //!
-//! y(t) = known(t − d) + Σ x_j(t − d) β_j + zero of the run + noise, the same β for all runs and the delay d among them. A method states its equation
-//! (`Equation`); the fit, its scatter, its budget and its forecast are common.
+//! y_k(t) = known_k(t − d) + Σ x_kj(t − d) β_j + zero of the run and load + noise, the same β for all runs and loads and the delay d among them. A method states
+//! its equation (`Equation`); the fit, its scatter, its budget and its forecast are common.
+//!
+//! **Several loads.** Those of one run are one cluster. Rows of load k count with the weight s₀√τ₀/(s_k√τ_k), s the standard deviation of what the fit leaves
+//! and τ its correlation time, so that the first load keeps the weight one.
 //!
 //! | module           | what                                                        | source                                |
 //! |------------------|-------------------------------------------------------------|---------------------------------------|
@@ -31,7 +34,8 @@ use crate::motion::Motion;
 /// Name of the delay.
 pub const DELAY: &str = "delay";
 
-/// What the load is made of, a number for each sample.
+/// What a load is made of, a number for each sample.
+#[derive(Debug, Clone)]
 pub(crate) struct Terms {
     /// What is not looked for.
     pub known: Vec<f64>,
@@ -64,26 +68,26 @@ impl Terms {
     }
 }
 
-/// The load on the cell, by a method's law.
+/// The loads on the cells, by a method's law.
 pub(crate) trait Equation {
-    /// At samples `rows` of a run, the motion taken `delay_s` earlier than they are stamped; `moved` adds a number to a declared one, by its place among
-    /// the errors of the [`Problem`].
+    /// Each load at samples `rows` of a run, the motion taken `delay_s` earlier than they are stamped; `moved` adds a number to a declared one, by its place
+    /// among the errors of the [`Problem`].
     fn terms(
         &self,
         run: usize,
         rows: Range<usize>,
         delay_s: f64,
         moved: Option<(usize, f64)>,
-    ) -> Result<Terms, TankError>;
+    ) -> Result<Vec<Terms>, TankError>;
 }
 
 /// Where a declared error enters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Enters {
-    /// A gain of the load: the cell reads (1 + e) of what is there.
-    Load,
-    /// A gain of the angle's sensor: what is there is made by φ/(1 + e).
-    Angle,
+    /// A gain of a load, by its place: the cell reads (1 + e) times the true load.
+    Load(usize),
+    /// A gain of the motion's sensor: the true motion is φ/(1 + e).
+    Motion,
     /// A constant of the equation, of this size.
     Constant(f64),
 }
@@ -100,10 +104,10 @@ pub(crate) struct Input {
 }
 
 /// One run as the fit takes it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Run<'a> {
     pub id: &'a str,
-    pub load: &'a [f64],
+    pub loads: Vec<&'a [f64]>,
     pub motion: &'a Motion,
 }
 
@@ -120,7 +124,9 @@ pub(crate) struct Problem<'a, E> {
     /// Where the delay stands, or else what it is, s.
     pub delay: Result<usize, f64>,
     /// Unknowns that the campaign's default bounds are about.
-    pub bounded: Range<usize>,
+    pub bounded: Vec<usize>,
+    /// Unknowns whose loads may change from run to run, those together that change by one fraction.
+    pub varying: Vec<Vec<usize>>,
     /// Declared numbers that are unknowns too.
     pub priors: Vec<(String, ls::Prior)>,
     pub inputs: Vec<Input>,
@@ -141,13 +147,17 @@ impl<E> Problem<'_, E> {
         self.delay.ok()
     }
 
+    pub fn n_loads(&self) -> usize {
+        self.runs.first().map_or(0, |run| run.loads.len())
+    }
+
     /// The shortest period.
     pub fn period_s(&self) -> f64 {
         self.runs.iter().map(|run| run.motion.angle.period_s()).fold(f64::INFINITY, f64::min)
     }
 
     pub fn samples(&self) -> usize {
-        self.runs.iter().map(|run| run.motion.count()).sum()
+        self.n_loads() * self.runs.iter().map(|run| run.motion.count()).sum::<usize>()
     }
 
     /// Whole cycles of all runs.
@@ -216,7 +226,7 @@ pub struct DeclaredError {
     pub sensitivity: Vec<f64>,
 }
 
-/// What is left of a run; loads in the unit of the cell.
+/// What is left of a load of a run, in the unit of the cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
     /// Zero of the load cell.
@@ -242,8 +252,8 @@ pub struct JointFit {
     pub parts: Vec<Part>,
     /// The declared errors, in the order of `parts` after the first.
     pub errors: Vec<DeclaredError>,
-    /// By run.
-    pub fitted: Vec<Fitted>,
+    /// By run, and by load.
+    pub fitted: Vec<Vec<Fitted>>,
     /// What was left out in turn: `run` or `cycle`.
     pub by: &'static str,
     /// Whether the scatter includes what changes from run to run.
@@ -252,12 +262,12 @@ pub struct JointFit {
     pub clusters: usize,
     /// Whether their scatter is divided by its mean at equal errors, and has its degrees of freedom.
     pub is_scaled: bool,
-    /// Samples used.
+    /// Samples used, of all loads.
     pub samples: usize,
     /// n/τ.
     pub effective: f64,
-    /// Standard deviation of a residual, in the unit of the cell.
-    pub sigma: f64,
+    /// Standard deviation of a residual of each load, in the unit of the cell.
+    pub sigma: Vec<f64>,
     /// The delay that the motion was taken at, s.
     pub delay_s: f64,
 }
@@ -274,4 +284,10 @@ impl JointFit {
     pub fn position(&self, name: &str) -> Option<usize> {
         self.unknowns.iter().position(|u| u.name == name)
     }
+}
+
+/// Correlation of two coefficients; `None` where one of them has no variance.
+pub(crate) fn correlation(covariance: &froude_fit::faer::Mat<f64>, i: usize, j: usize) -> Option<f64> {
+    let norm = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+    (norm > 0.0).then(|| covariance[(i, j)] / norm)
 }

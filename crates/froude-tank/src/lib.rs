@@ -5,10 +5,12 @@
 
 pub mod accelerated_tow;
 mod between_runs;
+pub mod channel;
 pub mod conditioning;
 pub mod decay;
 pub mod declared;
 mod drawn;
+pub mod driven;
 mod error;
 pub mod excited_response;
 pub mod extremes;
@@ -21,6 +23,7 @@ mod logs;
 mod long_logs;
 pub mod method;
 pub mod motion;
+pub mod names;
 mod noise;
 pub mod oscillation;
 mod plan;

@@ -34,7 +34,7 @@ pub(crate) struct Logs {
     pub findings: Vec<Finding>,
 }
 
-/// Every log of a folder whose role is one of `roles`; `channels` says in words what a log of `method` has beside the time.
+/// Every log of a folder whose role is one of `roles`; `channels` states in words what a log of `method` has beside the time.
 pub(crate) fn read(
     folder: &Path,
     method: &str,
@@ -257,10 +257,10 @@ pub(crate) fn window_step(log: &TankLog, rows: &Range<usize>, words: &str) -> St
 }
 
 /// The cycles that are used of a run, as a step.
-pub(crate) fn cycles_step(log: &TankLog, motion: &Motion) -> Step {
+pub(crate) fn cycles_step(log: &TankLog, motion: &Motion, moved: &str) -> Step {
     let but = if motion.dropped == 0 { String::new() } else { format!(", but {} that a mark touches", motion.dropped) };
     let period_s = motion.angle.period_s();
-    let words = format!(": {} whole cycles{but}; angle by harmonics of {period_s:.4} s", motion.whole);
+    let words = format!(": {} whole cycles{but}; {moved} by harmonics of {period_s:.4} s", motion.whole);
     let step = window_step(log, &motion.samples(), &words).with("cycles", motion.whole as f64, "1");
     step.with("dropped", motion.dropped as f64, "1").with("period", period_s, "s")
 }

@@ -15,6 +15,8 @@ pub struct TankMethod {
     pub needs: &'static [Need],
     /// The method that runs must be of.
     pub runs: &'static str,
+    /// See [`Method::takes`].
+    pub takes: &'static [&'static str],
     /// See [`Method::identify`].
     pub identify: fn(&Campaign, &Source, &[&'static str], &dyn Fn(&str)) -> Result<Found, MethodError>,
     /// See [`Method::simulate`].
@@ -40,6 +42,10 @@ impl Method for TankMethod {
 
     fn runs(&self) -> &'static str {
         self.runs
+    }
+
+    fn takes(&self) -> &'static [&'static str] {
+        self.takes
     }
 
     fn identify(

@@ -38,17 +38,17 @@ impl Default for Cycles {
     }
 }
 
-/// Angle and load of a run, as they were logged.
-#[derive(Debug, Clone, Copy)]
+/// Motion and loads of a run, as they were logged: of each its channel, its unit and its values.
+#[derive(Debug, Clone)]
 pub(crate) struct Logged<'a> {
     /// Name of the run, for messages.
     pub id: &'a str,
     /// Time, s.
     pub time_s: &'a [f64],
-    /// The angle, rad.
-    pub angle_rad: &'a [f64],
-    /// What the cell shows: its channel, its unit, its values.
-    pub load: (&'static str, &'static str, &'a [f64]),
+    /// The motion, rad or m.
+    pub motion: (&'static str, &'static str, &'a [f64]),
+    /// What the cells show.
+    pub loads: Vec<(&'static str, &'static str, &'a [f64])>,
     pub sampled: Sampled<'a>,
 }
 
@@ -72,14 +72,14 @@ impl<'a> Sampled<'a> {
 /// A run as it is used.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// The angle, rad, over the time of the log.
+    /// The angle, rad, or the place, m, over the time of the log.
     pub angle: Harmonics,
     /// Samples of each cycle used; a broken one at the end belongs to the last whole one.
     pub cycles: Vec<Range<usize>>,
     /// Whole cycles used.
     pub whole: usize,
-    /// Half of what the angle moves through in each cycle, rad.
-    pub amplitudes_rad: Vec<f64>,
+    /// Half of what it moves through in each cycle, rad or m.
+    pub amplitudes: Vec<f64>,
     /// Which cycles they are, counted from 0 after those left out at the start: what is marked is missing among them.
     pub numbers: Vec<usize>,
     /// Whole cycles that are not used because a mark touches them.
@@ -127,20 +127,21 @@ impl Motion {
 ///
 /// Columns of different lengths, no harmonics, too few cycles, a clipped channel.
 pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Result<Motion, TankError> {
-    let (load, load_unit, loads) = run.load;
+    let (moved, _, places) = run.motion;
     let n = run.time_s.len();
-    for (column, found) in [("angle", run.angle_rad.len()), (load, loads.len())] {
+    for (column, _, values) in std::iter::once(&run.motion).chain(&run.loads) {
+        let found = values.len();
         if found != n {
             return Err(TankError::of_run(run.id, format!("{column} has {found} samples where time has {n}")));
         }
     }
-    let refused = |why| TankError::of_run(run.id, format!("the angle cannot be fitted by harmonics: {why}"));
-    let rough = Harmonics::fit(run.time_s, run.angle_rad, 1, None).map_err(refused)?;
+    let refused = |why| TankError::of_run(run.id, format!("the {moved} cannot be fitted by harmonics: {why}"));
+    let rough = Harmonics::fit(run.time_s, places, 1, None).map_err(refused)?;
     let period_s = rough.period_s();
     let marks = run.sampled.marks;
     if run.sampled.is_averaged || marks.iter().all(|mark| mark.why != "clipped") {
-        let angle = ("angle", run.angle_rad, "rad", Oscillating::Motion);
-        for (channel, values, unit, kind) in [angle, (load, loads, load_unit, Oscillating::Load)] {
+        let loads = run.loads.iter().map(|load| (*load, Oscillating::Load));
+        for ((channel, unit, values), kind) in std::iter::once((run.motion, Oscillating::Motion)).chain(loads) {
             let recorded = run.sampled.recorded.and_then(|recorded| recorded.get(channel).cloned());
             let extremes = recorded.unwrap_or_else(|| Extremes::of(run.time_s, values));
             if let Some(Stay { value, samples, from_s }) = extremes.clipped(period_s, kind) {
@@ -189,18 +190,18 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     let used =
         |values: &[f64]| cycles.iter().flat_map(|rows| values[rows.clone()].iter().copied()).collect::<Vec<f64>>();
     let angle =
-        Harmonics::fit(&used(run.time_s), &used(run.angle_rad), harmonics, Some(rough.omega_rad_s)).map_err(refused)?;
+        Harmonics::fit(&used(run.time_s), &used(places), harmonics, Some(rough.omega_rad_s)).map_err(refused)?;
     let half_range = |rows: &Range<usize>| {
-        let (low, high) = (run.angle_rad[rows.clone()].iter())
+        let (low, high) = (places[rows.clone()].iter())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
         0.5 * (high - low)
     };
-    Ok(Motion { angle, whole, amplitudes_rad: cycles.iter().map(half_range).collect(), numbers, dropped, cycles })
+    Ok(Motion { angle, whole, amplitudes: cycles.iter().map(half_range).collect(), numbers, dropped, cycles })
 }
 
 /// From where to where a run oscillates, as samples.
 fn moving(run: &Logged<'_>, middle: f64, period_s: f64) -> (usize, usize) {
-    let mut away: Vec<f64> = run.angle_rad.iter().map(|x| (x - middle).abs()).collect();
+    let mut away: Vec<f64> = run.motion.2.iter().map(|x| (x - middle).abs()).collect();
     let first = |part: f64, away: &[f64], size: f64| away.iter().position(|x| *x > part * size).unwrap_or(0);
     let place = ((SIZE * away.len() as f64) as usize).min(away.len() - 1);
     let size = *away.clone().select_nth_unstable_by(place, f64::total_cmp).1;

@@ -3,7 +3,6 @@
 use froude_identify::method::MethodError;
 use froude_records::campaign::{Campaign, SensorSpec};
 use froude_rig::steady::Reading;
-use froude_rig::swung::SwungSensor;
 
 use crate::error::undeclared;
 
@@ -27,7 +26,11 @@ impl<'a> Senses<'a> {
 
 /// How a channel of `[[simulate.sensor]]` is read, with a zero and a gain of its own.
 pub(crate) fn reading(sensors: &[SensorSpec], names: &[&str], zero: f64, gain: f64) -> Reading {
-    let sensor = sensors.iter().find(|s| names.contains(&s.quantity.as_str()));
+    of_sensor(sensors.iter().find(|s| names.contains(&s.quantity.as_str())), zero, gain)
+}
+
+/// The same of a sensor that was found.
+pub(crate) fn of_sensor(sensor: Option<&SensorSpec>, zero: f64, gain: f64) -> Reading {
     let of = |value: fn(&SensorSpec) -> Option<f64>| sensor.and_then(value).unwrap_or(0.0);
     Reading {
         noise: of(|s| s.noise),
@@ -36,22 +39,6 @@ pub(crate) fn reading(sensors: &[SensorSpec], names: &[&str], zero: f64, gain: f
         zero: zero + of(|s| s.bias),
         drift_per_s: 0.0,
         gain,
-    }
-}
-
-/// How angle and load of a body that a motor swings are read.
-pub(crate) fn swung(sensors: &[SensorSpec], angle: &[&str], load: &[&str]) -> SwungSensor {
-    let [angle, load] = [angle, load].map(|names| reading(sensors, names, 0.0, 1.0));
-    let (white, slow) = if load.correlation_s.is_some() { (0.0, load.noise) } else { (load.noise, 0.0) };
-    SwungSensor {
-        angle_noise_rad: angle.noise,
-        angle_step_rad: angle.step,
-        load_noise: white,
-        slow_noise: slow,
-        correlation_s: load.correlation_s.unwrap_or(1.0),
-        load_step: load.step,
-        zero: load.zero,
-        ..SwungSensor::exact()
     }
 }
 

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use froude_identify::compare::too_many;
 use froude_identify::method::MethodError;
-use froude_records::run::FREE_DECAY;
 use froude_records::text::counted;
 use froude_report::write::WriteError;
 use froude_rig::campaign::error::CampaignError;
 use froude_rig::campaign::runner::RunnerError;
 use froude_swim::verb::VerbError;
+use froude_tank::names::FREE_DECAY;
 
 /// Why a job of the pipeline failed.
 #[derive(Debug, thiserror::Error)]

@@ -37,6 +37,14 @@ pub fn read_campaign(path: &Path) -> Result<Campaign, Error> {
 /// The first mistake in them, with its place.
 pub fn check_sections(campaign: &Campaign) -> Result<(), Error> {
     for source in &campaign.sources {
+        let names = METHODS.iter().flat_map(|method| method.names());
+        // What a method that nobody knows would take is not known; its name is refused where it is asked for.
+        if source.methods.iter().all(|name| names.clone().any(|known| known == name)) {
+            let is_asked =
+                |method: &&&dyn Method| method.names().iter().any(|name| source.methods.iter().any(|m| m == name));
+            let taken = METHODS.iter().filter(is_asked).flat_map(|method| method.takes());
+            source.takes(&taken.copied().collect::<Vec<_>>())?;
+        }
         METHODS.iter().chain(&[&AddedMass as &dyn Method, &Computed]).try_for_each(|method| method.check(source))?;
     }
     declared(campaign)?;

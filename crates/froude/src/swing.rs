@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use froude_cfd::verb::{Planned, SwungRun, swing as compute};
+use froude_identify::dataset::distinct;
 use froude_identify::method::MethodError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::outcome::Outcome;
@@ -27,28 +28,24 @@ pub fn swing(
 }
 
 fn planned(campaign: &Campaign, source: &Source) -> Result<Planned, MethodError> {
-    let (setup, runs) = computed::asked(campaign, source)?;
-    let swung = runs.iter().map(|run| {
-        let body = &setup.bodies[run.body];
-        SwungRun {
-            id: run.id.clone(),
-            configuration: body.name.clone(),
-            radius_m: setup.radius_m.value,
-            amplitude_rad: run.swing.amplitude_rad,
-            omega_rad_s: run.swing.omega_rad_s,
-            forward_m_s: run.flow_m_s,
-            periods: run.swing.periods,
-            mass_kg: body.mass_kg.value,
-            buoyancy_n: body.buoyancy_n.map(|b| b.value),
-            volume_m3: body.reference_volume_m3,
-        }
+    let (density_kg_m3, runs) = computed::asked(campaign, source)?;
+    let swung = runs.iter().map(|run| SwungRun {
+        id: run.planned.id.clone(),
+        configuration: run.body.name.clone(),
+        radius_m: run.radius_m,
+        amplitude_rad: run.planned.swing.amplitude,
+        omega_rad_s: run.planned.swing.omega_rad_s,
+        forward_m_s: run.planned.point.condition("flow"),
+        periods: run.planned.swing.periods,
+        mass_kg: run.mass_kg,
+        buoyancy_n: run.buoyancy_n,
+        volume_m3: run.body.reference_volume_m3,
     });
+    let names: Vec<String> = runs.iter().map(|run| run.body.name.clone()).collect();
     Ok(Planned {
         runs: swung.collect(),
-        configurations: setup.bodies.iter().map(|body| body.name.clone()).collect(),
-        density_kg_m3: setup.density_kg_m3.value,
-        files: Box::new(move |place, time_s, fluid_n, said| {
-            computed::files(&runs[place], &setup, time_s, fluid_n, said)
-        }),
+        configurations: distinct(&names),
+        density_kg_m3,
+        files: Box::new(move |place, time_s, fluid_n, said| computed::files(&runs[place], time_s, fluid_n, said)),
     })
 }

@@ -9,8 +9,8 @@ use froude_records::RecordError;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::run::{
-    Block, BodyState, Doubt, DoubtKind, FORCED_OSCILLATION, ImportedRun, Mounted, ROTATION, Role, RunMeta, RunReader,
-    RunStatus, STEADY, TOW, WEIGHT_TOW, import_run, read_run, read_run_meta,
+    Block, BodyState, Doubt, DoubtKind, ImportedRun, Mounted, Role, RunMeta, RunReader, RunStatus, TOW, import_run,
+    read_run, read_run_meta,
 };
 use froude_records::text::counted;
 use froude_rig::carriage::{CarriageCampaign, Directions, RigKind};
@@ -215,7 +215,7 @@ fn logs(paths: &[PathBuf]) -> Inspection {
         }
     }
     let next = match methods.first().map(String::as_str) {
-        Some(method @ (FORCED_OSCILLATION | ROTATION | STEADY | WEIGHT_TOW)) => {
+        Some(method) if !["", "free_decay"].contains(&method) => {
             format!("runs = \"FOLDER\" and method = \"{method}\" in a [[source]] take a folder of such runs")
         }
         _ => "runs = \"FOLDER\" and method = \"decay_envelope\" or \"decay_output_error\" in a [[source]] take a folder of releases".to_owned(),

@@ -15,7 +15,6 @@ use froude_records::hash::sha256_of_bytes;
 use froude_records::outcome::{Exit, Outcome};
 use froude_records::output::inside;
 use froude_records::read;
-use froude_records::run::FORCED_OSCILLATION;
 use froude_records::text::counted;
 use froude_records::write::write_atomically;
 
@@ -34,6 +33,8 @@ use crate::section::{CFD, declared};
 use crate::solve::{How, Progress};
 use crate::store::check_links;
 
+/// The section of a source whose runs swing.
+const FORCED_OSCILLATION: &str = "forced_oscillation";
 /// Steps of time in a period.
 const STEPS: usize = 200;
 /// Marks the folder of a run's flow as one that a swing computes.

@@ -40,10 +40,10 @@ fn the_files_that_the_start_page_quotes_are_those_of_the_examples() {
 fn the_key_tables_of_the_book_are_those_that_the_methods_declare() {
     use froude::methods::tank::{oscillation, rotation};
     for (page, keys) in [
-        ("forced-oscillation", oscillation::section::KEYS),
-        ("forced-oscillation", oscillation::section::PLAN),
-        ("rotation", rotation::section::KEYS),
-        ("rotation", rotation::section::PLAN),
+        ("forced-oscillation", oscillation::KEYS),
+        ("forced-oscillation", oscillation::PLAN),
+        ("rotation", rotation::KEYS),
+        ("rotation", rotation::PLAN),
     ] {
         let table = key_table(keys);
         assert!(

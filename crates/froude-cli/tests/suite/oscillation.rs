@@ -111,7 +111,7 @@ fn what_the_campaign_does_not_declare_is_asked_for() {
         (
             "method = \"forced_oscillation\"",
             "method = \"forced_oscilation\"",
-            "runs of the tank methods have a budget and a plan of their own, and steady, weight_tow, accelerated_tow and forced_oscillation take models",
+            "`forced_oscillation` is not called as the method is, \"forced_oscilation\": name both alike",
         ),
         ("C_A      = 1.277\n", "", "C_A is missing"),
     ] {

@@ -99,7 +99,18 @@ fn what_the_campaign_does_not_declare_is_asked_for() {
         (
             "lambda_2 = \"2.0901e-3 N m s\"\n",
             "lambda_2 = \"2.0901e-3 N m s\"\nC_A = 1.277\n",
-            "C_A is none that a rotation has",
+            "campaign.toml:49:1: model rotation has no coefficient C_A; known: lambda_1, ",
+        ),
+        (
+            "lambda_1 = \"6.9096e-3 kg m^2\"",
+            "lambda_1 = \"8 kg\"",
+            "campaign.toml:47:1: lambda_1 of rotation is in kg*m^2, and is stated in kg: write it in its unit",
+        ),
+        // Gravity restores nothing about an upright axis.
+        (
+            "lambda_2 = \"2.0901e-3 N m s\"\n",
+            "lambda_2 = \"2.0901e-3 N m s\"\nrestoring = \"2 mN m\"\n",
+            "campaign.toml:49:1: model rotation has no coefficient restoring",
         ),
         ("periods   = 7", "periods   = 4", "whole cycles"),
         ("method = \"rotation\"", "method = \"steady\"", "write method = \"rotation\""),
@@ -151,7 +162,7 @@ fn nothing_about_a_run_is_taken_for_granted() {
     assert!(found, "{record}");
     let output = froude(folder.path(), &["plan", "campaign.toml"]);
     let words = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(words.contains("hardly told apart"), "{words}");
+    assert!(words.contains("lambda_2 and lambda_3 are separated by the third harmonic alone"), "{words}");
     // A cell at the end of its range.
     let log = folder.path().join("runs/003.csv");
     let whole = std::fs::read_to_string(&log).unwrap();

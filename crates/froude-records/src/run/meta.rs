@@ -18,7 +18,7 @@ pub struct RunMeta {
     pub campaign_sha256: String,
     /// Name of the run, unique in the campaign; also the stem of its files.
     pub id: String,
-    /// What sort of experiment it belongs to, in the word by which methods know it: [`TOW`], [`FREE_DECAY`], any other; empty where
+    /// What sort of experiment it belongs to, in the word by which methods know it: [`TOW`], or any other; empty where
     /// nobody said.
     pub method: String,
     /// What it is for there.
@@ -67,20 +67,6 @@ impl RunMeta {
 
 /// The method of every run that the carriage drives.
 pub const TOW: &str = "tow";
-/// The method of a body that a motor swings.
-pub const FORCED_OSCILLATION: &str = "forced_oscillation";
-/// The method of a body that a motor turns to and fro about its own centre.
-pub const ROTATION: &str = "rotation";
-/// The method of a body in waves, held in one run and free in the other.
-pub const EXCITED_RESPONSE: &str = "excited_response";
-/// The method of a body that is towed, or held in a stream, at constant speed.
-pub const STEADY: &str = "steady";
-/// The method of a wagon that a hanging weight pulls.
-pub const WEIGHT_TOW: &str = "weight_tow";
-/// The method of a body that is towed up to speed and down again.
-pub const ACCELERATED_TOW: &str = "accelerated_tow";
-/// The method of a body that is let go and swings out.
-pub const FREE_DECAY: &str = "free_decay";
 
 /// What hangs on the strut of a run, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

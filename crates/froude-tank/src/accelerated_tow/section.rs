@@ -14,10 +14,11 @@
 //! steady       = "4 s"
 //! ```
 
+use crate::names::ACCELERATED_TOW;
 use froude_identify::declare::ByConfiguration;
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Source};
-use froude_records::run::{ACCELERATED_TOW, Declared, declared};
+use froude_records::run::{Declared, declared};
 use froude_records::section::Section;
 use froude_records::section_values::{Asks, MOST_RUNS, at_most, configurations, count, one_of, series};
 use froude_records::units::Dimension;

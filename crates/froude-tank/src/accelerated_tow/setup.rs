@@ -1,8 +1,9 @@
 //! What a campaign declares of an accelerated tow: body, rig and water.
 
+use crate::names::ACCELERATED_TOW;
 use froude_identify::method::MethodError;
 use froude_records::campaign::{Campaign, Source};
-use froude_records::run::{ACCELERATED_TOW, Declared};
+use froude_records::run::Declared;
 
 use super::section::{self, AcceleratedTowSpec};
 use crate::declared::{gain as gain_of, needed};

@@ -3,12 +3,13 @@
 //! What is declared with an uncertainty is drawn once for the campaign, about what is declared: masses, delay, the gains of force and motion. Each run
 //! has a zero of its own.
 
+use crate::names::ACCELERATED_TOW;
 use froude_identify::dataset::{Dataset, distinct};
 use froude_identify::law::ForceLaw;
 use froude_identify::method::{Export, MethodError};
 use froude_identify::simulate::truth;
 use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
-use froude_records::run::{ACCELERATED_TOW, Role};
+use froude_records::run::Role;
 use froude_rig::accelerated_tow::{AcceleratedTrace, Profile, accelerated};
 
 use super::law::{Channels, data, names, with_acceleration};
@@ -120,6 +121,7 @@ impl Truths {
         let refuse = |what: String| undeclared("[simulate]", what);
         let mut own = campaign.clone();
         own.sources = vec![source.clone()];
+        own.simulate.iter_mut().for_each(|simulate| simulate.stated.retain(|stated| stated.coefficient != added));
         let Some(Truth::Coefficients { values, .. }) = own.simulate.as_mut().map(|s| &mut s.truth) else {
             return Err(refuse(format!(
                 "the twin of {ACCELERATED_TOW} needs seed, model, and the true coefficients of drag and {added} in [simulate.coefficients]"

@@ -1,5 +1,6 @@
 //! Accelerated tows as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
+use crate::names::ACCELERATED_TOW;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::reduce::Observations;
 use froude_identify::regression::Scatter;
@@ -8,7 +9,7 @@ use froude_identify::source::{Asked, identify_laws};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::Derived;
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{ACCELERATED_TOW, Role};
+use froude_records::run::Role;
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
@@ -42,6 +43,7 @@ pub const ACCELERATED: TankMethod = TankMethod {
         Need { is_optional: true, is_observed: false, ..Need::of(&["dry_air"], &["force"]) },
     ],
     runs: ACCELERATED_TOW,
+    takes: &[ACCELERATED_TOW, "models", "uncertainty", "plan"],
     identify: |campaign, source, _, progress| identify(campaign, source, progress),
     simulate: simulate::files,
     plan: plan::prospect,

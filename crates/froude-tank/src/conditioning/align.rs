@@ -7,13 +7,14 @@
 //! f is the frequency of the motion where the method is one of a periodic motion, else 0. Channels whose stamps moved are read at the rows of the log by a
 //! cubic spline; rows for which one of them has no data are cut off, never extrapolated.
 
+use crate::names::{ACCELERATED_TOW, STEADY, WEIGHT_TOW};
 use froude_identify::method::MethodError;
 use froude_records::number::{percent, plain, significant};
+use froude_records::run::LOG;
 use froude_records::run::clocks::{Clock, is_own};
 use froude_records::run::marks::{Mark, SegmentKind};
 use froude_records::run::sensor::Filter;
 use froude_records::run::step::Step;
-use froude_records::run::{EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, LOG, ROTATION};
 use froude_records::text::counted;
 use froude_signal::analogue::Analogue;
 use froude_signal::harmonic::Harmonics;
@@ -25,10 +26,10 @@ use crate::extremes::Extremes;
 use crate::findings::warning;
 use crate::log::TankLog;
 
-/// Methods of a periodic motion.
-const PERIODIC: [&str; 4] = [FORCED_OSCILLATION, FREE_DECAY, ROTATION, EXCITED_RESPONSE];
+/// Methods whose motion is not periodic.
+const APERIODIC: [&str; 3] = [STEADY, WEIGHT_TOW, ACCELERATED_TOW];
 /// Channels that show the motion, the first that is there.
-const MOTION: [&str; 5] = ["reference", "angle", "position", "y/position", "heave"];
+const MOTION: [&str; 6] = ["reference", "sway", "angle", "position", "y/position", "heave"];
 /// A filter that takes more than this part of the signal is said.
 const TAKES: f64 = 0.01;
 /// Fewest rows that are left.
@@ -39,7 +40,7 @@ pub type Stamps = IndexMap<String, Vec<f64>>;
 
 /// The frequency of the motion, Hz; 0 where it has none.
 fn frequency_hz(run: &TankLog, method: &str) -> f64 {
-    if !PERIODIC.contains(&method) {
+    if APERIODIC.contains(&method) {
         return 0.0;
     }
     let motion = MOTION.iter().find_map(|name| run.log.channels.get(*name));

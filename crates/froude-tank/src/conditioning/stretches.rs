@@ -4,16 +4,17 @@ use std::ops::Range;
 
 use crate::findings::warning;
 use crate::log::TankLog;
+use crate::names::{EXCITED_RESPONSE, FREE_DECAY};
 use froude_identify::method::MethodError;
 use froude_records::finding::Finding;
 use froude_records::number::plain;
+use froude_records::run::RunLog;
 use froude_records::run::marks::{Mark, Segment, SegmentKind};
 use froude_records::run::step::Step;
-use froude_records::run::{ACCELERATED_TOW, FORCED_OSCILLATION, ROTATION, RunLog, STEADY, WEIGHT_TOW};
 use froude_records::text::counted;
 
-/// Methods whose windows leave marks out themselves; of the others a log is cut to its longest stretch without one.
-pub const MARK_AWARE: [&str; 5] = [STEADY, FORCED_OSCILLATION, ROTATION, WEIGHT_TOW, ACCELERATED_TOW];
+/// Methods whose windows do not leave marks out themselves: a log is cut to its longest stretch without one.
+pub const MARK_UNAWARE: [&str; 2] = [FREE_DECAY, EXCITED_RESPONSE];
 /// Fewest samples that are a log.
 const FEWEST: usize = 4;
 
@@ -68,7 +69,7 @@ pub fn cut(run: &mut TankLog, method: &str) -> Result<(), MethodError> {
         })
         .collect();
     run.done.extend(steps);
-    if MARK_AWARE.contains(&method) || run.declared.marks.is_empty() {
+    if !MARK_UNAWARE.contains(&method) || run.declared.marks.is_empty() {
         return Ok(());
     }
     let n = run.log.time_s.len();

@@ -3,9 +3,10 @@
 //! Inertia and restoring force are drawn once for the campaign, about what is declared. Each release has a zero of its own.
 
 use crate::decay::axis::Motion;
+use crate::names::FREE_DECAY;
 use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, SensorSpec, Truth};
-use froude_records::run::{FREE_DECAY, Role};
+use froude_records::run::Role;
 use froude_rig::decay::{DecayRig, DecaySensor, Release};
 
 use super::record::LAW;

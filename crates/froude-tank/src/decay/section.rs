@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 use crate::decay::axis::Motion;
 use froude_records::RecordError;
 use froude_records::campaign::Source;
-use froude_records::run::{FREE_DECAY, positive_declared};
+use froude_records::run::positive_declared;
 use froude_records::section::{Section, found};
 use froude_records::section_values::{Asks, MOST_RUNS, at_most, count, one_of, series};
 use froude_records::units::Dimension;
@@ -120,7 +120,9 @@ fn restoring(s: &Section<'_>, axis: Motion) -> Result<Restoring, RecordError> {
 ///
 /// [`RecordError`] with its place.
 pub fn plan(source: &Source) -> Result<Vec<DecayPlan>, RecordError> {
-    runs_of(source, FREE_DECAY, block, |p| {
+    // Both reductions plan alike.
+    let method = source.methods.iter().find(|method| method.starts_with("decay")).map_or("", String::as_str);
+    runs_of(source, method, block, |p| {
         let count = p.displacement.len() * p.repeats;
         Asks { count, samples: count as f64 * (p.held_s + p.free_s) * p.rate_hz }
     })

@@ -15,13 +15,14 @@ use crate::log::TankLog;
 use crate::logs::{self, Logs};
 use crate::long_logs::Reading;
 use crate::method::TankMethod;
+use crate::names::FREE_DECAY;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::runs::{recorded_in, refuse_others};
 use froude_records::block::{Section, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::Severity;
 use froude_records::page::{ChartPanel, Mark};
-use froude_records::run::{Channel, FREE_DECAY, Role};
+use froude_records::run::{Channel, Role};
 use froude_records::units::Dimension;
 
 /// Their names.
@@ -40,6 +41,7 @@ pub const DECAY: TankMethod = TankMethod {
     words: &[DecayMethod::ALL[0].words(), DecayMethod::ALL[1].words()],
     needs: &[Need::of(&[RELEASE], &[])],
     runs: FREE_DECAY,
+    takes: &["plan", "decay"],
     identify,
     simulate: |campaign, source| {
         let (setup, blocks) = planning(source)?;

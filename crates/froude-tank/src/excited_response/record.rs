@@ -1,12 +1,12 @@
 //! What the runs of one wave give, as an estimate: a law of that frequency alone, whose name says it, so that only estimates of one period are compared.
 
+use crate::names::EXCITED_RESPONSE;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{
     Clusters, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, NamedCorrelation, Output, Range, ReferencePoint,
     Status, TypeA,
 };
 use froude_records::number;
-use froude_records::run::EXCITED_RESPONSE;
 use indexmap::IndexMap;
 
 use super::coefficients::{AtPeriod, NAMES, UNITS};

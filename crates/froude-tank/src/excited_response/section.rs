@@ -18,10 +18,11 @@
 //! ```
 
 use crate::decay::axis::Motion;
+use crate::names::EXCITED_RESPONSE;
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::campaign::Source;
-use froude_records::run::{Declared, EXCITED_RESPONSE, declared};
+use froude_records::run::{Declared, declared};
 use froude_records::section::Section;
 use froude_records::section_values::{Asks, MOST_RUNS, at_most, count, one_of, series};
 use froude_records::units::Dimension;

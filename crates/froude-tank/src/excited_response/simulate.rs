@@ -4,9 +4,10 @@
 
 use std::f64::consts::TAU;
 
+use crate::names::EXCITED_RESPONSE;
 use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, SensorSpec, Source};
-use froude_records::run::{EXCITED_RESPONSE, Role};
+use froude_records::run::Role;
 use froude_rig::excited_response::{WaveReadings, WaveRig, WaveTrace};
 use froude_rig::steady::Reading;
 

@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
+use crate::names::EXCITED_RESPONSE;
 use froude_identify::answer::Made;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_records::campaign::{Campaign, Source};
-use froude_records::run::{Channel, EXCITED_RESPONSE, Role};
+use froude_records::run::{Channel, Role};
 use froude_records::units::Dimension;
 
 use super::section::setup_of;
@@ -26,6 +27,7 @@ pub const EXCITED: TankMethod = TankMethod {
     words: &[WORDS],
     needs: &[Need::of(&["held"], &[REFERENCE, FORCE]), Need::of(&["free"], &[REFERENCE])],
     runs: EXCITED_RESPONSE,
+    takes: &[EXCITED_RESPONSE, "uncertainty", "plan"],
     identify: |campaign, source, _, progress| identify(campaign, source, progress),
     simulate: simulate::files,
     plan: plan::prospect,

@@ -29,8 +29,8 @@ use crate::inverted::inverted;
 impl<E: Equation> Problem<'_, E> {
     /// Fits all runs together.
     pub(crate) fn fit(&self) -> Result<JointFit, TankError> {
-        let Solved { beta, by_run, effective } = self.solve()?;
-        let condensed = self.condense(&beta, by_run, true)?;
+        let Solved { beta, by_run, effective, weights } = self.solve()?;
+        let condensed = self.condense(&beta, &weights, by_run, true)?;
         let fit = self.least_squares(&condensed, effective, false, &beta, None).map_err(|e| self.refused(e))?;
         let p = self.names.len();
         let mut errors = Vec::new();
@@ -65,9 +65,11 @@ impl<E: Equation> Problem<'_, E> {
         });
         let dof = at_equal.iter().map(|a| a.dof).collect();
         let first = Part { shared: by, dof, ..part(&format!("scatter from {by} to {by}"), Kind::A, scatter, 0.0) };
-        let between = (!by_run).then(|| self.between_runs(&condensed.problem, &fit)).flatten();
-        let has_runs = by_run || between.is_some();
-        let first = between.map_or_else(|| first.clone(), |between| together(&first, &between));
+        let groups = if by_run { &[][..] } else { self.varying.as_slice() };
+        let between: Vec<Option<Part>> =
+            groups.iter().map(|group| self.between_runs(&condensed.problem, &fit, group)).collect();
+        let has_runs = by_run || (!between.is_empty() && between.iter().all(Option::is_some));
+        let first = between.iter().flatten().fold(first, |all, between| together(&all, between));
         let parts: Vec<Part> = std::iter::once(first).chain(declared).collect();
         let unknowns = (self.names.iter().zip(&fit.coefficients).enumerate())
             .map(|(j, ((name, unit), c))| Unknown {
@@ -79,40 +81,37 @@ impl<E: Equation> Problem<'_, E> {
             })
             .collect();
         let fitted = self.fitted(&values(&fit))?;
-        let squares: f64 = fitted.iter().map(|f| f.used as f64 * f.residual_rms.powi(2)).sum();
-        let samples = self.samples();
         Ok(JointFit {
             law: self.law.clone(),
             unknowns,
             parts,
             errors,
+            sigma: self.sigma(&fitted),
             fitted,
             by,
             has_runs,
             clusters,
             is_scaled,
-            samples,
+            samples: self.samples(),
             effective,
-            sigma: (squares / samples as f64).sqrt(),
             delay_s: self.delay_s(&values(&fit)),
         })
     }
 
-    /// What the drag changes by from run to run, where their cycles are the clusters; `None` of too few runs.
-    fn between_runs(&self, problem: &ls::Problem, fit: &ls::Fit) -> Option<Part> {
+    /// What the load of some unknowns changes by from run to run, where their cycles are the clusters; `None` of too few runs.
+    fn between_runs(&self, problem: &ls::Problem, fit: &ls::Fit, varying: &[usize]) -> Option<Part> {
         let of_cycle: Vec<usize> =
             self.runs.iter().enumerate().flat_map(|(r, run)| vec![r; run.motion.cycles.len()]).collect();
         let of_row: Vec<usize> = problem.cluster.as_deref()?.iter().map(|cycle| of_cycle[*cycle]).collect();
         let (beta, n) = (unbounded(fit), problem.n_rows());
-        let sum = |i: usize, columns: std::ops::Range<usize>| -> f64 {
-            columns.map(|j| problem.design[(i, j)] * beta[j]).sum()
-        };
-        let part_of_run = |r: usize| -> Vec<f64> {
-            (0..n).map(|i| if of_row[i] == r { sum(i, self.bounded.clone()) } else { 0.0 }).collect()
-        };
+        let sum =
+            |i: usize, columns: &[usize]| -> f64 { columns.iter().map(|&j| problem.design[(i, j)] * beta[j]).sum() };
+        let all: Vec<usize> = (0..beta.len()).collect();
+        let part_of_run =
+            |r: usize| -> Vec<f64> { (0..n).map(|i| if of_row[i] == r { sum(i, varying) } else { 0.0 }).collect() };
         let parts: Vec<Vec<f64>> =
             (0..self.runs.len()).map(part_of_run).filter(|c| c.iter().any(|x| *x != 0.0)).collect();
-        let left: Vec<f64> = (0..n).map(|i| problem.response[i] - sum(i, 0..beta.len())).collect();
+        let left: Vec<f64> = (0..n).map(|i| problem.response[i] - sum(i, &all)).collect();
         // Held coefficients explain no part of a load, and priors pull towards zero.
         let held = self.held().into_iter().map(|(j, _)| j);
         let about_zero = |(_, prior): (String, ls::Prior)| ls::Prior { value: 0.0, ..prior };
@@ -172,7 +171,11 @@ fn together(first: &Part, other: &Part) -> Part {
     let variances = |j: usize| [(first, j), (other, j)].map(|(part, j)| (part.covariance[(j, j)], part.dof[j]));
     let p = first.dof.len();
     Part {
-        name: format!("{}{}", first.name, other.name),
+        name: if first.name.ends_with(&other.name) {
+            first.name.clone()
+        } else {
+            format!("{}{}", first.name, other.name)
+        },
         covariance: &first.covariance + &other.covariance,
         dof: (0..p).map(|j| effective_dof(&variances(j))).collect(),
         ..first.clone()

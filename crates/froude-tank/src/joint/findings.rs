@@ -6,8 +6,10 @@ use froude_fit::distribution::t_two_sided;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::text::counted;
+use froude_records::units::parse_unit;
 
 use super::{Fitted, JointFit, Run};
+use crate::channel::Channel;
 use crate::findings::warning;
 use crate::motion::{Cycles, Motion};
 
@@ -21,7 +23,9 @@ const ALARM: f64 = 0.004;
 const REPEATED: f64 = 0.6;
 
 /// A motion that is not the same from cycle to cycle, or not of the harmonics that it was fitted by.
-pub(crate) fn of_motion(id: &str, motion: &Motion, cycles: Cycles, harmonics: usize) -> Vec<Finding> {
+pub(crate) fn of_motion(id: &str, motion: &Motion, of: &Channel, cycles: Cycles, harmonics: usize) -> Vec<Finding> {
+    let Channel { name, shown: unit, .. } = of;
+    let shown = |si: f64| parse_unit(unit).map_or(si, |unit| unit.from_si(si));
     let mut out = Vec::new();
     out.extend((motion.dropped > 0).then(|| {
         warning(
@@ -34,32 +38,32 @@ pub(crate) fn of_motion(id: &str, motion: &Motion, cycles: Cycles, harmonics: us
             ),
         )
     }));
-    let mean = motion.amplitudes_rad.iter().sum::<f64>() / motion.amplitudes_rad.len() as f64;
+    let mean = motion.amplitudes.iter().sum::<f64>() / motion.amplitudes.len() as f64;
     let off = |a: &f64| (a / mean - 1.0).abs();
-    let worst = (0..motion.amplitudes_rad.len())
-        .max_by(|&a, &b| off(&motion.amplitudes_rad[a]).total_cmp(&off(&motion.amplitudes_rad[b])));
-    if let Some(cycle) = worst.filter(|&c| off(&motion.amplitudes_rad[c]) > STEADY) {
+    let worst =
+        (0..motion.amplitudes.len()).max_by(|&a, &b| off(&motion.amplitudes[a]).total_cmp(&off(&motion.amplitudes[b])));
+    if let Some(cycle) = worst.filter(|&c| off(&motion.amplitudes[c]) > STEADY) {
         out.push(warning(
             "cycles-not-alike",
             format!(
-                "run {:?}: cycle {} swings {:.2} deg where the mean is {:.2} deg; leave out more cycles of start-up (cycles.skip), or look at the servo",
+                "run {:?}: cycle {} has an amplitude of {:.2} {unit} where the mean is {:.2} {unit}; leave out more cycles of start-up (cycles.skip), or check the servo",
                 id,
                 motion.numbers[cycle] + 1 + cycles.skip,
-                motion.amplitudes_rad[cycle].to_degrees(),
-                mean.to_degrees()
+                shown(motion.amplitudes[cycle]),
+                shown(mean)
             ),
         ));
     }
     let highest = (1..=harmonics).map(|k| motion.angle.amplitude(k)).fold(0.0, f64::max);
     if motion.angle.residual_std > 0.02 * highest {
         out.push(warning(
-            "angle-not-periodic",
+            &format!("{name}-not-periodic"),
             format!(
-                "run {:?}: {} harmonics leave {:.3} deg of the angle, {:.1} % of its amplitude; velocity and acceleration are those of the harmonics alone: take more of \
-                 them, or a steadier part",
+                "run {:?}: {} harmonics leave {:.3} {unit} of the {name}, {:.1} % of its amplitude; velocity and acceleration come from the harmonics alone: raise \
+                 `harmonics`, or use a steadier part",
                 id,
                 harmonics,
-                motion.angle.residual_std.to_degrees(),
+                shown(motion.angle.residual_std),
                 1e2 * motion.angle.residual_std / highest
             ),
         ));
@@ -74,13 +78,12 @@ pub(crate) fn are_whole(mut periods: impl Iterator<Item = f64>) -> bool {
 
 /// Part of the residuals' variance that repeats from cycle to cycle; `None` for fewer than two whole cycles. Of independent cycles it is one over
 /// their number.
-fn repeated(run: &Run<'_>, fitted: &Fitted) -> Option<f64> {
-    let motion = run.motion;
+fn repeated(motion: &Motion, load: &[f64], fitted: &Fitted) -> Option<f64> {
     let (first, n) = (motion.samples().start, motion.cycles.len());
     let length = motion.cycles.iter().map(ExactSizeIterator::len).min().filter(|_| n >= 2)?;
     let left = |cycle: usize, i: usize| {
         let row = motion.cycles[cycle].start + i;
-        run.load[row] - fitted.load[row - first]
+        load[row] - fitted.load[row - first]
     };
     let (mut common, mut all) = (0.0, 0.0);
     for i in 0..length {
@@ -91,21 +94,27 @@ fn repeated(run: &Run<'_>, fitted: &Fitted) -> Option<f64> {
     (all > 0.0).then(|| common / all)
 }
 
-/// Residuals that repeat from cycle to cycle; `unit` is that of the load, `means` what it can be.
-pub(crate) fn misfit(fit: &JointFit, runs: &[Run<'_>], unit: &str, means: &str) -> Option<Finding> {
-    let parts: Vec<f64> = runs.iter().zip(&fit.fitted).filter_map(|(run, fitted)| repeated(run, fitted)).collect();
-    let part = parts.iter().sum::<f64>() / parts.len() as f64;
-    (part > REPEATED).then(|| {
-        warning(
-            "misfit-repeats",
-            format!(
-                "{}: {:.0} % of the residuals' variance ({} {unit} rms) repeats from cycle to cycle: it is no noise, but {means}; the intervals count it as far as runs differ in it",
-                fit.law,
-                1e2 * part,
-                number::significant(fit.sigma, 2)
-            ),
-        )
-    })
+/// Residuals of the loads that repeat from cycle to cycle; `means` is what it can be.
+pub(crate) fn misfit(fit: &JointFit, runs: &[Run<'_>], loads: &[Channel], means: &str) -> Vec<Finding> {
+    let one = |(k, load): (usize, &Channel)| {
+        let part_of = |(run, fitted): (&Run<'_>, &Vec<Fitted>)| repeated(run.motion, run.loads[k], &fitted[k]);
+        let parts: Vec<f64> = runs.iter().zip(&fit.fitted).filter_map(part_of).collect();
+        let part = parts.iter().sum::<f64>() / parts.len() as f64;
+        let Channel { name, unit, .. } = load;
+        let of = if loads.len() == 1 { String::new() } else { format!(" of the {name}") };
+        (part > REPEATED).then(|| {
+            warning(
+                "misfit-repeats",
+                format!(
+                    "{}: {:.0} % of the residuals' variance{of} ({} {unit} rms) repeats from cycle to cycle, so it is not noise; possible causes: {means}. The intervals include only the part that differs between runs",
+                    fit.law,
+                    1e2 * part,
+                    number::significant(fit.sigma[k], 2)
+                ),
+            )
+        })
+    };
+    loads.iter().enumerate().filter_map(one).collect()
 }
 
 /// Coefficients that the runs do not determine; `why` says what to do.

@@ -18,7 +18,7 @@ use froude_fit::jackknife::{AtEqualErrors, at_equal_errors};
 use froude_records::campaign::SensorSpec;
 
 use super::conclude::part;
-use super::solve::Columns;
+use super::solve::over_first;
 use super::{Equation, Problem};
 use crate::error::TankError;
 use crate::inverted::inverted;
@@ -46,8 +46,7 @@ impl Forecast {
     pub fn correlation(&self, a: &str, b: &str) -> Option<f64> {
         let at = |name: &str| self.expected.iter().position(|e| e.name == name);
         let (i, j) = (at(a)?, at(b)?);
-        let norm = (self.covariance[(i, i)] * self.covariance[(j, j)]).sqrt();
-        (norm > 0.0).then(|| self.covariance[(i, j)] / norm)
+        super::correlation(&self.covariance, i, j)
     }
 }
 
@@ -56,43 +55,62 @@ pub(crate) fn forecast<E: Equation>(
     problem: &Problem<'_, E>,
     beta: &[f64],
     rates_hz: &[f64],
-    load: Option<&SensorSpec>,
+    sensors: &[Option<&SensorSpec>],
 ) -> Result<Option<Forecast>, TankError> {
-    let sigma = load.and_then(|s| s.noise).unwrap_or(0.0);
-    let correlation_s = load.and_then(|s| s.correlation_s);
+    let sigmas: Vec<f64> = sensors.iter().map(|sensor| sensor.and_then(|s| s.noise).unwrap_or(0.0)).collect();
+    let keep = |load: usize, rate_hz: f64| {
+        let correlation_s = sensors[load].and_then(|s| s.correlation_s);
+        correlation_s.map_or(0.0, |time| (-1.0 / (rate_hz * time)).exp())
+    };
+    let tau_of = |load: usize| {
+        let of_rate = |rate_hz: &f64| (1.0 + keep(load, *rate_hz)) / (1.0 - keep(load, *rate_hz));
+        rates_hz.iter().map(of_rate).fold(1.0, f64::max)
+    };
+    let taus: Vec<f64> = (0..sensors.len()).map(tau_of).collect();
+    let sizes: Vec<f64> = sigmas.iter().zip(&taus).map(|(sigma, tau)| sigma * tau.sqrt()).collect();
+    let (weights, zeros) = (over_first(&sizes), sensors.len());
     let (held, excluded) = (problem.held(), problem.excluded());
     let is_free = |j: &usize| !excluded.contains(j) && held.iter().all(|(k, _)| k != j);
     let free: Vec<usize> = (0..problem.names.len()).filter(is_free).collect();
     let (p, q) = (free.len(), problem.inputs.len());
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (mut gram, mut noise, mut errors) = (Mat::<f64>::zeros(p, p), Mat::<f64>::zeros(p, p), Mat::<f64>::zeros(p, q));
-    let mut tau = 1.0_f64;
     let mut cycles = Vec::new();
     for (r, run) in problem.runs.iter().enumerate() {
-        let Columns { regressors, errors: moved, .. } = problem.columns(r, run.motion.samples(), beta, true)?;
-        let raw: Vec<&[f64]> = free.iter().map(|&j| regressors[j].as_slice()).collect();
-        let regressors: Vec<Vec<f64>> = raw.iter().map(|x| about_mean(x.to_vec())).collect();
-        let keep = correlation_s.map_or(0.0, |time| (-1.0 / (rates_hz[r] * time)).exp());
-        tau = tau.max((1.0 + keep) / (1.0 - keep));
-        let smoothed: Vec<Vec<f64>> = regressors.iter().map(|x| correlated(x, keep)).collect();
-        for i in 0..p {
-            for j in 0..p {
-                gram[(i, j)] += dot(&regressors[i], &regressors[j]);
-                noise[(i, j)] += sigma * sigma * dot(&regressors[i], &smoothed[j]);
-            }
-            for (k, column) in moved.iter().enumerate() {
-                errors[(i, k)] += dot(&regressors[i], column);
-            }
-        }
         let first = run.motion.samples().start;
-        for rows in &run.motion.cycles {
-            let (rows, ones) = (rows.start - first..rows.end - first, vec![1.0; rows.len()]);
-            let column = |i: usize| raw.get(i).map_or(&ones[..], |x| &x[rows.clone()]);
-            cycles.push((r, Mat::from_fn(p + 1, p + 1, |i, j| dot(column(i), column(j)))));
+        let mut of_cycles = vec![Mat::<f64>::zeros(p + zeros, p + zeros); run.motion.cycles.len()];
+        for (l, columns) in problem.columns(r, run.motion.samples(), beta, true)?.into_iter().enumerate() {
+            let weighed = |x: &[f64]| x.iter().map(|x| weights[l] * x).collect::<Vec<f64>>();
+            let raw: Vec<Vec<f64>> = free.iter().map(|&j| weighed(&columns.regressors[j])).collect();
+            let moved: Vec<Vec<f64>> = columns.errors.iter().map(|x| weighed(x)).collect();
+            let regressors: Vec<Vec<f64>> = raw.iter().map(|x| about_mean(x.clone())).collect();
+            let keep = keep(l, rates_hz[r]);
+            let smoothed: Vec<Vec<f64>> = regressors.iter().map(|x| correlated(x, keep)).collect();
+            let size = weights[l] * sigmas[l];
+            for i in 0..p {
+                for j in 0..p {
+                    gram[(i, j)] += dot(&regressors[i], &regressors[j]);
+                    noise[(i, j)] += size * size * dot(&regressors[i], &smoothed[j]);
+                }
+                for (k, column) in moved.iter().enumerate() {
+                    errors[(i, k)] += dot(&regressors[i], column);
+                }
+            }
+            for (rows, sums) in run.motion.cycles.iter().zip(&mut of_cycles) {
+                let (rows, ones) = (rows.start - first..rows.end - first, vec![weights[l]; rows.len()]);
+                let column = |i: usize| raw.get(i).map_or(&ones[..], |x| &x[rows.clone()]);
+                let at = |i: usize| if i < p { i } else { p + l };
+                for i in 0..=p {
+                    for j in 0..=p {
+                        sums[(at(i), at(j))] += dot(column(i), column(j));
+                    }
+                }
+            }
         }
+        cycles.extend(of_cycles.into_iter().map(|sums| (r, sums)));
     }
     // As the fit weighs them; without noise nothing is left to weigh against what is declared.
-    let variance = (sigma * sigma * tau).max(NO_NOISE);
+    let variance = (0..zeros).map(|k| (weights[k] * sigmas[k]).powi(2) * taus[k]).fold(NO_NOISE, f64::max);
     let mut priors = problem.known();
     for (_, prior) in &mut priors {
         // What is held is no prior any more, so that each stands among the free.
@@ -145,11 +163,12 @@ pub(crate) fn total(parts: &[Part], n: usize) -> Mat<f64> {
     Mat::from_fn(n, n, |i, j| parts.iter().map(|part| part.covariance[(i, j)]).sum())
 }
 
-/// Sums of the runs about their zero, of those of their cycles, each with the run's number and a last column of ones.
+/// Normal matrix of each run with its zeros eliminated, from those of its cycles: each has its run's number and, at the end, a column of ones for each load.
 fn of_runs(cycles: &[(usize, Mat<f64>)], p: usize) -> Vec<Mat<f64>> {
     let of_run = |cycles: &[(usize, Mat<f64>)]| {
         let sum = |i: usize, j: usize| cycles.iter().map(|(_, k)| k[(i, j)]).sum::<f64>();
-        Mat::from_fn(p, p, |i, j| sum(i, j) - sum(i, p) * sum(p, j) / sum(p, p))
+        let zeros = || p..cycles[0].1.nrows();
+        Mat::from_fn(p, p, |i, j| sum(i, j) - zeros().map(|z| sum(i, z) * sum(z, j) / sum(z, z)).sum::<f64>())
     };
     cycles.chunk_by(|(a, _), (b, _)| a == b).map(of_run).collect()
 }
@@ -157,13 +176,16 @@ fn of_runs(cycles: &[(usize, Mat<f64>)], p: usize) -> Vec<Mat<f64>> {
 /// CR3 by cycles at equal errors: each run's zero is a column beside.
 fn of_cycles(cycles: &[(usize, Mat<f64>)], weight: &[f64]) -> Option<Vec<AtEqualErrors>> {
     let p = weight.len();
-    let runs = cycles.last()?.0 + 1;
+    let (last, sums) = cycles.last()?;
+    let zeros = sums.nrows() - p;
+    let all = (last + 1) * zeros;
     let placed = |(r, k): &(usize, Mat<f64>)| {
-        let at = |i: usize| if i < p { Some(i) } else { (i == p + r).then_some(p) };
-        Mat::from_fn(p + runs, p + runs, |i, j| at(i).zip(at(j)).map_or(0.0, |(i, j)| k[(i, j)]))
+        let of_run = p + r * zeros..p + (r + 1) * zeros;
+        let at = |i: usize| if i < p { Some(i) } else { of_run.contains(&i).then(|| p + i - of_run.start) };
+        Mat::from_fn(p + all, p + all, |i, j| at(i).zip(at(j)).map_or(0.0, |(i, j)| k[(i, j)]))
     };
     let grams: Vec<Mat<f64>> = cycles.iter().map(placed).collect();
-    at_equal_errors(&grams, &[weight, &vec![0.0; runs]].concat(), p)
+    at_equal_errors(&grams, &[weight, &vec![0.0; all]].concat(), p)
 }
 
 fn about_mean(mut column: Vec<f64>) -> Vec<f64> {

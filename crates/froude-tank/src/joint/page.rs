@@ -1,27 +1,16 @@
 //! The parts of a page that follow from a joint fit alone: coefficients, budget, load as measured and as fitted, spectrum of what is left.
 
-use froude_records::block::{Block, Digits, ResultColumn, ResultTable, Section, TableBuilder};
+use froude_records::block::{Block, ResultColumn, ResultTable, Section, TableBuilder};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark};
 
 use super::{Fitted, JointFit, Run, Unknown};
+use crate::channel::Channel;
 use crate::drawn::{self, first_of, over_time, series};
 use crate::residual_spectrum::{self, Left};
 
 /// Runs that are drawn; more would be a page of the same.
 const DRAWN: usize = 6;
-
-/// What the cell measures.
-pub(crate) struct Load {
-    pub name: &'static str,
-    pub unit: &'static str,
-    /// In the table of runs.
-    pub table_unit: &'static str,
-    /// At the end of keys.
-    pub key: &'static str,
-    /// Of its zero.
-    pub digits: Digits,
-}
 
 /// A run with its times, s.
 pub(crate) type Timed<'a> = (Run<'a>, &'a [f64]);
@@ -30,12 +19,13 @@ pub(crate) type Timed<'a> = (Run<'a>, &'a [f64]);
 pub(crate) fn section(
     fit: &JointFit,
     runs: &[Timed<'_>],
-    load: &Load,
+    (motion, cells): (&Channel, &[Channel]),
     said: String,
     mounted: Vec<ResultColumn>,
 ) -> Section {
-    let tables = [table(fit, runs, load, mounted), budget(fit)].map(Block::from);
-    let charts = std::iter::once(loads(fit, runs, load)).chain(spectrum(fit, runs, load)).map(Block::from);
+    let tables = [table(fit, runs, (motion, cells), mounted), budget(fit)].map(Block::from);
+    let of_load = |(k, load)| std::iter::once(loads(fit, runs, (k, load))).chain(spectrum(fit, runs, (k, load)));
+    let charts = cells.iter().enumerate().flat_map(of_load).map(Block::from);
     Section::new("Runs and fit", std::iter::once(Block::words([said])).chain(tables).chain(charts))
 }
 
@@ -60,26 +50,48 @@ pub(crate) fn coefficients(fit: &JointFit, law: &str) -> ResultTable {
 }
 
 /// Each run as it was used.
-fn table(fit: &JointFit, runs: &[Timed<'_>], load: &Load, mounted: Vec<ResultColumn>) -> ResultTable {
-    let Load { name, table_unit: unit, key, digits, .. } = load;
-    let name = name.to_lowercase();
+fn table(
+    fit: &JointFit,
+    runs: &[Timed<'_>],
+    (moved, cells): (&Channel, &[Channel]),
+    mounted: Vec<ResultColumn>,
+) -> ResultTable {
     let rows: Vec<_> = runs.iter().map(|(run, time_s)| (run, run.motion, time_s)).zip(&fit.fitted).collect();
     let t = TableBuilder::new("runs", "Each run as it was used.", &rows);
-    let zero = t.number(&format!("zero_{key}"), &format!("zero of the {name} [{unit}]"), |(_, fitted)| fitted.zero);
-    let (rms_key, rms) = (format!("residual_rms_{key}"), format!("residual of the {name}, rms [{unit}]"));
+    let Channel { name, unit, shown, .. } = moved;
     let used = [
-        t.number("amplitude_rad", "amplitude [deg]", |((_, motion, _), _)| motion.angle.amplitude(1)).plain(3),
+        t.number(&format!("amplitude_{unit}"), &format!("amplitude [{shown}]"), |((_, motion, _), _)| {
+            motion.angle.amplitude(1)
+        })
+        .plain(3),
         t.number("period_s", "period [s]", |((_, motion, _), _)| motion.angle.period_s()).plain(4),
         t.number("periods", "periods used", |((_, motion, time_s), _)| motion.periods(time_s)).plain(3),
-        t.number("residual_angle_rad", "residual of the angle [deg]", |((_, motion, _), _)| motion.angle.residual_std)
-            .significant(2),
-        ResultColumn { digits: *digits, ..zero },
-        t.number(&rms_key, &rms, |(_, fitted)| fitted.residual_rms).significant(2),
-        t.number("correlation_samples", "correlation time τ [samples]", |(_, fitted)| fitted.correlation)
-            .significant(2),
+        t.number(
+            &format!("residual_{name}_{unit}"),
+            &format!("residual of the {name} [{shown}]"),
+            |((_, motion, _), _)| motion.angle.residual_std,
+        )
+        .significant(2),
     ];
+    let of_load = |(k, load): (usize, &Channel)| {
+        let Channel { name, shown: unit, digits, .. } = load;
+        let key = if cells.len() == 1 { load.key() } else { format!("{name}_{}", load.key()) };
+        let zero = t.number(&format!("zero_{key}"), &format!("zero of the {name} [{unit}]"), |(_, f)| f[k].zero);
+        let (rms_key, rms) = (format!("residual_rms_{key}"), format!("residual of the {name}, rms [{unit}]"));
+        let correlated = if cells.len() == 1 { String::new() } else { format!(" of the {name}") };
+        let (tau_key, tau) = (
+            format!("correlation{}_samples", correlated.replace(" of the ", "_")),
+            format!("correlation time τ{correlated} [samples]"),
+        );
+        [
+            ResultColumn { digits: *digits, ..zero },
+            t.number(&rms_key, &rms, |(_, f)| f[k].residual_rms).significant(2),
+            t.number(&tau_key, &tau, |(_, f)| f[k].correlation).significant(2),
+        ]
+    };
+    let of_loads = cells.iter().enumerate().flat_map(of_load);
     let run = t.text("run", "run", |((run, ..), _)| run.id.to_owned());
-    t.build(std::iter::once(run).chain(mounted).chain(used).collect())
+    t.build(std::iter::once(run).chain(mounted).chain(used).chain(of_loads).collect())
 }
 
 /// What costs what: standard uncertainties by error and coefficient.
@@ -97,31 +109,32 @@ fn budget(fit: &JointFit) -> ResultTable {
     t.build(std::iter::once(t.text("error", "error (type)", |(name, _)| name.clone())).chain(each).collect())
 }
 
-/// The load in time, as measured and as fitted.
-fn loads(fit: &JointFit, runs: &[Timed<'_>], &Load { name, unit, .. }: &Load) -> Chart {
-    let panel = |((run, time_s), fitted): (&Timed<'_>, &Fitted)| {
+/// A load in time, as measured and as fitted.
+fn loads(fit: &JointFit, runs: &[Timed<'_>], (k, load): (usize, &Channel)) -> Chart {
+    let (name, unit) = (load.title(), load.unit);
+    let panel = |((run, time_s), fitted): (&Timed<'_>, &Vec<Fitted>)| {
         let used = run.motion.samples();
-        let measured = series("measured", Mark::Points, *time_s, run.load);
-        let fitted = series("fitted, where used", Mark::Line, &time_s[used], &fitted.load[..]);
+        let measured = series("measured", Mark::Points, *time_s, run.loads[k]);
+        let fitted = series("fitted, where used", Mark::Line, &time_s[used], &fitted[k].load[..]);
         drawn::panel(format!("{} [{unit}]", run.id), vec![measured, fitted])
     };
     let panels: Vec<ChartPanel> = runs.iter().zip(&fit.fitted).take(DRAWN).map(panel).collect();
     let of = first_of(panels.len(), runs.len());
     let caption = format!("{name} of the rig on the body in {of}the runs, as measured, and the fit where it was used.");
-    over_time([&format!("{}s", name.to_lowercase()), &format!("{name} and fit")], caption, panels)
+    over_time([&format!("{}s", load.name), &format!("{name} and fit")], caption, panels)
 }
 
 /// The spectrum of what the fit leaves.
-fn spectrum(fit: &JointFit, runs: &[Timed<'_>], &Load { name, unit, .. }: &Load) -> Option<Chart> {
+fn spectrum(fit: &JointFit, runs: &[Timed<'_>], (k, load): (usize, &Channel)) -> Option<Chart> {
     let left = runs.iter().zip(&fit.fitted).map(|((run, time_s), fitted)| {
         let (used, first) = (run.motion.longest(), run.motion.samples().start);
-        let values = used.clone().map(|i| run.load[i] - fitted.load[i - first]).collect();
+        let values = used.clone().map(|i| run.loads[k][i] - fitted[k].load[i - first]).collect();
         Left::of(&time_s[used], values)
     });
-    let what = format!("measured less fitted {}", name.to_lowercase());
+    let what = format!("measured less fitted {}", load.name);
     residual_spectrum::chart(
         &left.collect::<Vec<_>>(),
-        (&what, unit),
+        (&what, load.unit),
         "A line at a multiple of the driven frequency is a term that the law lacks; a rise towards low frequencies is slow noise, which the scatter between clusters counts.",
     )
 }

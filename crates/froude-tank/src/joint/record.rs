@@ -9,6 +9,7 @@ use froude_records::number;
 use indexmap::IndexMap;
 
 use super::{DeclaredError, JointFit, Unknown};
+use crate::channel::Channel;
 use crate::motion::Cycles;
 
 /// The coefficients; `is_nuisance` says which of them nobody asked for.
@@ -91,13 +92,18 @@ pub(crate) fn errors(fit: &JointFit, campaign: &Campaign) -> IndexMap<String, Sh
 }
 
 /// The budget of each coefficient, in sentences, and what the samples are worth.
-pub(crate) fn notes(fit: &JointFit, unit: &str) -> Vec<String> {
+pub(crate) fn notes(fit: &JointFit, loads: &[Channel]) -> Vec<String> {
+    let left = |(load, sigma): (&Channel, &f64)| {
+        let of = if loads.len() == 1 { String::new() } else { format!(" of the {}", load.name) };
+        format!("residual{of} {} {}", number::significant(*sigma, 2), load.unit)
+    };
+    let left: Vec<String> = loads.iter().zip(&fit.sigma).map(left).collect();
     let mut out = vec![format!(
-        "{} samples are worth {} (residuals correlated over {} samples); residual {} {unit}",
+        "{} samples are worth {} (residuals correlated over {} samples); {}",
         number::count(fit.samples),
         number::count(fit.effective.round() as usize),
         number::significant(fit.samples as f64 / fit.effective, 2),
-        number::significant(fit.sigma, 2)
+        left.join(", ")
     )];
     let named: Vec<(&str, &str)> = fit.unknowns.iter().map(|u| (u.name.as_str(), u.unit.as_str())).collect();
     out.extend(by_part(&fit.parts, &named, 2));
@@ -115,13 +121,22 @@ pub(crate) fn by_part(parts: &[Part], named: &[(&str, &str)], digits: usize) -> 
     parts.iter().filter(is_there).map(one).collect()
 }
 
-/// What a joint fit did; `load` is what was measured, `held` how the axis lies.
-pub(crate) fn words(fit: &JointFit, cycles: Cycles, harmonics: usize, load: &str, held: &str) -> String {
+/// What a joint fit did; `held` is how the rig stands.
+pub(crate) fn words(
+    fit: &JointFit,
+    cycles: Cycles,
+    harmonics: usize,
+    (motion, loads): (&Channel, &[Channel]),
+    held: &str,
+) -> String {
+    let loads: Vec<&str> = loads.iter().map(|load| load.name).collect();
     let used = cycles.used.map_or_else(|| "all that follow".to_owned(), |n| n.to_string());
     format!(
-        "cycles of each run: {} of start-up left out, {used} used; angle by {harmonics} harmonics of a fitted frequency; motion taken {} ms before the stamp of the {load}; zero of each run \
+        "cycles of each run: {} of start-up left out, {used} used; {} by {harmonics} harmonics of a fitted frequency; motion taken {} ms before the stamp of the {}; zero of each run \
          fitted; {held}",
         cycles.skip,
-        number::plain(1e3 * fit.delay_s, 4)
+        motion.name,
+        number::plain(1e3 * fit.delay_s, 4),
+        loads.join(" and ")
     )
 }

@@ -23,29 +23,15 @@
 
 use std::f64::consts::PI;
 
-use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, combine};
+use froude_fit::budget::Uncertain;
+use froude_hydro::Link;
 
-use super::fit::{LAMBDAS, RotationFit};
-use super::setup::Setup;
-use crate::joint::conclude::part;
+use crate::driven::derived::{Derived, Sum, named};
 
+/// Names of the coefficients of the body.
+pub const LAMBDAS: [&str; 3] = ["lambda_1", "lambda_2", "lambda_3"];
 /// v_ref, m/s.
-const V_REF_M_S: f64 = 1.0;
-
-/// A number that follows from the λs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Derived {
-    /// Its name.
-    pub name: &'static str,
-    /// How, in the names of the record.
-    pub formula: &'static str,
-    /// SI unit text.
-    pub unit: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// Its uncertainty.
-    pub combined: Combined,
-}
+pub(super) const V_REF_M_S: f64 = 1.0;
 
 /// Names of what is derived.
 pub const C_A: &str = "C_A";
@@ -60,57 +46,29 @@ pub const C_F_DIFFERENCE: &str = "C_f_difference";
 /// C_D from λ₃.
 pub const C_D_3: &str = "C_D_from_lambda_3";
 
-/// Everything that follows from the λs; empty where link or density are not declared, without what the runs do not determine.
+/// Everything that follows from the λs of a link; a round section has no C_M, as its printed inertia is zero.
 #[must_use]
-pub fn derived(fit: &RotationFit, setup: &Setup) -> Vec<Derived> {
-    let (Some(link), Some(density)) = (setup.link, setup.density_kg_m3) else { return Vec::new() };
+pub fn sums(link: &Link, density: Uncertain) -> Vec<Sum> {
     let (a, b, l, rho) = (link.major_semi_axis_m, link.minor_semi_axis_m, link.half_length_m, density.value);
     let (l3, l4) = (l.powi(3), l.powi(4));
     let added = 3.0 / (2.0 * rho * PI * a * a * l3);
     let printed = 12.0 / (rho * PI * (a * a - b * b).powi(2) * l3);
     let [friction_2, friction_3] = [6.0 / (rho * PI * (a + b) * l3 * V_REF_M_S), 8.0 / (rho * PI * (a + b) * l4)];
     let across = 2.0 / (rho * a * l4);
-    let all: [(&str, &str, &str, [f64; 3]); 6] = [
-        (C_A, "3*lambda_1/(2*density*pi*a^2*l^3)", "1", [added, 0.0, 0.0]),
-        (C_M, "12*lambda_1/(density*pi*(a^2-b^2)^2*l^3)", "1/m^2", [printed, 0.0, 0.0]),
-        (C_F_2, "6*lambda_2/(density*pi*(a+b)*l^3*v_ref)", "1", [0.0, friction_2, 0.0]),
-        (C_F_3, "8*lambda_3/(density*pi*(a+b)*l^4)", "1", [0.0, 0.0, friction_3]),
-        (C_F_DIFFERENCE, "C_f_from_lambda_2-C_f_from_lambda_3", "1", [0.0, friction_2, -friction_3]),
-        (C_D_3, "2*lambda_3/(density*a*l^4)", "1", [0.0, 0.0, across]),
+    let [l1, l2, l3] = LAMBDAS;
+    let all = [
+        (C_A, "3*lambda_1/(2*density*pi*a^2*l^3)", "1", vec![(l1, added)]),
+        (C_M, "12*lambda_1/(density*pi*(a^2-b^2)^2*l^3)", "1/m^2", vec![(l1, printed)]),
+        (C_F_2, "6*lambda_2/(density*pi*(a+b)*l^3*v_ref)", "1", vec![(l2, friction_2)]),
+        (C_F_3, "8*lambda_3/(density*pi*(a+b)*l^4)", "1", vec![(l3, friction_3)]),
+        (C_F_DIFFERENCE, "C_f_from_lambda_2-C_f_from_lambda_3", "1", vec![(l2, friction_2), (l3, -friction_3)]),
+        (C_D_3, "2*lambda_3/(density*a*l^4)", "1", vec![(l3, across)]),
     ];
-    // A round section has no C_M: its printed inertia is zero.
-    let all = all.into_iter().filter(|(.., factors)| factors.iter().all(|f| f.is_finite()));
-    all.filter_map(|(name, formula, unit, factors)| {
-        let mut value = 0.0;
-        let mut gradient = vec![0.0; fit.unknowns.len()];
-        for (lambda, factor) in LAMBDAS.iter().zip(factors).filter(|(_, factor)| *factor != 0.0) {
-            let j = fit.position(lambda)?;
-            // What is held has no interval, and says nothing that was not declared.
-            fit.unknowns[j].combined?;
-            value += factor * fit.unknowns[j].value?;
-            gradient[j] = factor;
-        }
-        let mut parts: Vec<Part> = fit.parts.iter().map(|p| along(p, &gradient)).collect();
-        // ρ stands below the line of all of them.
-        parts.push(Part::of_one(
-            "density".to_owned(),
-            "campaign",
-            Kind::B,
-            (value * density.relative()).abs(),
-            density.dof,
-        ));
-        Some(Derived { name, formula, unit, value, combined: combine(&parts, 0, OUTSIDE_95) })
-    })
-    .collect()
-}
-
-/// A line of the budget for one sum of coefficients.
-fn along(of: &Part, gradient: &[f64]) -> Part {
-    let n = gradient.len();
-    let variance: f64 =
-        (0..n).map(|i| (0..n).map(|j| gradient[i] * of.covariance[(i, j)] * gradient[j]).sum::<f64>()).sum();
-    let dof = of.dof.first().copied().unwrap_or(f64::INFINITY);
-    part(&of.name, of.kind, froude_fit::faer::Mat::from_fn(1, 1, |_, _| variance.max(0.0)), dof)
+    let is_finite = |factors: &[(&str, f64)]| factors.iter().all(|(_, factor)| factor.is_finite());
+    let all = all.into_iter().filter(|(.., factors)| is_finite(factors));
+    // ρ stands below the line of all of them.
+    let over = Some(("density", density));
+    all.map(|(name, formula, unit, factors)| Sum { name, formula, unit, factors, over }).collect()
 }
 
 /// What λ₃ is of.
@@ -125,12 +83,12 @@ pub struct LawBehind {
     /// E_n of the first two.
     pub e_n: f64,
     /// The verdict.
-    pub law: Law,
+    pub law: Behind,
 }
 
 /// A law that λ₃ may come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Law {
+pub enum Behind {
     /// λ₃ is not told from zero.
     Nothing,
     /// One C_f explains λ₂ and λ₃.
@@ -144,19 +102,19 @@ pub enum Law {
 /// The law behind λ₃; `None` where λ₂ or λ₃ has no uncertainty, or nothing is declared of the link.
 #[must_use]
 pub fn law_behind(derived: &[Derived]) -> Option<LawBehind> {
-    let of = |name: &str| derived.iter().find(|d| d.name == name).map(|d| [d.value, d.combined.arms[1]]);
+    let of = |name: &str| named(derived, name).map(|d| [d.value, d.combined.arms[1]]);
     let (from_lambda_2, from_lambda_3, c_d) = (of(C_F_2)?, of(C_F_3)?, of(C_D_3)?);
     let [difference, half_width] = of(C_F_DIFFERENCE)?;
     let is_open = [from_lambda_2, from_lambda_3].iter().all(|[_, half]| *half > 0.0) && half_width > 0.0;
     let e_n = difference / half_width;
     let law = if from_lambda_3[0].abs() <= from_lambda_3[1] {
-        Law::Nothing
+        Behind::Nothing
     } else if e_n.abs() <= 1.0 {
-        Law::FrictionOrCrossFlow
+        Behind::FrictionOrCrossFlow
     } else if e_n < 0.0 {
-        Law::CrossFlow
+        Behind::CrossFlow
     } else {
-        Law::MoreThanFriction
+        Behind::MoreThanFriction
     };
     is_open.then_some(LawBehind { from_lambda_2, from_lambda_3, c_d, e_n, law })
 }
@@ -175,17 +133,17 @@ impl LawBehind {
         );
         let across = with(self.c_d);
         match self.law {
-            Law::Nothing => format!(
+            Behind::Nothing => format!(
                 "lambda_3 is not told from zero, so that no law can be named behind it: {both}; larger amplitudes or faster motion show it"
             ),
-            Law::FrictionOrCrossFlow => format!(
+            Behind::FrictionOrCrossFlow => format!(
                 "one friction coefficient may explain lambda_2 and lambda_3: {both}; drag across the body would need C_D = {across}. The interval is what decides: narrow it before friction is believed"
             ),
-            Law::CrossFlow => format!(
+            Behind::CrossFlow => format!(
                 "one friction coefficient cannot explain lambda_2 and lambda_3: {both}. As drag across the body lambda_3 has C_D = {across}; where that is of the size of a blunt body's, and C_f larger than a skin friction, use \
                  lambda_3 = density*C_D*a*l^4/2, not the friction integral"
             ),
-            Law::MoreThanFriction => format!(
+            Behind::MoreThanFriction => format!(
                 "one friction coefficient cannot explain lambda_2 and lambda_3: {both}. Something else is linear in the rate: a bearing or seal above the body (subtract a tare), or the drag of slow motion"
             ),
         }
@@ -198,7 +156,10 @@ mod tests {
     use froude_hydro::link_parameters::{LinkCoefficients, LinkParameters, YawDrag, YawInertia};
 
     use super::*;
+    use crate::driven::derived::derived;
+    use crate::joint::conclude::part;
     use crate::joint::{JointFit, Unknown};
+    use froude_fit::budget::{Kind, OUTSIDE_95, combine};
 
     const MAMBA: Link = Link { major_semi_axis_m: 0.0588, minor_semi_axis_m: 0.0394, half_length_m: 0.09 };
     /// Of the f2 model in the circulation tank: C_f^II and C_d^II (USR, Table 9).
@@ -210,7 +171,7 @@ mod tests {
     }
 
     /// A fit with these λs, 1 % standard uncertainty each, λ₂ and λ₃ correlated by `correlation`.
-    fn made(lambdas: [f64; 3], correlation: f64) -> RotationFit {
+    fn made(lambdas: [f64; 3], correlation: f64) -> JointFit {
         let covariance = froude_fit::faer::Mat::from_fn(3, 3, |i, j| {
             let of = |k: usize| 0.01 * lambdas[k];
             let r = if i == j {
@@ -241,15 +202,14 @@ mod tests {
             is_scaled: true,
             samples: 0,
             effective: 0.0,
-            sigma: 0.0,
+            sigma: vec![0.0],
             delay_s: 0.0,
             parts,
         }
     }
 
-    fn setup() -> Setup {
-        let density = froude_fit::budget::Uncertain::new(1025.0, 0.0);
-        Setup { density_kg_m3: Some(density), link: Some(MAMBA), ..Setup::new(None) }
+    fn of(fit: &JointFit) -> Vec<Derived> {
+        derived(fit, &sums(&MAMBA, Uncertain::new(1025.0, 0.0)))
     }
 
     fn value(all: &[Derived], name: &str) -> f64 {
@@ -260,12 +220,12 @@ mod tests {
     #[test]
     fn the_derived_are_the_inverse_of_the_strip_integrals() {
         let strip = parameters(YawInertia::StripTheory, YawDrag::FrictionStrip);
-        let all = derived(&made(strip, 0.0), &setup());
+        let all = of(&made(strip, 0.0));
         for (name, expected) in [(C_A, 1.277), (C_F_2, 0.0544), (C_F_3, 0.0544), (C_F_DIFFERENCE, 0.0)] {
             assert!((value(&all, name) - expected).abs() < 1e-12, "{name}: {}", value(&all, name));
         }
         let printed = parameters(YawInertia::AsPrinted, YawDrag::CrossFlow);
-        let all = derived(&made(printed, 0.0), &setup());
+        let all = of(&made(printed, 0.0));
         for (name, expected) in [(C_M, 1.0), (C_D_3, 1.8601)] {
             assert!((value(&all, name) - expected).abs() < 1e-12, "{name}: {}", value(&all, name));
         }
@@ -282,17 +242,17 @@ mod tests {
         assert!((across / friction - 26.0).abs() < 0.5, "{}", across / friction);
         // λ₂ by friction with λ₃ across the body is what friction cannot explain.
         let lambdas = parameters(YawInertia::StripTheory, YawDrag::FrictionStrip);
-        let mixed = law_behind(&derived(&made([lambdas[0], lambdas[1], across], -0.9), &setup())).unwrap();
-        assert_eq!(mixed.law, Law::CrossFlow);
+        let mixed = law_behind(&of(&made([lambdas[0], lambdas[1], across], -0.9))).unwrap();
+        assert_eq!(mixed.law, Behind::CrossFlow);
         assert!(
             mixed.words().contains("one friction coefficient cannot explain lambda_2 and lambda_3"),
             "{}",
             mixed.words()
         );
-        let same = law_behind(&derived(&made(lambdas, -0.9), &setup())).unwrap();
-        assert_eq!(same.law, Law::FrictionOrCrossFlow);
-        let seal = law_behind(&derived(&made([lambdas[0], 3.0 * lambdas[1], lambdas[2]], -0.9), &setup())).unwrap();
-        assert_eq!(seal.law, Law::MoreThanFriction);
+        let same = law_behind(&of(&made(lambdas, -0.9))).unwrap();
+        assert_eq!(same.law, Behind::FrictionOrCrossFlow);
+        let seal = law_behind(&of(&made([lambdas[0], 3.0 * lambdas[1], lambdas[2]], -0.9))).unwrap();
+        assert_eq!(seal.law, Behind::MoreThanFriction);
     }
 
     /// U² = 1.96² (u₂² + u₃² − 2 r u₂ u₃): a negative correlation widens the difference.
@@ -300,7 +260,7 @@ mod tests {
     fn the_test_counts_the_covariance_of_both() {
         let lambdas = parameters(YawInertia::StripTheory, YawDrag::FrictionStrip);
         for r in [-0.9, 0.0, 0.9] {
-            let all = derived(&made(lambdas, r), &setup());
+            let all = of(&made(lambdas, r));
             let half = all.iter().find(|d| d.name == C_F_DIFFERENCE).unwrap().combined.arms[1];
             let expected = 1.959_964 * 0.01 * 0.0544 * (2.0 - 2.0 * r).sqrt();
             assert!((half / expected - 1.0).abs() < 1e-5, "{r}: {half} {expected}");

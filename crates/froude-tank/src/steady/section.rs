@@ -10,9 +10,9 @@
 //! tow       = { still = "5 s", acceleration = "0.3 m/s^2", steady = "10 s", rate = "100 Hz" }
 //! ```
 
+use crate::names::STEADY;
 use froude_records::RecordError;
 use froude_records::campaign::Source;
-use froude_records::run::STEADY;
 use froude_records::section::Section;
 use froude_records::units::Dimension;
 use froude_rig::steady::Tow;

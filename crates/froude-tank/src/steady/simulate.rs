@@ -5,12 +5,12 @@
 
 use std::cell::RefCell;
 
+use crate::names::STEADY;
 use froude_identify::dataset::Dataset;
 use froude_identify::law::ForceLaw;
 use froude_identify::method::{Export, MethodError};
 use froude_identify::simulate::{planned, truth};
 use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
-use froude_records::run::STEADY;
 use froude_records::units::Dimension;
 use froude_rig::steady::{Tow, TowTrace, tow as towed};
 
@@ -73,8 +73,9 @@ pub struct Plan {
 /// A campaign without water or without truth.
 pub fn plan_of(campaign: &Campaign, source: &Source) -> Result<Plan, MethodError> {
     let mut own = campaign.clone();
-    own.sources = vec![source.clone()];
-    let data = planned(&own, source)?;
+    let source = Source { plan: source.rows()?, ..source.clone() };
+    let data = planned(&own, &source)?;
+    own.sources = vec![source];
     let (law, values) = truth(&own, &data)?;
     Ok(Plan { data, law, values, of_run: Vec::new() })
 }

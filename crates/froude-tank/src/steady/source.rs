@@ -1,14 +1,15 @@
 //! Steady tows as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
+use crate::names::STEADY;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
+use froude_records::run::Role;
 use froude_records::run::marks::SegmentKind;
 use froude_records::run::step::Step;
-use froude_records::run::{Role, STEADY};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
@@ -48,10 +49,15 @@ pub const STEADY_TOW: TankMethod = TankMethod {
         Need { is_optional: true, is_observed: false, ..Need::of(&["still"], &[]) },
     ],
     runs: STEADY,
+    takes: &[STEADY, "models", "uncertainty", "plan", "keep", "group", "tare"],
     identify: |campaign, source, _, progress| identify(campaign, source, progress),
     simulate: simulate::files,
     plan: plan::prospect,
-    check: |source| section::declared(source).map(drop),
+    check: |source| {
+        let is_of_steady = source.methods.iter().any(|method| method == STEADY);
+        section::declared(source)?;
+        if is_of_steady { source.rows().map(drop) } else { Ok(()) }
+    },
 };
 
 fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Result<Found, MethodError> {

@@ -17,9 +17,10 @@
 //! angle  = { start = "3 deg", stop = "39 deg", step = "3 deg" }
 //! ```
 
+use crate::names::WEIGHT_TOW;
 use froude_records::RecordError;
 use froude_records::campaign::{PlanBlock, Source};
-use froude_records::run::{Declared, WEIGHT_TOW, declared};
+use froude_records::run::{Declared, declared};
 use froude_records::section::Section;
 use froude_records::section_values::{Asks, MOST_RUNS, at_most, configurations, count, series};
 use froude_records::units::Dimension;

@@ -3,10 +3,10 @@
 //! Scale, moving mass and friction are drawn about what is declared; a gain of the loads that the campaign shares, and an error of the speed that each
 //! run has for itself (the mark out of its plane), as `[[source.uncertainty]]` states them.
 
+use crate::names::WEIGHT_TOW;
 use froude_identify::method::{Export, MethodError};
 use froude_identify::simulate::{planned, truth};
 use froude_records::campaign::{BudgetEntry, Campaign, PlanBlock, SensorSpec, Shared, Source};
-use froude_records::run::WEIGHT_TOW;
 use froude_records::units::Dimension;
 use froude_rig::steady::Reading;
 use froude_rig::weight_tow::{WeightRig, pull};

@@ -1,5 +1,6 @@
 //! The weight-driven rig as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
+use crate::names::WEIGHT_TOW;
 use froude_identify::method::{Found, MethodError, Need};
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
@@ -7,8 +8,8 @@ use froude_identify::uncertainty::SharedError;
 use froude_records::campaign::{BudgetEntry, Campaign, Shared, Source};
 use froude_records::estimate::ErrorKind;
 use froude_records::finding::Finding;
+use froude_records::run::Role;
 use froude_records::run::step::Step;
-use froude_records::run::{Role, WEIGHT_TOW};
 use froude_records::units::Dimension;
 
 use super::reduce::{ERRORS, Reduced, WeightRun, reduce};
@@ -36,6 +37,7 @@ pub const PULLED: TankMethod = TankMethod {
     ],
     needs: &[Need::of(&["test"], &[])],
     runs: WEIGHT_TOW,
+    takes: &[WEIGHT_TOW, "models", "uncertainty", "plan", "keep", "group", "tare"],
     identify: |campaign, source, _, progress| identify(campaign, source, progress),
     simulate: simulate::files,
     plan: plan::prospect,

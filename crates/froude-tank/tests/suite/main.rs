@@ -3,9 +3,11 @@
 
 mod decay;
 mod decay_limits;
+mod declared;
 mod excited_response;
 mod hostile_sidecars;
 mod oscillation;
 mod rotation;
 mod scenario;
+mod toy;
 mod weights;

@@ -8,14 +8,14 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use froude::methods::tank::oscillation::section::plan;
-use froude::methods::tank::oscillation::setup::{declared as declared_of, setup_of};
-use froude::methods::tank::oscillation::simulate::{Truths, configurations, planned, simulated};
+use froude::methods::tank::driven::twin::Twin;
+use froude::methods::tank::oscillation::Oscillation;
 use froude::pipeline::{Job, identify};
 use froude::records::campaign_file::read_campaign;
 use froude::records::table::{Column, ColumnData, Table};
 use froude::records::table_file::prepare_table;
 use froude::records::units::parse_unit;
+use froude::rig::swung::SwungTrace;
 
 use crate::claims::{Claims, Verdict};
 
@@ -87,7 +87,10 @@ fn log(root: &Path, folder: &Path, periods: usize) -> Result<usize, Box<dyn Erro
         // At one frequency and on one configuration a law of one coefficient is what a run can tell, and a delay is no unknown beside it.
         ("models = [\"f1\", \"f4\"]", "models = [\"f1\"]"),
         ("model = \"f4\"", "model = \"f1\""),
-        ("C_d_I    = \"0 m/s\"", "C_d      = 0.3268"),
+        ("C_d_I    = \"0 m/s\"\n", "C_d      = 0.3268\n"),
+        ("C_d_II   = 1.4272\n", ""),
+        ("C_dHT_I  = \"0.1769 m/s\"\n", ""),
+        ("C_dHT_II = 1.1770\n", ""),
         ("standard = \"5 ms\"", "standard = \"0 ms\""),
     ] {
         if !text.contains(from) {
@@ -99,20 +102,17 @@ fn log(root: &Path, folder: &Path, periods: usize) -> Result<usize, Box<dyn Erro
     std::fs::write(&path, text)?;
     let campaign = read_campaign(&path)?;
     let source = campaign.sources.first().ok_or("no source")?;
-    let (spec, blocks) = (declared_of(source)?, plan(source)?);
-    let setup = setup_of(&campaign, source, &spec, &configurations(&blocks))?;
-    let truth = Truths::of(&campaign, source, &setup)?;
+    let mut twin = Twin::<Oscillation>::of(&campaign, source)?;
     let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
     // A campaign plans ten million samples at most, and an hour has 36.
-    let mut runs = planned(&blocks, &setup);
-    for run in &mut runs {
+    for run in &mut twin.planned {
         run.swing.periods = periods as f64;
     }
-    let trace = simulated(&runs, &setup, &truth, sensors, seed).remove(0).trace;
-    let rows = trace.time_s.len();
+    let SwungTrace { time_s, motion, mut loads } = twin.simulated(sensors, seed)?.remove(0).trace;
+    let rows = time_s.len();
     // A strain of the rod, two accelerations, a voltage and a temperature, with steps as of a 16-bit converter.
     let beside = |size: f64, offset: f64, k: f64| -> Vec<f64> {
-        (trace.time_s.iter())
+        (time_s.iter())
             .map(|t| {
                 ((offset + size * (TAU / PERIOD_S * k * t).sin() + 0.1 * size * (977.0 * k * t).sin()) * 3276.8).round()
                     / 3276.8
@@ -140,7 +140,7 @@ fn log(root: &Path, folder: &Path, periods: usize) -> Result<usize, Box<dyn Erro
         let unit = parse_unit(unit)?;
         Ok(Column { name: name.to_owned(), data: ColumnData::Number { dimension: unit.dimension, unit, si } })
     };
-    let values = [trace.time_s, trace.angle_rad, trace.load].into_iter().chain(extra);
+    let values = [time_s, motion, loads.remove(0)].into_iter().chain(extra);
     let table = Table::of(
         folder.join("runs/001.parquet"),
         named.into_iter().zip(values).map(column).collect::<Result<_, _>>()?,

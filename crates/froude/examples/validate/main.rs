@@ -23,6 +23,7 @@ mod clocks;
 mod count;
 mod coverage;
 mod decay;
+mod driven;
 mod dynamic;
 mod eiv;
 mod emps;

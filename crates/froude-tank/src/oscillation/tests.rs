@@ -10,6 +10,9 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::table_file::{prepare_table, read_table};
 
 use super::*;
+use crate::driven::source::identified;
+use crate::driven::twin::files;
+use crate::long_logs::{LENGTHS, Lengths};
 
 /// Of eight runs of 7 periods of 6 s or 4.5 s and a second, 151,000 rows: four rows a block, 125 Hz.
 const AVERAGED: Lengths = Lengths { longest: 100_000, kept: 34_000 };
@@ -31,7 +34,7 @@ fn logged() -> tempfile::TempDir {
     std::fs::write(&path, text).unwrap();
     let campaign = read_campaign(&path).unwrap();
     std::fs::create_dir(folder.path().join("runs")).unwrap();
-    for file in simulate::files(&campaign, &campaign.sources[0]).unwrap() {
+    for file in files::<Oscillation>(&campaign, &campaign.sources[0]).unwrap() {
         std::fs::write(folder.path().join("runs").join(file.name), file.content).unwrap();
     }
     folder
@@ -40,7 +43,9 @@ fn logged() -> tempfile::TempDir {
 fn found(folder: &Path, lengths: Lengths) -> Result<(Vec<Estimate>, Vec<Finding>, Vec<String>), MethodError> {
     let campaign = read_campaign(&folder.join("campaign.toml")).unwrap();
     let steps = RefCell::new(Vec::new());
-    let found = identified(&campaign, &campaign.sources[0], lengths, &|step| steps.borrow_mut().push(step.to_owned()))?;
+    let found = identified::<Oscillation>(&campaign, &campaign.sources[0], lengths, &|step| {
+        steps.borrow_mut().push(step.to_owned());
+    })?;
     let estimates = found.results.iter().flat_map(Answer::estimates).cloned().collect();
     Ok((estimates, found.findings, steps.into_inner()))
 }

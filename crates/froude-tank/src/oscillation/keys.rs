@@ -18,50 +18,10 @@
 //! ```
 
 use froude_hydro::swing::Pivot;
-use froude_identify::declare::{ByConfiguration, IfMissing, Key, Kind, Range, Values};
-use froude_records::RecordError;
-use froude_records::campaign::Source;
-use froude_records::run::{Declared, FORCED_OSCILLATION};
-use froude_records::section::Section;
-use froude_records::section_values::MOST_RUNS;
+use froude_identify::declare::{IfMissing, Key, Kind, Range};
 use froude_records::units::Dimension;
 
-use crate::declared::{
-    CYCLES, FREQUENCY, HARMONICS, PERIODS, RATE, REPEATS, STILL, Swings, amplitude, cycles, runs_of,
-};
-use crate::motion::Cycles;
-
-/// What is declared of a forced oscillation.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OscillationSpec {
-    /// How the pivot axis lies.
-    pub pivot: Pivot,
-    /// From it to the body's reference point, m.
-    pub radius_m: Declared,
-    /// All that moves below the load cell, kg.
-    pub mass_kg: ByConfiguration,
-    /// Buoyancy less weight, N, as far as it is known beforehand.
-    pub buoyancy_n: ByConfiguration,
-    /// Delay of the force behind the angle, s, as far as it is known beforehand.
-    pub delay_s: Option<Declared>,
-    /// Which cycles are used.
-    pub cycles: Cycles,
-    /// Harmonics of the angle.
-    pub harmonics: usize,
-}
-
-/// One block of planned runs: every amplitude at every frequency for every configuration.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OscillationPlan {
-    /// Configurations; one empty text where the body has only one.
-    pub configurations: Vec<String>,
-    /// Whether they are done in air: mass and delay alone.
-    pub in_air: bool,
-    /// Speeds of the stream.
-    pub flow_m_s: Vec<f64>,
-    /// How the body swings.
-    pub swings: Swings,
-}
+use crate::declared::{CYCLES, FREQUENCY, HARMONICS, PERIODS, RATE, REPEATS, STILL, amplitude};
 
 /// The keys of `[source.forced_oscillation]`.
 pub const KEYS: &[Key] = &[
@@ -120,7 +80,7 @@ pub const PLAN: &[Key] = &[
         IfMissing::Is("water"),
         "`water`, or `air`, which determines only mass and delay",
     ),
-    amplitude("write \"10 deg\", a list, or { start, stop, step }"),
+    amplitude(Dimension::ANGLE, "write \"10 deg\", a list, or { start, stop, step }", "amplitude of the angle"),
     FREQUENCY,
     Key::new("flow", Kind::Axis(Dimension::SPEED), IfMissing::Is("0 m/s"), "speed of the stream"),
     PERIODS,
@@ -128,39 +88,3 @@ pub const PLAN: &[Key] = &[
     RATE,
     REPEATS,
 ];
-
-/// Reads `[source.forced_oscillation]`.
-pub(super) fn oscillation(s: &Section<'_>) -> Result<OscillationSpec, RecordError> {
-    let values = Values::read(s, KEYS)?;
-    Ok(OscillationSpec {
-        pivot: values.need("pivot", values.word("pivot", &Pivot::ALL))?,
-        radius_m: values.need("radius", values.constant("radius"))?,
-        mass_kg: values.by_configuration("mass"),
-        buoyancy_n: values.by_configuration("buoyancy"),
-        delay_s: values.constant("delay"),
-        cycles: cycles(&values)?,
-        harmonics: values.need("harmonics", values.count("harmonics"))?,
-    })
-}
-
-/// The runs that a source plans.
-///
-/// # Errors
-///
-/// [`RecordError`] with its place.
-pub fn plan(source: &Source) -> Result<Vec<OscillationPlan>, RecordError> {
-    runs_of(source, FORCED_OSCILLATION, block, |p| p.swings.asks(p.configurations.len() * p.flow_m_s.len()))
-}
-
-/// Reads a `[[source.plan]]` that names an amplitude.
-fn block(s: &Section<'_>) -> Result<OscillationPlan, RecordError> {
-    let values = Values::read(s, PLAN)?;
-    values.at_most(MOST_RUNS)?;
-    let named = values.texts("configurations");
-    Ok(OscillationPlan {
-        configurations: if named.is_empty() { vec![String::new()] } else { named.to_vec() },
-        in_air: values.need("medium", values.word("medium", &[false, true]))?,
-        flow_m_s: values.numbers("flow"),
-        swings: Swings::of(&values)?,
-    })
-}

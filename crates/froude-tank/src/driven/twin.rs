@@ -1,0 +1,254 @@
+//! The twin of a campaign's runs: the logs and sidecars that it would give for chosen true coefficients.
+//!
+//! Every declared constant is drawn once for the campaign about what is declared, in the method's order; one whose truth is stated takes that. Each load of a run
+//! has a zero of its own.
+
+use froude_identify::method::{Export, MethodError};
+use froude_identify::simulate::check_stated;
+use froude_records::campaign::{Campaign, SensorSpec, Source, Truth as Stated};
+use froude_records::run::Role;
+use froude_rig::steady::Reading;
+use froude_rig::swung::{SwungSensor, SwungTrace, log};
+use indexmap::IndexMap;
+
+use super::matrix::{self, Planned, configurations, planned};
+use super::method::MotorDriven;
+use super::read::setups;
+use super::run::Run;
+use super::setup::Setup;
+use super::spec::{Channel, Constant, Enters, Factor, Point};
+use crate::error::{TankError, undeclared};
+use crate::sensors::{Senses, of_sensor, seed_and_sensors};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of, true_value};
+
+/// Natural frequency of the twin's servo, rad/s, and its damping ratio: a joint module that overshoots a little.
+const SERVO: (f64, f64) = (30.0, 0.6);
+
+/// What the twin has: loads and motion.
+pub(super) fn senses<M: MotorDriven>() -> Vec<Senses<'static>> {
+    let loads = M::SPEC.loads.iter().map(|load| Senses::with_memory(load.names()));
+    loads.chain([Senses::white(M::SPEC.motion.name)]).collect()
+}
+
+/// What is true on the twin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Truth {
+    /// Of the coefficients; zero of one that no run looks for.
+    pub coefficients: Vec<f64>,
+    /// Of the constants, where it is stated.
+    pub constants: Vec<Option<f64>>,
+}
+
+impl Truth {
+    /// Of the coefficients of `[simulate]`, for the planned runs.
+    ///
+    /// # Errors
+    ///
+    /// A coefficient that the runs look for and that is not stated, a constant that nobody knows.
+    pub fn of<M: MotorDriven>(
+        values: &IndexMap<String, f64>,
+        setup: &Setup<M>,
+        points: &[&Point],
+    ) -> Result<Self, MethodError> {
+        let all = setup.method.coefficients();
+        let name_of = |constant: &Constant| constant.unknown.as_ref().map(|unknown| unknown.name.clone());
+        setup.check(points).map_err(MethodError::refused)?;
+        let coefficients = all.iter().map(|c| {
+            let is_needed = points.iter().any(|point| point.role == c.role);
+            if is_needed { true_value(values, &c.name) } else { Ok(values.get(&c.name).copied().unwrap_or(0.0)) }
+        });
+        let constants = setup.constants.iter().map(|constant| {
+            let stated = name_of(constant).and_then(|name| values.get(&name).copied());
+            match constant.looked_for(points.iter().copied()) {
+                Some(unknown) if constant.known.is_none() && constant.otherwise.is_err() => {
+                    true_value(values, &unknown.name).map(Some)
+                }
+                _ => Ok(stated),
+            }
+        });
+        Ok(Self {
+            coefficients: coefficients.collect::<Result<_, _>>()?,
+            constants: constants.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The truth of an unknown of the fit.
+    #[must_use]
+    pub fn value<M: MotorDriven>(&self, name: &str, setup: &Setup<M>) -> f64 {
+        let coefficient = setup.method.coefficients().iter().position(|c| c.name == name);
+        let is_it = |c: &Constant| c.unknown.as_ref().is_some_and(|unknown| unknown.name == name);
+        let constant = || setup.constants.iter().position(is_it);
+        coefficient
+            .map(|j| self.coefficients[j])
+            .or_else(|| constant().map(|k| self.constants[k].unwrap_or_else(|| setup.values()[k])))
+            .unwrap_or(0.0)
+    }
+}
+
+/// A source's planned runs, the setup of the true law, and the truth.
+pub struct Twin<M> {
+    /// The runs.
+    pub planned: Vec<Planned>,
+    /// What is declared, with the true law.
+    pub setup: Setup<M>,
+    /// What is true.
+    pub truth: Truth,
+}
+
+impl<M: MotorDriven> Twin<M> {
+    /// Of a campaign.
+    ///
+    /// # Errors
+    ///
+    /// What the campaign does not declare; no `[simulate]`, or one with a record instead of coefficients.
+    pub fn of(campaign: &Campaign, source: &Source) -> Result<Self, MethodError> {
+        let spec = M::SPEC;
+        let planned = planned(&matrix::plan::<M>(source)?);
+        let (model, values, stated) = match campaign.simulate.as_ref().map(|s| (&s.truth, &s.stated)) {
+            Some((Stated::Coefficients { model, values }, stated)) => (model, values, stated),
+            found => {
+                let what = match found {
+                    None => "a twin needs [simulate]: seed, model, and the true coefficients".to_owned(),
+                    Some(_) => format!(
+                        "the twin of {} takes its truth from [simulate] model and [simulate.coefficients]; a record is not enough",
+                        spec.name
+                    ),
+                };
+                return Err(undeclared(campaign.path.display(), what));
+            }
+        };
+        if !spec.law.is_empty() && model != spec.name {
+            let what =
+                format!("[simulate] has model = {model:?}; {} has one law: write model = {:?}", spec.called, spec.name);
+            return Err(undeclared(campaign.path.display(), what));
+        }
+        let setup = setups::<M>(campaign, source, &configurations(&planned), Some(model))?.remove(0);
+        let all = setup.method.coefficients();
+        let constants = setup.constants.iter().filter_map(|c| c.unknown.as_ref());
+        let constants = constants.map(|unknown| (unknown.name.as_str(), unknown.unit));
+        let own: Vec<(&str, &str)> = all.iter().map(|c| (c.name.as_str(), c.unit.as_str())).chain(constants).collect();
+        check_stated(stated, model, &own, &setup.method.unused())?;
+        let points: Vec<&Point> = planned.iter().map(|run| &run.point).collect();
+        setup.method.check_runs(&points).map_err(|why| undeclared(&source.place, why.to_string()))?;
+        let truth = Truth::of(values, &setup, &points)?;
+        Ok(Self { planned, setup, truth })
+    }
+
+    /// The logs of all planned runs; the same seed gives the same logs. `sensors` are those of `[[simulate.sensor]]`.
+    ///
+    /// # Errors
+    ///
+    /// A law that cannot be evaluated.
+    pub fn simulated(&self, sensors: &[SensorSpec], seed: u64) -> Result<Vec<Simulated>, TankError> {
+        let mut draws = Draws::of(seed);
+        let mut constants = self.setup.values();
+        for ((value, constant), stated) in constants.iter_mut().zip(&self.setup.constants).zip(&self.truth.constants) {
+            if let Some(known) = constant.known.filter(|_| constant.enters != Enters::Derived) {
+                *value = draws.about(known);
+            }
+            *value = stated.unwrap_or(*value);
+        }
+        let loads = M::SPEC.loads;
+        let read = |channel: &Channel, zero, gain| of_sensor(channel.sensor(sensors), zero, gain);
+        let zeros: Vec<Vec<f64>> =
+            self.planned.iter().map(|_| loads.iter().map(|load| load.zero * draws.normal()).collect()).collect();
+        let gain = |enters: Enters| self.setup.enters(|e| e == enters).map_or(1.0, |k| constants[k]);
+        let delay_s = self.setup.enters(|e| e == Enters::Delay).map_or(0.0, |k| constants[k]);
+        let one = |(i, run): (usize, &Planned)| {
+            let motion = read(&M::SPEC.motion, 0.0, gain(Enters::Motion));
+            let of_load = |(k, load): (usize, &Channel)| read(load, zeros[i][k], gain(Enters::Load(k)));
+            let loads: Vec<Reading> = loads.iter().enumerate().map(of_load).collect();
+            let sensor = SwungSensor { rate_hz: run.rate_hz, motion, loads, delay_s };
+            let there = |motion: &[[f64; 3]]| self.loads(run, &constants, motion);
+            let trace = log(run.swing, SERVO, &sensor, there, seed_of(seed, i))?;
+            Ok(Simulated { planned: run.clone(), trace })
+        };
+        self.planned.iter().enumerate().map(one).collect()
+    }
+
+    /// The loads of a run without zeros at the samples of its motion.
+    fn loads(&self, run: &Planned, constants: &[f64], motion: &[[f64; 3]]) -> Result<Vec<Vec<f64>>, TankError> {
+        let all = self.setup.method.coefficients();
+        let mut out = vec![vec![0.0; motion.len()]; M::SPEC.loads.len()];
+        let mut add = |load: usize, factor: Factor, term: &[f64]| {
+            let factor = match factor {
+                Factor::Coefficient(j) => {
+                    let of_run = all[j].varies.and_then(|group| run.of_drag.get(group));
+                    of_run.unwrap_or(&1.0) * self.truth.coefficients[j]
+                }
+                Factor::Constant(k) => constants[k],
+            };
+            out[load].iter_mut().zip(term).for_each(|(y, x)| *y += factor * x);
+        };
+        self.setup.method.terms(&run.point, constants, motion, &mut add)?;
+        Ok(out)
+    }
+}
+
+/// A run with its log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulated {
+    /// As it was planned.
+    pub planned: Planned,
+    /// What was logged.
+    pub trace: SwungTrace,
+}
+
+impl Simulated {
+    /// The log as the reduction takes it.
+    #[must_use]
+    pub fn view(&self) -> Run<'_> {
+        Run {
+            id: &self.planned.id,
+            point: self.planned.point.clone(),
+            time_s: &self.trace.time_s,
+            motion: &self.trace.motion,
+            loads: self.trace.loads.iter().map(Vec::as_slice).collect(),
+        }
+    }
+}
+
+/// The files of all planned runs of a source: a log and its sidecar each.
+///
+/// # Errors
+///
+/// What the campaign does not declare.
+pub fn files<M: MotorDriven>(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
+    let twin = Twin::<M>::of(campaign, source)?;
+    let (seed, sensors) = seed_and_sensors(campaign, &senses::<M>())?;
+    let runs = twin.simulated(sensors, seed).map_err(MethodError::refused)?;
+    Ok(runs.iter().flat_map(|run| files_of::<M>(&run.planned, &run.trace, "A run of the twin.")).collect())
+}
+
+/// The log and the sidecar of a run; `said` is a line for people at the head of the sidecar.
+#[must_use]
+pub fn files_of<M: MotorDriven>(run: &Planned, trace: &SwungTrace, said: &str) -> [Export; 2] {
+    let spec = M::SPEC;
+    let channels: Vec<&Channel> = std::iter::once(&spec.motion).chain(spec.loads).collect();
+    let names: Vec<&str> = std::iter::once("time").chain(channels.iter().map(|channel| channel.column.0)).collect();
+    let values = std::iter::once(&trace.motion).chain(&trace.loads);
+    let columns: Vec<(&[f64], usize)> =
+        values.zip(&channels).map(|(values, channel)| (values.as_slice(), channel.column.3)).collect();
+    let role = if spec.roles.1.contains(&run.point.role) { run.point.role } else { Role::Test };
+    let condition = |(name, value): (&&str, &f64)| {
+        let unit = spec.conditions.iter().find(|c| c.name == *name).map_or("1", |c| c.unit);
+        format!("{name} = \"{value} {unit}\"")
+    };
+    let described: Vec<[&str; 5]> = (channels.iter())
+        .map(|channel| {
+            let (column, frame, comment, _) = channel.column;
+            [column, channel.name, channel.unit, frame, comment]
+        })
+        .collect();
+    let sidecar = Sidecar {
+        said,
+        method: spec.name,
+        role: role.name(),
+        configuration: &run.point.configuration,
+        conditions: &run.point.conditions.iter().map(condition).collect::<Vec<_>>(),
+        time: "time",
+        columns: &described,
+        width: names.iter().map(|name| name.len()).max().unwrap_or(0),
+    };
+    pair(&run.id, csv(&names.join(","), &trace.time_s, &columns), sidecar.text())
+}
