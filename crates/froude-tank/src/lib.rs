@@ -33,6 +33,7 @@ mod residual_spectrum;
 pub mod rotation;
 mod sensors;
 pub mod steady;
+pub mod sway;
 mod twin;
 pub mod weight_tow;
 

@@ -5,7 +5,7 @@ use froude_carriage::drag::calibration::source::KnownWeights;
 use froude_carriage::source::Carriage;
 use froude_carriage::tuning::source::{Resonance, Tuning};
 use froude_identify::method::Method;
-use froude_tank::{accelerated_tow, decay, excited_response, oscillation, rotation, steady, weight_tow};
+use froude_tank::{accelerated_tow, decay, excited_response, oscillation, rotation, steady, sway, weight_tow};
 
 /// Names of the methods that read runs of a method.
 pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
@@ -13,7 +13,7 @@ pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
 }
 
 /// All methods that read runs.
-pub(crate) const METHODS: [&dyn Method; 12] = [
+pub(crate) const METHODS: [&dyn Method; 13] = [
     &Carriage,
     &Servo,
     &KnownWeights,
@@ -22,6 +22,7 @@ pub(crate) const METHODS: [&dyn Method; 12] = [
     &decay::source::DECAY,
     &oscillation::FORCED,
     &rotation::TURNED,
+    &sway::SWAYED,
     &steady::source::STEADY_TOW,
     &weight_tow::source::PULLED,
     &accelerated_tow::source::ACCELERATED,

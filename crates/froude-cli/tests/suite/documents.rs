@@ -38,12 +38,14 @@ fn the_files_that_the_start_page_quotes_are_those_of_the_examples() {
 
 #[test]
 fn the_key_tables_of_the_book_are_those_that_the_methods_declare() {
-    use froude::methods::tank::{oscillation, rotation};
+    use froude::methods::tank::{oscillation, rotation, sway};
     for (page, keys) in [
         ("forced-oscillation", oscillation::KEYS),
         ("forced-oscillation", oscillation::PLAN),
         ("rotation", rotation::KEYS),
         ("rotation", rotation::PLAN),
+        ("sway", sway::KEYS),
+        ("sway", sway::PLAN),
     ] {
         let table = key_table(keys);
         assert!(

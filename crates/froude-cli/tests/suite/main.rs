@@ -38,6 +38,7 @@ mod same_drag;
 mod sidecars;
 mod small_disk;
 mod steady;
+mod sway;
 mod swim;
 mod swim_3d;
 mod swim_sweep;

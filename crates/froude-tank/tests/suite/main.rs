@@ -9,5 +9,6 @@ mod hostile_sidecars;
 mod oscillation;
 mod rotation;
 mod scenario;
+mod sway;
 mod toy;
 mod weights;

@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 2,000 to 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, predict, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-moved, cfd-campaign, clocks,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, predict, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, sway, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-moved, cfd-campaign, clocks,
 //! dynamic, potential, facets, intervals, lints, power, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -50,6 +50,7 @@ mod rotation;
 mod scenario;
 mod snake;
 mod steady;
+mod sway;
 mod sweeps;
 mod swim;
 mod swim_coverage;
@@ -148,6 +149,9 @@ fn main() -> ExitCode {
         }
         if wants("rotation") {
             rotation::all(claims, &root, if full { 2_000 } else { 40 })?;
+        }
+        if wants("sway") {
+            sway::all(claims, &root, if full { 2_000 } else { 40 })?;
         }
         if wants("hour") {
             // An hour, or two minutes: twenty-four periods are beyond a million rows too.

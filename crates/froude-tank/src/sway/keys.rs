@@ -1,0 +1,70 @@
+//! `[source.sway]`: what is declared of a body that a planar motion mechanism moves sideways, and the runs that are planned of it.
+//!
+//! ```toml
+//! [source.sway]
+//! mass   = { value = "46.5 kg", standard = "0.05 kg" }     # of all that moves below the load cell
+//! x_g    = { value = "12 mm", standard = "2 mm" }          # its centre of gravity, forward of the reference point
+//! length = "1.8 m"                                         # for the nondimensional coefficients
+//! delay  = { value = "0 ms", standard = "2 ms" }           # of the loads behind the motion; leave out what is to be found
+//!
+//! [[source.plan]]
+//! amplitude = "80 mm"
+//! frequency = ["0.1 Hz", "0.15 Hz", "0.2 Hz", "0.25 Hz", "0.3 Hz"]
+//! speed     = "1 m/s"
+//! ```
+
+use froude_identify::declare::{IfMissing, Key, Kind, Range};
+use froude_records::units::Dimension;
+
+use crate::declared::{CYCLES, FREQUENCY, HARMONICS, PERIODS, RATE, REPEATS, STILL, amplitude};
+
+/// The keys of `[source.sway]`.
+pub const KEYS: &[Key] = &[
+    Key::new(
+        "mass",
+        Kind::Constant(Dimension::MASS),
+        IfMissing::Required("write mass = { value = \"46.5 kg\", standard = \"0.05 kg\" }: of all that moves below the load cell, with the water that the hull encloses"),
+        "of all that moves below the load cell, with the water that the hull encloses; runs in air need the same water in it; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
+    )
+    .within(Range::NotNegative("a mass is not")),
+    Key::new(
+        "x_g",
+        Kind::Constant(Dimension::LENGTH),
+        IfMissing::Required(
+            "write x_g = { value = \"12 mm\", standard = \"2 mm\" }: the centre of gravity forward of the reference point, \"0 mm\" where they are one",
+        ),
+        "centre of gravity of that mass, forward of the reference point of the moment",
+    ),
+    Key::new(
+        "length",
+        Kind::Quantity(Dimension::LENGTH),
+        IfMissing::Nothing("no nondimensional coefficients"),
+        "L of the nondimensional coefficients and of the reduced frequency ωL/U",
+    )
+    .within(Range::Positive),
+    Key::new(
+        "delay",
+        Kind::Constant(Dimension::TIME),
+        IfMissing::Nothing("to be found"),
+        "of the loads behind the motion, positive where they are stamped late",
+    ),
+    CYCLES,
+    HARMONICS,
+];
+
+/// The keys of a block of a plan.
+pub const PLAN: &[Key] = &[
+    Key::new(
+        "medium",
+        Kind::Word(&["water", "air"]),
+        IfMissing::Is("water"),
+        "`water`, or `air`: the same motion in air, which determines mass and delay",
+    ),
+    amplitude(Dimension::LENGTH, "write \"80 mm\", a list, or { start, stop, step }", "amplitude of the sway"),
+    FREQUENCY,
+    Key::new("speed", Kind::Axis(Dimension::SPEED), IfMissing::Is("0 m/s"), "speed forward, through the water"),
+    PERIODS,
+    STILL,
+    RATE,
+    REPEATS,
+];
