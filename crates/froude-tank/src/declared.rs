@@ -7,7 +7,7 @@ use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::campaign::{BudgetEntry, Source};
-use froude_records::run::{Declared, declared};
+use froude_records::run::Declared;
 use froude_records::section::Section;
 use froude_records::section_values::{Asks, MOST_RUNS, OF_RUNS, plan_of};
 use froude_records::units::Dimension;
@@ -70,18 +70,6 @@ pub(crate) fn gain(entry: &BudgetEntry, zero: &str) -> Result<f64, MethodError> 
     entry.relative.then_some(entry.standard).ok_or_else(|| undeclared(&entry.place, what()))
 }
 
-/// A declared constant that must be larger than zero.
-pub(crate) fn above_zero(
-    s: &Section<'_>,
-    key: &'static str,
-    dimension: Dimension,
-) -> Result<Option<Declared>, RecordError> {
-    match (declared(s, key, dimension)?, s.get(key)) {
-        (Some(number), Some(value)) if number.value <= 0.0 => Err(s.wrong(key, value, "must be larger than zero")),
-        (number, _) => Ok(number),
-    }
-}
-
 /// Which cycles are used.
 pub const CYCLES: Key = Key::new(
     "cycles",
@@ -126,6 +114,14 @@ pub const RATE: Key =
 /// Repeats of a run.
 pub const REPEATS: Key =
     Key::new("repeats", Kind::Count(MOST_RUNS as u64), IfMissing::Is("1"), "number of times each run is made");
+
+/// Configurations of a block of a plan; one empty text where the body has only one and none to name.
+pub(crate) fn configurations(values: &Values) -> Vec<String> {
+    match values.texts("configurations") {
+        [] => vec![String::new()],
+        named => named.to_vec(),
+    }
+}
 
 /// Amplitudes of a motion; `advice` is what to write.
 #[must_use]

@@ -38,7 +38,7 @@ fn the_files_that_the_start_page_quotes_are_those_of_the_examples() {
 
 #[test]
 fn the_key_tables_of_the_book_are_those_that_the_methods_declare() {
-    use froude::methods::tank::{oscillation, rotation, sway};
+    use froude::methods::tank::{accelerated_tow, excited_response, oscillation, rotation, steady, sway, weight_tow};
     for (page, keys) in [
         ("forced-oscillation", oscillation::KEYS),
         ("forced-oscillation", oscillation::PLAN),
@@ -46,6 +46,11 @@ fn the_key_tables_of_the_book_are_those_that_the_methods_declare() {
         ("rotation", rotation::PLAN),
         ("sway", sway::KEYS),
         ("sway", sway::PLAN),
+        ("steady", steady::section::KEYS),
+        ("weight-tow", weight_tow::section::KEYS),
+        ("accelerated-tow", accelerated_tow::section::KEYS),
+        ("excited-response", excited_response::section::KEYS),
+        ("excited-response", excited_response::section::PLAN),
     ] {
         let table = key_table(keys);
         assert!(

@@ -57,6 +57,8 @@ pub enum Kind {
     Count(u64),
     /// A whole number, zero or larger.
     Whole,
+    /// A plain number, in the unit that its text states.
+    Number,
     /// One of these words.
     Word(&'static [&'static str]),
     /// A text or a list of texts; another factor of a run matrix.

@@ -68,7 +68,7 @@ impl Values {
         taken
     }
 
-    /// A quantity.
+    /// A quantity, or a plain number.
     #[must_use]
     pub fn number(&self, key: &str) -> Option<f64> {
         self.of(key, |parsed| if let Parsed::Number(x) = parsed { Some(*x) } else { None })
@@ -168,7 +168,7 @@ fn missing(s: &Section<'_>, key: &Key) -> Result<Option<Parsed>, RecordError> {
         IfMissing::Is(text) => text,
     };
     let text = match key.kind {
-        Kind::Count(_) | Kind::Whole | Kind::Table(_) => format!("{} = {default}", key.name),
+        Kind::Count(_) | Kind::Whole | Kind::Number | Kind::Table(_) => format!("{} = {default}", key.name),
         _ => format!("{} = {default:?}", key.name),
     };
     let source = Source { path: s.source.path, text: &text };
@@ -198,6 +198,7 @@ fn parsed<'a>(s: &Section<'a>, key: &Key, value: &'a Value<'a>) -> Result<Parsed
         Ok::<_, RecordError>(Parsed::Numbers(of_axis))
     };
     Ok(match key.kind {
+        Kind::Number => Parsed::Number(s.as_number(name, value)?),
         Kind::Quantity(dimension) => {
             let si = s.as_quantity_of(name, value, dimension)?;
             within(value, si, "it")?;

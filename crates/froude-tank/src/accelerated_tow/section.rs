@@ -14,16 +14,85 @@
 //! steady       = "4 s"
 //! ```
 
-use crate::names::ACCELERATED_TOW;
-use froude_identify::declare::ByConfiguration;
+use froude_identify::declare::{ByConfiguration, IfMissing, Key, Kind, Range, Values};
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Source};
-use froude_records::run::{Declared, declared};
+use froude_records::run::Declared;
 use froude_records::section::Section;
-use froude_records::section_values::{Asks, MOST_RUNS, at_most, configurations, count, one_of, series};
+use froude_records::section_values::{Asks, MOST_RUNS};
 use froude_records::units::Dimension;
 
-use crate::declared::runs_of;
+use crate::declared::{REPEATS, configurations, runs_of};
+use crate::names::ACCELERATED_TOW;
+
+/// The keys of `[source.accelerated_tow]`.
+pub const KEYS: &[Key] = &[
+    Key::new(
+        "axis",
+        Kind::Word(&["x", "y"]),
+        IfMissing::Required(
+            "state which axis of the body lies along the travel: \"x\" (forward) or \"y\" (to starboard); drag and added mass are those along it",
+        ),
+        "the axis of the body that lies along the travel, `x` or `y`: drag and added mass are those along it",
+    ),
+    Key::new(
+        "mass",
+        Kind::PerConfiguration(Dimension::MASS),
+        IfMissing::Nothing("by runs in air"),
+        "all that moves below the load cell; one number, or one for each configuration. Runs of the role `dry_air` weigh it instead, and go before what is declared",
+    )
+    .within(Range::Positive),
+    Key::new(
+        "delay",
+        Kind::Constant(Dimension::TIME),
+        IfMissing::Nothing("none taken"),
+        "of the force behind the motion: filters and samplers that one channel has and the other has not. Its `standard` is in the budget",
+    ),
+    Key::new(
+        "window",
+        Kind::Quantity(Dimension::TIME),
+        IfMissing::Is("0.4 s"),
+        "length of the windows that motion and force are weighted over",
+    )
+    .within(Range::Positive),
+];
+
+/// The keys of a block of a plan.
+pub const PLAN: &[Key] = &[
+    Key::new(
+        "configurations",
+        Kind::Texts,
+        IfMissing::Nothing("one unnamed body"),
+        "names of the configurations, as in `mass`",
+    ),
+    Key::new(
+        "medium",
+        Kind::Word(&["water", "air"]),
+        IfMissing::Is("water"),
+        "`water`, or `air`, which determines the mass alone",
+    ),
+    Key::new(
+        "speed",
+        Kind::Axis(Dimension::SPEED),
+        IfMissing::Required("write \"0.3 m/s\", a list, or { start, stop, step }"),
+        "speed that is reached, ahead or (below zero) astern",
+    )
+    .within(Range::NotZero("a tow goes somewhere, ahead or (below zero) astern")),
+    Key::new(
+        "acceleration",
+        Kind::Axis(Dimension::ACCELERATION),
+        IfMissing::Required("write \"0.2 m/s^2\", a list, or { start, stop, step }"),
+        "up to it and back to rest; its sign is that of the speed",
+    )
+    .within(Range::Positive),
+    Key::new("steady", Kind::Quantity(Dimension::TIME), IfMissing::Is("4 s"), "time at the speed")
+        .within(Range::Positive),
+    Key::new("still", Kind::Quantity(Dimension::TIME), IfMissing::Is("5 s"), "time at rest before and after")
+        .within(Range::Positive),
+    Key::new("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), IfMissing::Is("100 Hz"), "sampling rate of the log")
+        .within(Range::Positive),
+    REPEATS,
+];
 
 /// What is declared of an accelerated tow.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,24 +130,12 @@ pub struct AcceleratedPlan {
 
 /// Reads `[source.accelerated_tow]`.
 pub(super) fn accelerated_tow(s: &Section<'_>) -> Result<AcceleratedTowSpec, RecordError> {
-    s.only(&["axis", "mass", "delay", "window"])?;
-    let axis = one_of(s, "axis", &["x", "y"], &[BodyAxis::X, BodyAxis::Y])?.ok_or_else(|| {
-        s.missing(
-            "axis",
-            "state which axis of the body lies along the travel: \"x\" (forward) or \"y\" (to starboard); drag and added mass are those along it",
-        )
-    })?;
-    let mass = s.get("mass").map(|value| ByConfiguration::read(s, "mass", value, Dimension::MASS)).transpose()?;
-    let mass_kg = mass.unwrap_or_default();
-    let wrong = mass_kg.all.iter().chain(mass_kg.named.values()).find(|m| m.value <= 0.0);
-    if let (Some(mass), Some(value)) = (wrong, s.get("mass")) {
-        return Err(s.wrong("mass", value, format!("is {} kg; a mass is larger than zero", mass.value)));
-    }
+    let values = Values::read(s, KEYS)?;
     Ok(AcceleratedTowSpec {
-        axis,
-        mass_kg,
-        delay_s: declared(s, "delay", Dimension::TIME)?,
-        window_s: s.positive("window", Dimension::TIME)?.unwrap_or(0.4),
+        axis: values.need("axis", values.word("axis", &[BodyAxis::X, BodyAxis::Y]))?,
+        mass_kg: values.by_configuration("mass"),
+        delay_s: values.constant("delay"),
+        window_s: values.need("window", values.number("window"))?,
     })
 }
 
@@ -99,32 +156,17 @@ pub fn plan(source: &Source) -> Result<Vec<AcceleratedPlan>, RecordError> {
 
 /// Reads a `[[source.plan]]` of accelerations.
 fn block(s: &Section<'_>) -> Result<AcceleratedPlan, RecordError> {
-    s.only(&["configurations", "medium", "speed", "acceleration", "steady", "still", "rate", "repeats"])?;
-    let need = |key: &'static str, example: &str| s.get(key).ok_or_else(|| s.missing(key, example));
-    let speed = need("speed", "write \"0.3 m/s\", a list, or { start, stop, step }")?;
-    let acceleration = need("acceleration", "write \"0.2 m/s^2\", a list, or { start, stop, step }")?;
-    let out = AcceleratedPlan {
-        configurations: configurations(s)?,
-        speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
-        acceleration_m_s2: series(s, "acceleration", acceleration, Dimension::ACCELERATION)?,
-        steady_s: s.positive("steady", Dimension::TIME)?.unwrap_or(4.0),
-        still_s: s.positive("still", Dimension::TIME)?.unwrap_or(5.0),
-        rate_hz: s.positive("rate", Dimension::ANGULAR_SPEED)?.unwrap_or(100.0),
-        in_air: one_of(s, "medium", &["water", "air"], &[false, true])?.unwrap_or(false),
-        repeats: count(s, "repeats", MOST_RUNS as u64)?.unwrap_or(1),
-    };
-    if out.speed_m_s.contains(&0.0) {
-        return Err(s.wrong("speed", speed, "is zero; a tow goes somewhere, ahead or (below zero) astern"));
-    }
-    if out.acceleration_m_s2.iter().any(|a| *a <= 0.0) {
-        return Err(s.wrong("acceleration", acceleration, "must be larger than zero; the sign is that of the speed"));
-    }
-    let numbers = [
-        ("configurations", out.configurations.len()),
-        ("speed", out.speed_m_s.len()),
-        ("acceleration", out.acceleration_m_s2.len()),
-        ("repeats", out.repeats),
-    ];
-    at_most(&s.place(), &numbers, MOST_RUNS)?;
-    Ok(out)
+    let values = Values::read(s, PLAN)?;
+    values.at_most(MOST_RUNS)?;
+    let number = |key: &str| values.need(key, values.number(key));
+    Ok(AcceleratedPlan {
+        configurations: configurations(&values),
+        speed_m_s: values.numbers("speed"),
+        acceleration_m_s2: values.numbers("acceleration"),
+        steady_s: number("steady")?,
+        still_s: number("still")?,
+        rate_hz: number("rate")?,
+        in_air: values.need("medium", values.word("medium", &[false, true]))?,
+        repeats: values.need("repeats", values.count("repeats"))?,
+    })
 }

@@ -11,7 +11,7 @@ use indexmap::IndexMap;
 
 use super::method::MotorDriven;
 use super::spec::Point;
-use crate::declared::{Swings, runs_of};
+use crate::declared::{Swings, configurations as configurations_of, runs_of};
 
 /// Configurations of a plan.
 pub(super) const CONFIGURATIONS: &str = "configurations";
@@ -47,8 +47,7 @@ fn block<M: MotorDriven>(s: &Section<'_>) -> Result<Block, RecordError> {
     let has = |name: &str| spec.plan.iter().any(|key| key.name == name);
     let (key, roles) = spec.roles;
     let role = if has(key) { values.need(key, values.word(key, roles))? } else { Role::Test };
-    let named = if has(CONFIGURATIONS) { values.texts(CONFIGURATIONS) } else { &[] };
-    let names = if named.is_empty() { vec![String::new()] } else { named.to_vec() };
+    let names = if has(CONFIGURATIONS) { configurations_of(&values) } else { vec![String::new()] };
     let point = |configuration: String| Point { role, configuration, conditions: IndexMap::new() };
     let mut points: Vec<Point> = names.into_iter().map(point).collect();
     for condition in spec.conditions.iter().filter(|condition| has(condition.name)) {

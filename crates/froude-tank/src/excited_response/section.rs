@@ -17,23 +17,118 @@
 //! free   = 2
 //! ```
 
-use crate::decay::axis::Motion;
-use crate::names::EXCITED_RESPONSE;
+use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::campaign::Source;
-use froude_records::run::{Declared, declared};
 use froude_records::section::Section;
-use froude_records::section_values::{Asks, MOST_RUNS, at_most, count, one_of, series};
+use froude_records::section_values::{Asks, MOST_RUNS, at_most};
 use froude_records::units::Dimension;
 
 use super::setup::{ACCELERATION, FORCE, POSITION, Setup};
-use crate::declared::{STIFFNESS, above_zero, gain as gain_of, needed, runs_of, uncertain};
+use crate::decay::axis::Motion;
+use crate::declared::{STIFFNESS, gain as gain_of, needed, runs_of, uncertain};
 use crate::error::undeclared;
 use crate::logs;
+use crate::names::EXCITED_RESPONSE;
 
-/// Most harmonics of a fit.
-const MOST_HARMONICS: u64 = 20;
+const WINDOW: &[Key] = &[
+    Key::new(
+        "from",
+        Kind::Quantity(Dimension::TIME),
+        IfMissing::Required("write from = \"14 s\", counted from the start of the wavemaker"),
+        "begin",
+    ),
+    Key::new(
+        "to",
+        Kind::Quantity(Dimension::TIME),
+        IfMissing::Required("write to = \"20 s\", before the reflected wave is back at the body"),
+        "end",
+    ),
+];
+
+/// The keys of `[source.excited_response]`.
+pub const KEYS: &[Key] = &[
+    Key::new(
+        "axis",
+        Kind::Word(&Motion::NAMES),
+        IfMissing::Required("state what the free body does: axis = \"heave\""),
+        "what the free body does: `heave`",
+    ),
+    Key::new(
+        "mass",
+        Kind::Constant(Dimension::MASS),
+        IfMissing::Required("write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves"),
+        "all that moves, with its `standard` uncertainty; a number without one counts as exact, here and below, and is said",
+    )
+    .within(Range::Positive),
+    Key::new(
+        "restoring",
+        Kind::Constant(STIFFNESS),
+        IfMissing::Required(
+            "write restoring = { value = \"2300 N/m\", standard = \"0.5 %\" }: C33 = rho g times the water plane, and springs",
+        ),
+        "C33",
+    )
+    .within(Range::Positive),
+    Key::new(
+        "delay",
+        Kind::Constant(Dimension::TIME),
+        IfMissing::Is("0 s"),
+        "of the force behind the motion, each as it stands against the wavemaker in its own log: what filters differ by",
+    ),
+    Key::new(
+        "window",
+        Kind::Table(WINDOW),
+        IfMissing::Nothing("none"),
+        "`from` and `to`, counted from the start of the wavemaker of each run. It begins when the wave has come up at the body, and ends before its reflections are back. Without it there is no B33",
+    ),
+    Key::new("harmonics", Kind::Count(20), IfMissing::Is("3"), "of every fit"),
+];
+
+const fn passing(name: &'static str, default: &'static str, doc: &'static str) -> Key {
+    Key::new(name, Kind::Quantity(Dimension::TIME), IfMissing::Is(default), doc)
+        .within(Range::NotNegative("a time that passes is not"))
+}
+
+/// The keys of a block of a plan.
+pub const PLAN: &[Key] = &[
+    Key::new(
+        "period",
+        Kind::Axis(Dimension::TIME),
+        IfMissing::Required("write \"1.2 s\", a list, or { start, stop, step }"),
+        "period of the wave",
+    )
+    .within(Range::Positive),
+    Key::new(
+        "stroke",
+        Kind::Quantity(Dimension::LENGTH),
+        IfMissing::Required("write stroke = \"9 mm\", the amplitude of the wavemaker"),
+        "amplitude of the wavemaker",
+    )
+    .within(Range::Positive),
+    Key::new(
+        "force",
+        Kind::Quantity(Dimension::FORCE),
+        IfMissing::Required("write force = \"12 N\", the amplitude to expect of the exciting force on the held body"),
+        "amplitude to expect of the exciting force on the held body",
+    )
+    .within(Range::Positive),
+    Key::new("held", Kind::Count(MOST_RUNS as u64), IfMissing::Is("1"), "runs with the body held, at each period"),
+    Key::new("free", Kind::Count(MOST_RUNS as u64), IfMissing::Is("1"), "runs with it free, at each period"),
+    passing("still", "2 s", "at rest on the log before the wavemaker starts"),
+    passing("ramp", "2 s", "the wavemaker comes to its full stroke in this time"),
+    passing("travel", "5 s", "from the wavemaker's start until the wave is at the body"),
+    Key::new(
+        "lasts",
+        Kind::Quantity(Dimension::TIME),
+        IfMissing::Is("25 s"),
+        "so long the wavemaker runs, and the log from there",
+    )
+    .within(Range::Positive),
+    Key::new("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), IfMissing::Is("200 Hz"), "sampling rate of the log")
+        .within(Range::Positive),
+];
 
 /// One block of planned runs: at every period so many with the body held, and so many with it free.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,50 +157,28 @@ pub struct ExcitedPlan {
 
 /// Reads `[source.excited_response]`; the errors of the budget are not in it.
 pub(super) fn excited(s: &Section<'_>) -> Result<Setup, RecordError> {
-    s.only(&["axis", "mass", "restoring", "delay", "window", "harmonics"])?;
-    let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
-        .ok_or_else(|| s.missing("axis", "state what the free body does: axis = \"heave\""))?;
-    if let (true, Some(value)) = (axis != Motion::Heave, s.get("axis")) {
+    let values = Values::read(s, KEYS)?;
+    if values.word("axis", &Motion::ALL) != Some(Motion::Heave) {
         let problem = "is not reduced from waves: only heave of a body that is symmetric fore and aft stands alone, whereas sway and roll (surge and pitch) are coupled by \
                        added masses off the diagonal, which one equation does not hold; write axis = \"heave\"";
-        return Err(s.wrong("axis", value, problem));
+        return Err(values.wrong("axis", problem));
     }
-    let positive = |key: &'static str, dimension, like: &str| {
-        above_zero(s, key, dimension)?.map(uncertain).ok_or_else(|| s.missing(key, like))
-    };
-    let window = s.section("window")?.map(|w| -> Result<[f64; 2], RecordError> {
-        w.only(&["from", "to"])?;
-        let need = |key: &'static str, like: &str| -> Result<f64, RecordError> {
-            w.quantity(key, Dimension::TIME)?.ok_or_else(|| w.missing(key, like))
+    let window_s = values.table("window").map(|window| {
+        let time = |key: &str| window.need(key, window.number(key));
+        let (from, to) = (time("from")?, time("to")?);
+        let problem = || {
+            format!(
+                "makes a window from {from} s to {to} s; it must begin at 0 s or later, and end after its beginning"
+            )
         };
-        let from = need("from", "write from = \"14 s\", counted from the start of the wavemaker")?;
-        let to = need("to", "write to = \"20 s\", before the reflected wave is back at the body")?;
-        match w.get("to") {
-            Some(value) if !(from >= 0.0 && to > from) => Err(w.wrong(
-                "to",
-                value,
-                format!(
-                    "makes a window from {from} s to {to} s; it must begin at 0 s or later, and end after its beginning"
-                ),
-            )),
-            _ => Ok([from, to]),
-        }
+        if from >= 0.0 && to > from { Ok([from, to]) } else { Err(window.wrong("to", problem())) }
     });
-    let mass_kg = positive(
-        "mass",
-        Dimension::MASS,
-        "write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves",
-    )?;
-    let restoring_n_m = positive(
-        "restoring",
-        STIFFNESS,
-        "write restoring = { value = \"2300 N/m\", standard = \"0.5 %\" }: C33 = rho g times the water plane, and springs",
-    )?;
+    let constant = |key: &str| values.need(key, values.constant(key)).map(uncertain);
     Ok(Setup {
-        delay_s: uncertain(declared(s, "delay", Dimension::TIME)?.unwrap_or(Declared::exact(0.0))),
-        window_s: window.transpose()?,
-        harmonics: count(s, "harmonics", MOST_HARMONICS)?.unwrap_or(3),
-        ..Setup::new(mass_kg, restoring_n_m)
+        delay_s: constant("delay")?,
+        window_s: window_s.transpose()?,
+        harmonics: values.need("harmonics", values.count("harmonics"))?,
+        ..Setup::new(constant("mass")?, constant("restoring")?)
     })
 }
 
@@ -151,37 +224,21 @@ pub fn plan(source: &Source) -> Result<Vec<ExcitedPlan>, RecordError> {
 
 /// Reads a `[[source.plan]]` of waves.
 fn block(s: &Section<'_>) -> Result<ExcitedPlan, RecordError> {
-    s.only(&["period", "stroke", "force", "held", "free", "still", "ramp", "travel", "lasts", "rate"])?;
-    let period =
-        s.get("period").ok_or_else(|| s.missing("period", "write \"1.2 s\", a list, or { start, stop, step }"))?;
-    let need = |key: &'static str, dimension, like: &str| -> Result<f64, RecordError> {
-        s.positive(key, dimension)?.ok_or_else(|| s.missing(key, like))
-    };
-    let runs = |key: &'static str| Ok::<_, RecordError>(count(s, key, MOST_RUNS as u64)?.unwrap_or(1));
+    let values = Values::read(s, PLAN)?;
+    let number = |key: &str| values.need(key, values.number(key));
+    let count = |key: &str| values.need(key, values.count(key));
     let out = ExcitedPlan {
-        period_s: series(s, "period", period, Dimension::TIME)?,
-        stroke_m: need("stroke", Dimension::LENGTH, "write stroke = \"9 mm\", the amplitude of the wavemaker")?,
-        force_n: need(
-            "force",
-            Dimension::FORCE,
-            "write force = \"12 N\", the amplitude to expect of the exciting force on the held body",
-        )?,
-        held: runs("held")?,
-        free: runs("free")?,
-        still_s: s.quantity("still", Dimension::TIME)?.unwrap_or(2.0),
-        ramp_s: s.quantity("ramp", Dimension::TIME)?.unwrap_or(2.0),
-        travel_s: s.quantity("travel", Dimension::TIME)?.unwrap_or(5.0),
-        lasts_s: s.positive("lasts", Dimension::TIME)?.unwrap_or(25.0),
-        rate_hz: s.positive("rate", Dimension::ANGULAR_SPEED)?.unwrap_or(200.0),
+        period_s: values.numbers("period"),
+        stroke_m: number("stroke")?,
+        force_n: number("force")?,
+        held: count("held")?,
+        free: count("free")?,
+        still_s: number("still")?,
+        ramp_s: number("ramp")?,
+        travel_s: number("travel")?,
+        lasts_s: number("lasts")?,
+        rate_hz: number("rate")?,
     };
-    if out.period_s.iter().any(|t| *t <= 0.0) {
-        return Err(s.wrong("period", period, "must be larger than zero"));
-    }
-    for (key, time_s) in [("still", out.still_s), ("ramp", out.ramp_s), ("travel", out.travel_s)] {
-        if let (true, Some(value)) = (time_s < 0.0, s.get(key)) {
-            return Err(s.wrong(key, value, "is negative; a time that passes is not"));
-        }
-    }
     at_most(&s.place(), &[("period", out.period_s.len()), ("held + free", out.held + out.free)], MOST_RUNS)?;
     Ok(out)
 }

@@ -10,15 +10,64 @@
 //! tow       = { still = "5 s", acceleration = "0.3 m/s^2", steady = "10 s", rate = "100 Hz" }
 //! ```
 
-use crate::names::STEADY;
+use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
 use froude_records::RecordError;
 use froude_records::campaign::Source;
 use froude_records::section::Section;
 use froude_records::units::Dimension;
 use froude_rig::steady::Tow;
 
+use crate::names::STEADY;
+
 /// N/s.
 const FORCE_RATE: Dimension = Dimension::new(1, 1, -3);
+
+const fn positive(name: &'static str, dimension: Dimension, default: &'static str, doc: &'static str) -> Key {
+    Key::new(name, Kind::Quantity(dimension), IfMissing::Is(default), doc).within(Range::Positive)
+}
+
+const fn needed(name: &'static str, dimension: Dimension, advice: &'static str, doc: &'static str) -> Key {
+    Key::new(name, Kind::Quantity(dimension), IfMissing::Required(advice), doc).within(Range::Positive)
+}
+
+/// The keys of `[source.steady]`.
+pub const KEYS: &[Key] = &[
+    positive("block", Dimension::TIME, "0.5 s", "the speed is averaged over blocks of this length"),
+    positive(
+        "tolerance",
+        Dimension::ONE,
+        "1 %",
+        "a stretch is steady where its blocks lie within ± this of the middle of their range",
+    ),
+    Key::new(
+        "settle",
+        Kind::Quantity(Dimension::TIME),
+        IfMissing::Is("1 s"),
+        "left out at the start of that stretch, and after the body has come to rest",
+    )
+    .within(Range::NotNegative("a time that is left out is not")),
+    positive("shortest", Dimension::TIME, "2 s", "a shorter window is none"),
+    Key::new(
+        "drift",
+        Kind::Table(&[
+            needed("rate", FORCE_RATE, "write rate = \"2 mN/min\"", "as much as it may be"),
+            needed("most", Dimension::FORCE, "write most = \"10 mN\"", "more than this makes a zero useless"),
+        ]),
+        IfMissing::Nothing("not declared"),
+        "how far the zero of the cell may drift between a still run and a test (`rate`), and how much of it is accepted (`most`)",
+    ),
+    Key::new(
+        "tow",
+        Kind::Table(&[
+            positive("still", Dimension::TIME, "5 s", "at rest before and after"),
+            positive("acceleration", Dimension::ACCELERATION, "0.3 m/s^2", "up to speed and back"),
+            positive("steady", Dimension::TIME, "10 s", "at constant speed"),
+            positive("rate", Dimension::ANGULAR_SPEED, "100 Hz", "samples a second"),
+        ]),
+        IfMissing::Is("{ still = \"5 s\", acceleration = \"0.3 m/s^2\", steady = \"10 s\", rate = \"100 Hz\" }"),
+        "how planned runs are driven: time at rest before and after, acceleration, time at constant speed, samples a second",
+    ),
+];
 
 /// How steady tows are reduced, and how planned ones are driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,39 +113,37 @@ pub fn declared(source: &Source) -> Result<SteadySpec, RecordError> {
 
 /// Reads `[source.steady]`.
 fn steady(s: &Section<'_>) -> Result<SteadySpec, RecordError> {
-    s.only(&["settle", "shortest", "tolerance", "block", "drift", "tow"])?;
-    let usual = SteadySpec::default();
-    let drift = s.section("drift")?.map(|d| -> Result<Drift, RecordError> {
-        d.only(&["rate", "most"])?;
-        let need = |key: &'static str, dimension, like: &str| {
-            d.positive(key, dimension)?.ok_or_else(|| d.missing(key, &format!("write {key} = \"{like}\"")))
-        };
-        Ok(Drift { rate_n_s: need("rate", FORCE_RATE, "2 mN/min")?, most_n: need("most", Dimension::FORCE, "10 mN")? })
+    let values = Values::read(s, KEYS)?;
+    let number = |values: &Values, key: &str| values.need(key, values.number(key));
+    let drift = values.table("drift").map(|d| -> Result<Drift, RecordError> {
+        Ok(Drift { rate_n_s: number(d, "rate")?, most_n: number(d, "most")? })
     });
-    let tow = match s.section("tow")? {
-        None => usual.tow,
-        Some(t) => {
-            t.only(&["still", "acceleration", "steady", "rate"])?;
-            Tow {
-                still_s: t.positive("still", Dimension::TIME)?.unwrap_or(usual.tow.still_s),
-                acceleration_m_s2: t
-                    .positive("acceleration", Dimension::ACCELERATION)?
-                    .unwrap_or(usual.tow.acceleration_m_s2),
-                steady_s: t.positive("steady", Dimension::TIME)?.unwrap_or(usual.tow.steady_s),
-                rate_hz: t.positive("rate", Dimension::ANGULAR_SPEED)?.unwrap_or(usual.tow.rate_hz),
-            }
-        }
-    };
-    let out = SteadySpec {
-        settle_s: s.quantity("settle", Dimension::TIME)?.unwrap_or(usual.settle_s),
-        shortest_s: s.positive("shortest", Dimension::TIME)?.unwrap_or(usual.shortest_s),
-        tolerance: s.positive("tolerance", Dimension::ONE)?.unwrap_or(usual.tolerance),
-        block_s: s.positive("block", Dimension::TIME)?.unwrap_or(usual.block_s),
+    let tow = values.need("tow", values.table("tow"))?;
+    Ok(SteadySpec {
+        settle_s: number(&values, "settle")?,
+        shortest_s: number(&values, "shortest")?,
+        tolerance: number(&values, "tolerance")?,
+        block_s: number(&values, "block")?,
         drift: drift.transpose()?,
-        tow,
-    };
-    if let (true, Some(value)) = (out.settle_s < 0.0, s.get("settle")) {
-        return Err(s.wrong("settle", value, "is negative; a time that is left out is not"));
+        tow: Tow {
+            still_s: number(tow, "still")?,
+            acceleration_m_s2: number(tow, "acceleration")?,
+            steady_s: number(tow, "steady")?,
+            rate_hz: number(tow, "rate")?,
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use froude_records::section::{Source as Text, parse};
+
+    use super::*;
+
+    #[test]
+    fn an_empty_section_is_what_is_usual() {
+        let text = Text { path: std::path::Path::new("c.toml"), text: "" };
+        let document = parse(text).unwrap();
+        assert_eq!(steady(&Section::new(text, "source.steady", document.get_ref(), 0)).unwrap(), SteadySpec::default());
     }
-    Ok(out)
 }

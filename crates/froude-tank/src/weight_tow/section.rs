@@ -17,15 +17,101 @@
 //! angle  = { start = "3 deg", stop = "39 deg", step = "3 deg" }
 //! ```
 
-use crate::names::WEIGHT_TOW;
+use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
 use froude_records::RecordError;
 use froude_records::campaign::{PlanBlock, Source};
-use froude_records::run::{Declared, declared};
+use froude_records::run::Declared;
 use froude_records::section::Section;
-use froude_records::section_values::{Asks, MOST_RUNS, at_most, configurations, count, series};
+use froude_records::section_values::{Asks, MOST_RUNS};
 use froude_records::units::Dimension;
 
-use crate::declared::{above_zero, runs_of};
+use crate::declared::{REPEATS, configurations, runs_of};
+use crate::names::WEIGHT_TOW;
+
+const LENS: &[Key] = &[
+    Key::new(
+        "centre",
+        Kind::Number,
+        IfMissing::Required("write centre = 960, the pixel that the axis of the lens goes through"),
+        "c, pixels",
+    ),
+    Key::new("radial", Kind::Number, IfMissing::Required("write radial = -2.0e-8, in 1/pixel²"), "k, 1/pixel²"),
+];
+const TOW: &[Key] = &[
+    Key::new("travel", Kind::Quantity(Dimension::LENGTH), IfMissing::Is("0.8 m"), "way of a run")
+        .within(Range::Positive),
+    Key::new("still", Kind::Quantity(Dimension::TIME), IfMissing::Is("2 s"), "time at rest before and after")
+        .within(Range::Positive),
+    Key::new("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), IfMissing::Is("50 Hz"), "frames, and samples, a second")
+        .within(Range::Positive),
+];
+
+/// The keys of `[source.weight_tow]`.
+pub const KEYS: &[Key] = &[
+    Key::new(
+        "scale",
+        Kind::Constant(Dimension::LENGTH),
+        IfMissing::Nothing("required for a mark in pixels"),
+        "size of a pixel at the plane of the mark; its `standard` is an error that all runs share",
+    )
+    .within(Range::Positive),
+    Key::new(
+        "lens",
+        Kind::Table(LENS),
+        IfMissing::Nothing("none"),
+        "radial distortion along the rail: x = s (u − c)(1 + k (u − c)²), `centre` c in pixels, `radial` k in 1/pixel²",
+    ),
+    Key::new(
+        "moving_mass",
+        Kind::Constant(Dimension::MASS),
+        IfMissing::Nothing("none"),
+        "all that moves: wagon, rod, body and the water that goes with them; the hanging weight's own mass is added. With it the drag along the rail is that of the balance; without it that of the cell, and runs that are not shown to be steady are left out",
+    )
+    .within(Range::Positive),
+    Key::new("friction", Kind::Constant(Dimension::FORCE), IfMissing::Is("0 N"), "of pulleys and rail")
+        .within(Range::NotNegative("friction is not")),
+    Key::new(
+        "window",
+        Kind::Quantity(Dimension::LENGTH),
+        IfMissing::Is("0.2 m"),
+        "the last part of the way, over which speed and loads are taken",
+    )
+    .within(Range::Positive),
+    Key::new(
+        "tolerance",
+        Kind::Quantity(Dimension::ONE),
+        IfMissing::Is("2 %"),
+        "change of the speed over it that still counts as steady",
+    )
+    .within(Range::Positive),
+    Key::new(
+        "reached",
+        Kind::Quantity(Dimension::ONE),
+        IfMissing::Is("50 %"),
+        "part of the terminal speed that a run must have",
+    )
+    .within(Range::Positive),
+    Key::new(
+        "tow",
+        Kind::Table(TOW),
+        IfMissing::Is("{ travel = \"0.8 m\", still = \"2 s\", rate = \"50 Hz\" }"),
+        "of planned runs: `travel`, time at rest before and after (`still`), frames a second (`rate`)",
+    ),
+];
+
+/// The keys of a block of a plan.
+pub const PLAN: &[Key] = &[
+    Key::new("configurations", Kind::Texts, IfMissing::Nothing("one unnamed body"), "names of the configurations"),
+    Key::new(
+        "weight",
+        Kind::Axis(Dimension::FORCE),
+        IfMissing::Required("write \"100 mN\", a list, or { start, stop, step }"),
+        "the hanging weight",
+    )
+    .within(Range::Positive),
+    Key::new("angle", Kind::Axis(Dimension::ONE), IfMissing::Is("0 deg"), "angle of the body to the rail"),
+    REPEATS,
+];
 
 /// What is declared of rig and camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,37 +149,23 @@ pub struct Lens {
 
 /// Reads `[source.weight_tow]`.
 pub(super) fn weight_tow(s: &Section<'_>) -> Result<WeightTowSpec, RecordError> {
-    s.only(&["scale", "lens", "moving_mass", "friction", "window", "tolerance", "reached", "tow"])?;
-    let lens = s.section("lens")?.map(|l| -> Result<Lens, RecordError> {
-        l.only(&["centre", "radial"])?;
-        let need = |key: &'static str, like: &str| l.number(key)?.ok_or_else(|| l.missing(key, like));
-        Ok(Lens {
-            centre_px: need("centre", "write centre = 960, the pixel that the axis of the lens goes through")?,
-            radial: need("radial", "write radial = -2.0e-8, in 1/pixel²")?,
-        })
+    let values = Values::read(s, KEYS)?;
+    let number = |values: &Values, key: &str| values.need(key, values.number(key));
+    let lens = values.table("lens").map(|l| -> Result<Lens, RecordError> {
+        Ok(Lens { centre_px: number(l, "centre")?, radial: number(l, "radial")? })
     });
-    let friction = declared(s, "friction", Dimension::FORCE)?;
-    if let (Some(number), Some(value)) = (friction.filter(|f| f.value < 0.0), s.get("friction")) {
-        return Err(s.wrong("friction", value, format!("is {} N; friction is not negative", number.value)));
-    }
-    let tow = s.section("tow")?;
-    if let Some(tow) = &tow {
-        tow.only(&["travel", "still", "rate"])?;
-    }
-    let of_tow = |key: &'static str, dimension, usual: f64| -> Result<f64, RecordError> {
-        Ok(tow.as_ref().map(|t| t.positive(key, dimension)).transpose()?.flatten().unwrap_or(usual))
-    };
+    let tow = values.need("tow", values.table("tow"))?;
     Ok(WeightTowSpec {
-        scale_m: above_zero(s, "scale", Dimension::LENGTH)?,
+        scale_m: values.constant("scale"),
         lens: lens.transpose()?,
-        moving_mass_kg: above_zero(s, "moving_mass", Dimension::MASS)?,
-        friction_n: friction.unwrap_or(Declared::exact(0.0)),
-        window_m: s.positive("window", Dimension::LENGTH)?.unwrap_or(0.2),
-        tolerance: s.positive("tolerance", Dimension::ONE)?.unwrap_or(0.02),
-        reached: s.positive("reached", Dimension::ONE)?.unwrap_or(0.5),
-        travel_m: of_tow("travel", Dimension::LENGTH, 0.8)?,
-        still_s: of_tow("still", Dimension::TIME, 2.0)?,
-        rate_hz: of_tow("rate", Dimension::ANGULAR_SPEED, 50.0)?,
+        moving_mass_kg: values.constant("moving_mass"),
+        friction_n: values.need("friction", values.constant("friction"))?,
+        window_m: number(&values, "window")?,
+        tolerance: number(&values, "tolerance")?,
+        reached: number(&values, "reached")?,
+        travel_m: number(tow, "travel")?,
+        still_s: number(tow, "still")?,
+        rate_hz: number(tow, "rate")?,
     })
 }
 
@@ -111,25 +183,13 @@ pub fn plan(source: &Source) -> Result<Vec<PlanBlock>, RecordError> {
 
 /// Reads a `[[source.plan]]` of weights.
 fn block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
-    s.only(&["configurations", "weight", "angle", "repeats"])?;
-    let weight =
-        s.get("weight").ok_or_else(|| s.missing("weight", "write \"100 mN\", a list, or { start, stop, step }"))?;
-    let out = PlanBlock {
-        configurations: configurations(s)?,
-        speed_m_s: series(s, "weight", weight, Dimension::FORCE)?,
-        angle_rad: s.get("angle").map_or(Ok(vec![0.0]), |v| series(s, "angle", v, Dimension::ONE))?,
+    let values = Values::read(s, PLAN)?;
+    values.at_most(MOST_RUNS)?;
+    Ok(PlanBlock {
+        configurations: configurations(&values),
+        speed_m_s: values.numbers("weight"),
+        angle_rad: values.numbers("angle"),
         pitch_rad: vec![0.0],
-        repeats: count(s, "repeats", MOST_RUNS as u64)?.unwrap_or(1),
-    };
-    if out.speed_m_s.iter().any(|w| *w <= 0.0) {
-        return Err(s.wrong("weight", weight, "must be larger than zero"));
-    }
-    let numbers = [
-        ("configurations", out.configurations.len()),
-        ("weight", out.speed_m_s.len()),
-        ("angle", out.angle_rad.len()),
-        ("repeats", out.repeats),
-    ];
-    at_most(&s.place(), &numbers, MOST_RUNS)?;
-    Ok(out)
+        repeats: values.need("repeats", values.count("repeats"))?,
+    })
 }

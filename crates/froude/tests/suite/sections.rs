@@ -59,8 +59,8 @@ fn a_mistake_in_the_section_of_a_method_is_passed_over_by_no_verb() {
         (
             "accelerated_tow",
             "[[source.plan]]\nspeed = \"0.3 m/s\"\nacceleration = [\"0 m/s^2\"]",
-            (8, 16),
-            "`acceleration` must be larger than zero; the sign is that of the speed",
+            (8, 17),
+            "`acceleration` is \"0 m/s^2\"; it must be larger than zero",
         ),
     ] {
         let source =
