@@ -1,6 +1,6 @@
 //! Methods with a motor-driven body: a motor moves the body to and fro while load cells between motor and body measure the loads of the rig on it.
 //!
-//! A method states what differs: its [`Spec`] (keys, roles, channels, words), how its section is read, and its equation ([`MotorDriven::terms`]) as known motions
+//! A method states what differs: its [`spec::Spec`] (keys, roles, channels, words), how its section is read, and its equation ([`method::MotorDriven::terms`]) as known motions
 //! times coefficients and declared constants. The rest is derived from that for all of them:
 //!
 //! | module                     | what                                                              |

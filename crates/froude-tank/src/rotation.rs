@@ -14,7 +14,7 @@
 //! **Setting.** One rigid body, its centre on the axis, water at rest; small corrections of the flow that a body in rotation drags along are left out.
 //! **Frame.** The body's z axis lies along the axis of rotation; θ and the moment are positive the same way round. **Units.** SI; angles in radians.
 //!
-//! **Source.** USR eq. 7 (the fluid's torque); [`derive`] for what follows from the λs.
+//! **Source.** USR eq. 7 (the fluid's torque); [`mod@derive`] for what follows from the λs.
 //!
 //! Not here: turning without end (the water turns with the body), a body away from its axis (see [`crate::oscillation`]), a stream, shafts that twist,
 //! roll damping of a hull with a free surface.

@@ -6,7 +6,7 @@
 //! f_y = (m − Y_v̇) v̇ − Y_v v, m_z = (m x_G − N_v̇) v̇ − N_v v; in air m v̇ and m x_G v̇,
 //!
 //! and Y_v̇, N_v̇, Y_v, N_v and the delay of the loads behind the motion are fitted together in time ([`crate::driven`]), both loads of all runs at once.
-//! [`by_itself`] gives amplitude and phase of the loads of each run.
+//! [`mod@by_itself`] gives amplitude and phase of the loads of each run.
 //!
 //! **Setting.** Small motions of a rigid body at one speed, waves of its own making left out. **Frame.** Body axes at the reference point: x forward, y to starboard,
 //! z down; moments about z. Y and N are of the water on the body (SNAME), so that Y_v̇ and Y_v are negative. **Units.** SI.

@@ -4,7 +4,7 @@
 //! of the rows, the zeros and the regression, β = S y; the noise of the sensors with its correlation goes through that sum as it is, and the declared
 //! errors by the directions that the reduction states.
 //!
-//! **Source.** As [`crate::oscillation::forecast`].
+//! **Source.** As [`crate::driven::forecast`].
 
 use froude_fit::FEWEST_CLUSTERS;
 use froude_fit::budget::{Kind, Part};

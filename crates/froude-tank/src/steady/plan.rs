@@ -7,7 +7,7 @@
 //!
 //! over the declared errors e that all runs share; what each run has for itself goes into S.
 //!
-//! **Source.** As [`crate::oscillation::forecast`].
+//! **Source.** As [`crate::driven::forecast`].
 
 use froude_fit::budget::Kind;
 use froude_fit::faer::Mat;
