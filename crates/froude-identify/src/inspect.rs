@@ -213,7 +213,7 @@ pub fn campaign(path: &Path) -> Result<(Campaign, Inspection), IdentifyError> {
 }
 
 fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Vec<Finding>), IdentifyError> {
-    // Runs that a method plans in a form of its own are none of rows.
+    // A plan in the form of a method has no rows.
     let rows = source.rows().unwrap_or_default();
     let planned: usize =
         rows.iter().map(|p| p.configurations.len() * p.speed_m_s.len() * p.angle_rad.len() * p.repeats).sum();

@@ -27,7 +27,7 @@ pub struct Planned {
     pub swing: Swing,
     /// Samples a second.
     pub rate_hz: f64,
-    /// Factors in this run on the coefficients whose loads may change from run to run, by group \[-\]; 1 where there is none.
+    /// One factor \[-\] for each group of coefficients that vary from run to run; a missing factor is 1.
     pub of_drag: Vec<f64>,
 }
 

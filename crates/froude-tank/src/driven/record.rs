@@ -13,7 +13,7 @@ use super::setup::Setup;
 use super::spec::{Channel, Point};
 use crate::joint::{JointFit, record};
 
-/// Laws whose criterion lies within this of the smallest are not told apart.
+/// Differences of AICc below this do not favour a law.
 const ALIKE: f64 = 2.0;
 
 /// AICc of every law, at one effective number of observations: that of the law with the smallest residual. Residuals of a wrong law repeat with the

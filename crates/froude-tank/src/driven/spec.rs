@@ -35,7 +35,7 @@ pub struct Spec {
     pub guessed: &'static str,
     /// What a residual that repeats may be, in words.
     pub repeats: &'static str,
-    /// Why coefficients may not be told apart by runs, and what to do.
+    /// Why runs may leave coefficients undetermined, and what to do.
     pub undetermined: &'static str,
     /// The same of a plan.
     pub unplanned: &'static str,
