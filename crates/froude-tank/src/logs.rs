@@ -249,6 +249,12 @@ pub(crate) fn stamps_standard_s(log: &TankLog, channels: [&str; 2]) -> f64 {
     a.hypot(b)
 }
 
+/// The clock and the delay by which the stamps of a channel were moved.
+pub(crate) fn lateness<'a>(log: &'a TankLog, channel: &str) -> Vec<&'a str> {
+    let is_it = |step: &&Step| step.channel == channel && ["clock", "delay"].contains(&step.step.as_str());
+    log.done.iter().filter(is_it).map(|step| step.words.as_str()).collect()
+}
+
 /// The window of a log that is used; `words` follow its ends.
 pub(crate) fn window_step(log: &TankLog, rows: &Range<usize>, words: &str) -> Step {
     let (from_s, to_s) = (log.log.time_s[rows.start], log.log.time_s[rows.end - 1]);

@@ -87,7 +87,7 @@ fn what_the_campaign_does_not_declare_is_asked_for() {
         (
             "quantity = \"torque\"\nstandard = \"0.2 %\"",
             "quantity = \"force\"\nstandard = \"0.2 %\"",
-            "none that a rotation has",
+            "is not a quantity of a rotation",
         ),
         (
             "quantity = \"torque\"\nstandard = \"0.2 %\"",

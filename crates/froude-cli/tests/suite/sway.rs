@@ -21,8 +21,8 @@ fn a_campaign_is_planned_simulated_and_identified() {
         let (low, high) = (c["interval_95"][0].as_f64().unwrap(), c["interval_95"][1].as_f64().unwrap());
         assert!(low < truth && truth < high, "{name}: {c}");
         let planned = expected.iter().find(|e| e["coefficient"] == name).unwrap()["half_width_95"].as_f64().unwrap();
-        // χ² of four clusters: 0.35 to 1.7 of the scatter, and what is declared.
-        assert!((0.3..1.8).contains(&(0.5 * (high - low) / planned)), "{name}: {c} {planned}");
+        // √(χ²/4), 99 % of it, where the interval is of scatter alone.
+        assert!((0.227..1.928).contains(&(0.5 * (high - low) / planned)), "{name}: {c} {planned}");
     }
     // Y_v over ½ρL²U = 1620 N s/m.
     let prime = estimate["derived"]["Y_v_prime"]["value"].as_f64().unwrap();
@@ -32,7 +32,8 @@ fn a_campaign_is_planned_simulated_and_identified() {
     let by_run = result["sections"].as_array().unwrap().iter().find_map(|s| s["by_run"].as_array()).unwrap();
     assert_eq!(by_run.len(), 5);
     for row in by_run {
-        assert!((row["Y_v_dot"].as_f64().unwrap() + 38.0).abs() < 3.0, "{row}");
+        // The slowest run: 0.1 N correlated over 0.5 s is 0.02 N of the amplitude in 50 s, 0.63 kg of its 0.0316 m/s². The gain of 0.3 % of 84 kg is 0.25 kg: four of 0.68 kg.
+        assert!((row["Y_v_dot"].as_f64().unwrap() + 38.0).abs() < 2.7, "{row}");
     }
 }
 
@@ -63,7 +64,7 @@ fn what_cannot_be_used_is_refused_with_its_place() {
         (
             "quantity = \"f_y\"\nstandard = \"0.3 %\"",
             "quantity = \"f_x\"\nstandard = \"0.3 %\"",
-            "is none that a pure sway has: it has sway, f_y, m_z, density",
+            "is not a quantity of a pure sway, which has sway, f_y, m_z, density",
         ),
         ("model = \"sway\"", "model = \"f4\"", "a pure sway has one law: write model = \"sway\""),
     ] {
@@ -75,4 +76,28 @@ fn what_cannot_be_used_is_refused_with_its_place() {
     replace_in(&folder.path().join("runs/002.toml"), "speed = \"1 m/s\"", "flow = \"1 m/s\"");
     let text = refused(folder.path(), &["identify", "campaign.toml"]);
     assert!(text.contains("002.csv") && text.contains("the carriage speed is not declared"), "{text}");
+    replace_in(&folder.path().join("runs/002.toml"), "flow = \"1 m/s\"", "speed = \"1 m/s\"");
+    // One delay is fitted for both loads: they may be late together, but not each for itself.
+    for run in 1..=5 {
+        let sidecar = folder.path().join(format!("runs/{run:03}.toml"));
+        replace_in(
+            &sidecar,
+            "sign = 1, frame = \"body\", clock = \"log\" }      #",
+            "sign = 1, frame = \"body\", clock = \"daq\" }      #",
+        );
+        let text = std::fs::read_to_string(&sidecar).unwrap();
+        let clock = "\n[clocks.daq]\noffset = \"0 ms\"\nskew = \"0 ms/s\"\nstandard = \"5 ms\"\nfound = \"by hand\"\n";
+        std::fs::write(&sidecar, text + clock).unwrap();
+    }
+    let text = refused(folder.path(), &["identify", "campaign.toml"]);
+    assert!(text.contains("the times of f_y and m_z are known relative to each other only to 5.0 ms"), "{text}");
+    for run in 1..=5 {
+        let sidecar = folder.path().join(format!("runs/{run:03}.toml"));
+        replace_in(
+            &sidecar,
+            "sign = 1, frame = \"body\", clock = \"log\" }        #",
+            "sign = 1, frame = \"body\", clock = \"daq\" }        #",
+        );
+    }
+    json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
 }

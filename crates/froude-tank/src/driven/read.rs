@@ -50,7 +50,7 @@ pub fn setups<M: MotorDriven>(
             let Some(constant) = constants.iter_mut().find(|c| c.quantities.contains(&quantity)) else {
                 let all: Vec<&str> = constants.iter().filter_map(|c| c.quantities.first()).copied().collect();
                 let what = format!(
-                    "quantity = {quantity:?} is none that {} has: it has {}; write the standard uncertainty of any other constant in [source.{}]",
+                    "quantity = {quantity:?} is not a quantity of {}, which has {}; write the standard uncertainty of any other constant in [source.{}]",
                     M::SPEC.called,
                     all.join(", "),
                     M::SPEC.name

@@ -72,13 +72,16 @@ pub(crate) fn identified<M: MotorDriven>(
     let of_log = |log| spec.loads.iter().map(move |load| stamps(log, load)).fold(0.0, f64::max);
     let clocks_s = logs.iter().map(of_log).fold(0.0, f64::max);
     for log in &logs {
-        let apart = |pair: &[Channel]| logs::stamps_standard_s(log, [pair[0].name, pair[1].name]);
-        if let Some(pair) = spec.loads.windows(2).find(|pair| apart(pair) > 0.0) {
+        // An error that both loads have from one clock or one sampler is part of their one delay.
+        let late = |load: &Channel| logs::lateness(log, load.name);
+        let apart_s = |pair: &[Channel]| logs::stamps_standard_s(log, [pair[0].name, pair[1].name]);
+        let is_apart = |pair: &&[Channel]| apart_s(pair) > 0.0 && late(&pair[0]) != late(&pair[1]);
+        if let Some(pair) = spec.loads.windows(2).find(is_apart) {
             let what = format!(
-                "{} and {} have stamps that are known against each other to {:.1} ms, and one delay is fitted for both: log the loads on one clock",
+                "the times of {} and {} are known relative to each other only to {:.1} ms, and one delay is fitted for both: log the loads with one clock",
                 pair[0].name,
                 pair[1].name,
-                1e3 * apart(pair)
+                1e3 * apart_s(pair)
             );
             return Err(MethodError::input(&log.log.path, what));
         }
@@ -174,7 +177,7 @@ pub fn of_fit<M: MotorDriven>(fitted: &Fitted<'_, M>) -> Vec<Finding> {
     out
 }
 
-/// Runs of one body: the coefficients of two are no numbers of one.
+/// Refuses runs of different configurations, which have different coefficients.
 fn one_body(logs: &[TankLog]) -> Result<(), MethodError> {
     let name = |log: &TankLog| log.log.meta.configuration.clone();
     let of_body = || logs.iter().filter(|log| log.log.meta.role != Role::Tare);
