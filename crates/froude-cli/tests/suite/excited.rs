@@ -154,7 +154,7 @@ fn what_a_run_lacks_is_said_with_its_place() {
         ("to = \"20.5 s\"", "to = \"90 s\"", "does not lie within the log"),
         ("to = \"20.5 s\"", "to = \"3 s\"", "makes a window from 14 s to 3 s"),
         ("axis      = \"heave\"", "axis = \"sway\"", "coupled"),
-        ("quantity = \"f_z\"", "quantity = \"angle\"", "is none that an excited response has"),
+        ("quantity = \"f_z\"", "quantity = \"angle\"", "is not a quantity of an excited response"),
         ("mass      = {", "# mass = {", "write mass"),
     ] {
         std::fs::write(&campaign, declared.replace(from, to)).unwrap();

@@ -46,7 +46,7 @@ pub fn section<M: MotorDriven>(fitted: &Fitted<'_, M>) -> Section {
     let named = if law == spec.law { String::new() } else { format!("Law {law}. ") };
     let loads: Vec<&str> = spec.loads.iter().map(|load| load.name).collect();
     let paragraph = format!(
-        "{named}In each run {} of start-up left out; all whole cycles that follow (or as many as were asked for) are used, and an incomplete cycle at the end is counted with the last. \
+        "{named}In each run, {} left out as start-up. All later whole cycles are used, or the number requested; an incomplete cycle at the end is counted with the last one. \
          The {} is fitted by {} harmonics; rate and acceleration are their derivatives. Then the zeros of {}, the delay and {} are fitted together, to all runs at once; {}.",
         counted(setup.cycles.skip, "cycle is", "cycles are"),
         spec.motion.name,

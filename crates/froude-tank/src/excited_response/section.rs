@@ -117,7 +117,7 @@ pub const PLAN: &[Key] = &[
     Key::new("held", Kind::Count(MOST_RUNS as u64), IfMissing::Is("1"), "runs with the body held, at each period"),
     Key::new("free", Kind::Count(MOST_RUNS as u64), IfMissing::Is("1"), "runs with it free, at each period"),
     passing("still", "2 s", "at rest on the log before the wavemaker starts"),
-    passing("ramp", "2 s", "the wavemaker comes to its full stroke in this time"),
+    passing("ramp", "2 s", "time in which the wavemaker reaches its full stroke"),
     passing("travel", "5 s", "from the wavemaker's start until the wave is at the body"),
     Key::new(
         "lasts",
@@ -198,7 +198,7 @@ pub fn setup_of(source: &Source) -> Result<Setup, MethodError> {
             "position" | POSITION => &mut out.position_relative,
             other => {
                 let what = format!(
-                    "quantity = {other:?} is none that an excited response has: it has f_z, acceleration and heave; mass, restoring and delay take their standard uncertainties in \
+                    "quantity = {other:?} is not a quantity of an excited response, which has f_z, acceleration and heave; mass, restoring and delay take their standard uncertainties in \
                      [source.excited_response]"
                 );
                 return Err(undeclared(&entry.place, what));

@@ -46,7 +46,7 @@ pub const KEYS: &[Key] = &[
         "left out at the start of that stretch, and after the body has come to rest",
     )
     .within(Range::NotNegative("a time that is left out is not")),
-    positive("shortest", Dimension::TIME, "2 s", "a shorter window is none"),
+    positive("shortest", Dimension::TIME, "2 s", "shortest window that is accepted"),
     Key::new(
         "drift",
         Kind::Table(&[
