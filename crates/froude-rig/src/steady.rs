@@ -75,6 +75,15 @@ impl Channel {
     }
 }
 
+/// What a channel shows of these values over time; the same seed gives the same log.
+#[must_use]
+pub fn read(reading: &Reading, time_s: &[f64], values: &[f64], seed: u64) -> Vec<f64> {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let step_s = time_s.get(1).map_or(1.0, |second| second - time_s[0]);
+    let mut channels = Channel::of(std::slice::from_ref(reading), step_s, &mut rng);
+    time_s.iter().zip(values).map(|(t, value)| channels[0].read(*value, *t, &mut rng)).collect()
+}
+
 /// A number in steps; 0 is none.
 pub(crate) fn stepped(value: f64, step: f64) -> f64 {
     if step > 0.0 { libm::round(value / step) * step } else { value }

@@ -25,6 +25,7 @@ pub mod method;
 pub mod motion;
 pub mod names;
 mod noise;
+pub mod observed;
 pub mod oscillation;
 mod plan;
 mod recorded;

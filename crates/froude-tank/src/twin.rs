@@ -11,6 +11,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::error::undeclared;
 
 /// Draws that a seed determines, each after the last.
+#[derive(Debug)]
 pub(crate) struct Draws(Pcg64Mcg);
 
 impl Draws {

@@ -2,7 +2,7 @@
 //!
 //! The mark's track is turned from pixels into metres by scale and lens; the speed is that of the last part of the way. Where the moving mass is
 //! declared, the drag along the rail is what the weight leaves for it less friction and inertia ([`mod@balance`]), if half of the terminal speed is reached;
-//! where it is not, the run must be shown to be steady, and the cell gives the drag. Any other run is left out. The rows go the way of every table.
+//! where it is not, the run must be shown to be steady, and the cell gives the drag. Any other run is left out. Each run is a row of a table ([`crate::observed`]).
 //!
 //! **Setting.** Straight rail, stiff string, friction that does not depend on the speed; drag between linear and quadratic.
 //! **Units.** SI, and pixels; angles in radians.
@@ -11,18 +11,305 @@
 //! |-----------------|-------------------------------------------------|---------------------------|
 //! | [`track`]       | pixels to metres, the moving part, its last part | –                        |
 //! | [`mod@balance`] | the drag of a wagon that still accelerates      | USR eq. 16, Newton        |
-//! | [`section`]     | what a campaign declares and plans              | –                         |
 //! | [`reduce`]      | the observation of a run                        | –                         |
-//! | [`simulate`]    | the runs that a campaign would give             | –                         |
-//! | [`mod@plan`]    | run matrix, what is reached, intervals          | Fisher 1922               |
+//! | [`rig`]         | the runs that a campaign would give             | –                         |
 //!
 //! Not here: tracking the mark in the film, distortion across the rail, two clocks (track and loads stand in one log).
 
 pub mod balance;
+mod keys;
 pub mod page;
-pub mod plan;
 pub mod reduce;
-pub mod section;
-pub mod simulate;
-pub mod source;
+pub mod rig;
 pub mod track;
+
+use froude_identify::declare::Values;
+use froude_identify::method::MethodError;
+use froude_records::RecordError;
+use froude_records::block::{Digits, ResultColumn, Section, TableBuilder};
+use froude_records::campaign::SensorSpec;
+use froude_records::finding::Finding;
+use froude_records::number;
+use froude_records::run::Declared as Number;
+use froude_records::run::step::Step;
+use froude_records::units::Dimension;
+
+use self::reduce::Found;
+use self::track::Lens;
+use crate::channel::Channel;
+use crate::declared::uncertain;
+use crate::error::TankError;
+use crate::findings::{note, warning};
+use crate::log::TankLog;
+use crate::logs;
+use crate::method::TankMethod;
+use crate::names::WEIGHT_TOW;
+use crate::observed::method::{ANGLE, Condition, Constant, Declared, Moves, Observed, Planned, Point, Run, Spec};
+use crate::observed::source::{self, Reduced};
+use crate::observed::twin::{Loads, Rig, Trace};
+use crate::steady::plan::variance;
+use crate::steady::point::Point as Observation;
+
+pub use keys::{KEYS, PLAN};
+
+/// The last part of the way of a wagon, each run an observation.
+pub const PULLED: TankMethod = source::method::<WeightTow>(
+    &[WEIGHT_TOW],
+    &[
+        "runs of a wagon that a hanging weight pulls, filmed: the speed at the end of the way, the drag by load cell or by the equation of motion",
+    ],
+    &[WEIGHT_TOW, "models", "uncertainty", "plan", "keep", "group", "tare"],
+);
+
+/// Residuals of the equation of motion this many times the errors of the track are none of the camera.
+const MISFIT: f64 = 3.0;
+/// Moving mass of a twin whose campaign declares none, kg.
+const USUAL_KG: f64 = 4.0;
+/// Size of a pixel of a twin whose campaign declares none, m.
+const USUAL_SCALE_M: f64 = 1.2e-3;
+/// Constants of the twin, by their place.
+const SCALE: usize = 0;
+const MASS: usize = 1;
+const FRICTION: usize = 2;
+
+const WAY: Channel = Channel {
+    dimension: Dimension::LENGTH,
+    unit: "m",
+    shown: "m",
+    along: "the wagon's way along the rail, either way",
+    column: ("position", "sensor", "", 6),
+    ..Channel::GENERAL
+};
+const LOAD: Channel = Channel {
+    dimension: Dimension::FORCE,
+    unit: "N",
+    shown: "N",
+    along: "the water on the body, along its axes",
+    zero: 0.2,
+    ..Channel::GENERAL
+};
+const MARK: Channel = Channel {
+    name: "mark",
+    dimension: Dimension::ONE,
+    unit: "1",
+    column: ("mark", "sensor", "   # pixels along the rail", 4),
+    ..WAY
+};
+/// Of the mark or the wagon, the first that a log has.
+const WAYS: &[Channel] = &[MARK, Channel { name: "y/position", ..WAY }, Channel { name: "position", ..WAY }];
+const LOADS: &[Channel] = &[
+    Channel { name: "f_x", column: ("f_x", "body", "", 6), ..LOAD },
+    Channel { name: "f_y", column: ("f_y", "body", "", 6), ..LOAD },
+];
+
+/// What is declared of rig and camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WeightTow {
+    /// Size of a pixel at the plane of the mark, m.
+    pub scale_m: Option<Number>,
+    /// The camera's lens.
+    pub lens: Option<Lens>,
+    /// All that moves with the wagon, and its water, kg.
+    pub moving_mass_kg: Option<Number>,
+    /// Of pulleys and rail, N.
+    pub friction_n: Number,
+    /// The last part of the way, m, that speed and loads are taken over.
+    pub window_m: f64,
+    /// Change of the speed over it that counts as steady, as part of the speed.
+    pub tolerance: f64,
+    /// Part of the terminal speed that a balanced run must have reached.
+    pub reached: f64,
+    /// Way of a planned run, m.
+    pub travel_m: f64,
+    /// Its time at rest before and after, s.
+    pub still_s: f64,
+    /// Its frames, and samples, a second.
+    pub rate_hz: f64,
+    /// Errors of the track, m, which take the place of those that it shows: of a run that is only planned.
+    pub noise_m: Option<f64>,
+}
+
+impl WeightTow {
+    fn of(values: &Values) -> Result<Self, RecordError> {
+        let number = |values: &Values, key: &str| values.need(key, values.number(key));
+        let lens = values.table("lens").map(|l| -> Result<Lens, RecordError> {
+            Ok(Lens { centre_px: number(l, "centre")?, radial: number(l, "radial")? })
+        });
+        let tow = values.need("tow", values.table("tow"))?;
+        Ok(Self {
+            scale_m: values.constant("scale"),
+            lens: lens.transpose()?,
+            moving_mass_kg: values.constant("moving_mass"),
+            friction_n: values.need("friction", values.constant("friction"))?,
+            window_m: number(values, "window")?,
+            tolerance: number(values, "tolerance")?,
+            reached: number(values, "reached")?,
+            travel_m: number(tow, "travel")?,
+            still_s: number(tow, "still")?,
+            rate_hz: number(tow, "rate")?,
+            noise_m: None,
+        })
+    }
+}
+
+impl Observed for WeightTow {
+    const SPEC: Spec = Spec {
+        name: WEIGHT_TOW,
+        called: "a weight-driven run",
+        keys: KEYS,
+        missing: "nothing is declared of wagon and camera: write [source.weight_tow] with scale (the size of a pixel), moving_mass and friction",
+        plan: PLAN,
+        reads: "time, mark or position, and loads",
+        conditions: &[
+            Condition {
+                name: "weight",
+                dimension: Dimension::FORCE,
+                column: ["weight_n", "weight [N]"],
+                digits: Digits::Significant(3),
+                otherwise: Err(
+                    "the weight that pulls is not stated; write [conditions] weight = \"0.1 N\" in its sidecar",
+                ),
+            },
+            ANGLE,
+        ],
+        channels: &[MARK, WAYS[1], WAYS[2], LOADS[0], LOADS[1]],
+        senses: &[("mark", false)],
+        loads: &["f_x", "f_y"],
+        speed_error: "errors of the tracks",
+        ..Spec::GENERAL
+    };
+
+    type Found = Found;
+
+    fn read(declared: &Declared<'_>) -> Result<Self, MethodError> {
+        Ok(Self::of(declared.values)?)
+    }
+
+    fn constants(&self) -> Vec<Constant> {
+        let one = |name, known: Option<Number>, otherwise| Constant { name, known: known.map(uncertain), otherwise };
+        let [scale, mass, friction, _] = reduce::ERRORS;
+        vec![
+            one(scale, self.scale_m, USUAL_SCALE_M),
+            one(mass, self.moving_mass_kg, USUAL_KG),
+            one(friction, Some(self.friction_n), 0.0),
+        ]
+    }
+
+    fn reduce(&self, run: &Run<'_>, _: &[f64]) -> Result<(Observation, Found), TankError> {
+        reduce::reduce(run, self)
+    }
+
+    fn speed(&self, run: &Point, loads: &Loads<'_>) -> Result<f64, String> {
+        rig::terminal_m_s(self, run, loads)
+    }
+
+    fn twin(&self, run: &Point, rig: &mut Rig<'_>) -> Trace {
+        rig::pulled(self, run, rig)
+    }
+
+    fn takes(&self, has: &dyn Fn(&str) -> bool) -> Result<Vec<&'static Channel>, String> {
+        let way = WAYS.iter().find(|way| has(way.name)).unwrap_or(&WAYS[2]);
+        if way.name == MARK.name && self.scale_m.is_none() {
+            return Err(
+                "its mark is in pixels, and nothing says how large one is: write scale = { value = \"1.2 mm\", standard = \"1 %\" } in [source.weight_tow]".to_owned(),
+            );
+        }
+        Ok(std::iter::once(way).chain(LOADS.iter().filter(|load| has(load.name))).collect())
+    }
+
+    /// Noise and steps of the mark are the errors of the track.
+    fn planned(&self, sensors: &[SensorSpec]) -> Self {
+        let mark = sensors.iter().find(|s| s.quantity == MARK.name);
+        let step = |s: &SensorSpec| s.resolution.unwrap_or(0.0) / 12.0_f64.sqrt();
+        let noise_px = mark.map_or(0.0, |s| s.noise.unwrap_or(0.0).hypot(step(s)));
+        Self { noise_m: Some(self.scale_m.map_or(1.0, |s| s.value) * noise_px), ..*self }
+    }
+
+    fn speed_standard_m_s(&self, found: &Found) -> f64 {
+        found.track.standard_m_s
+    }
+
+    /// Of a run that accelerates only what is across the rail comes from the cell.
+    fn variance(&self, run: &Reduced<Self>, load: &str, sensors: &[SensorSpec]) -> Option<f64> {
+        let (found, step_s) = (&run.found, 1.0 / self.rate_hz);
+        let parts_s = [found.track.window.len(), found.track.before.len()].map(|n| n as f64 * step_s);
+        let own = |name: &str| variance(sensors, name, parts_s, step_s);
+        if found.balance.is_none() {
+            return Some(own(load));
+        }
+        let (sin, cos) = run.point.condition("angle").sin_cos();
+        let across = sin * sin * own("f_x") + cos * cos * own("f_y");
+        let along = found.drag_standard_n.powi(2);
+        let [by_across, by_along] = if load == "f_x" { [sin * sin, cos * cos] } else { [cos * cos, sin * sin] };
+        Some(by_across * across + by_along * along)
+    }
+
+    fn errors(&self) -> Vec<&'static str> {
+        reduce::ERRORS.to_vec()
+    }
+
+    fn moves(&self, _: &Run<'_>, _: &Observation, found: &Found) -> Result<Vec<Moves>, TankError> {
+        Ok(found.moves.to_vec())
+    }
+
+    fn step(&self, log: &TankLog, run: &Reduced<Self>) -> Step {
+        let found = &run.found;
+        let by = if found.balance.is_some() { "the equation of motion over all that moves" } else { "shown steady" };
+        let step = logs::window_step(log, &found.track.window, &format!(", the last part of the way; {by}"));
+        step.with("speed", found.track.speed_m_s, "m/s")
+    }
+
+    fn about_run(&self, run: &Reduced<Self>) -> Vec<Finding> {
+        let (id, found) = (&run.point.id, &run.found);
+        let Some(balance) = &found.balance else { return Vec::new() };
+        let mut out = Vec::new();
+        let pull_n = run.point.condition("weight") - self.friction_n.value;
+        let [change, standard] = found.track.change;
+        out.extend((change > 2.0 * standard).then(|| {
+            note("not-steady",
+                format!(
+                    "run {id:?}: its speed changes by {:.1} ± {:.1} % over its window, at {:.0} % of its terminal speed: {:.2} of the {:.2} mN that pull are inertia",
+                    1e2 * change,
+                    1e2 * standard,
+                    1e2 * found.track.speed_m_s / balance.terminal_m_s,
+                    1e3 * (pull_n - found.drag_n),
+                    1e3 * pull_n
+                ),
+            )
+        }));
+        if balance.residual_m > MISFIT * found.track.noise_m {
+            out.push(warning("track-misfit",
+                format!(
+                    "run {id:?}: the equation of motion leaves {:.2} mm of the track, whose errors are {:.2} mm: look at weight, friction and moving_mass, at a string that \
+                     stretches, or a push at the start",
+                    1e3 * balance.residual_m,
+                    1e3 * found.track.noise_m
+                ),
+            ));
+        }
+        out
+    }
+
+    fn columns<'r>(&self, t: &TableBuilder<'r, Planned<'r, Self>>) -> Vec<ResultColumn> {
+        vec![
+            t.number("speed_m_s", "speed at the end [m/s]", |row| row.run.found.track.speed_m_s).significant(3),
+            t.text("", "fraction of terminal speed", |row| {
+                row.run.found.reached().map_or_else(|| "steady".to_owned(), number::percent)
+            }),
+            t.number("reached", "", |row| row.run.found.reached()),
+            t.number("terminal_m_s", "terminal speed [m/s]", |row| row.speed_m_s).significant(3),
+        ]
+    }
+
+    fn about_plan(&self, runs: &[Reduced<Self>]) -> String {
+        format!(
+            "over {} m of way, waits between them not counted; {} of them do not become steady and are balanced",
+            number::plain(self.travel_m, 3),
+            runs.iter().filter(|run| run.found.balance.is_some()).count()
+        )
+    }
+
+    fn section(&self, runs: &[Reduced<Self>], logs: &[TankLog]) -> Section {
+        page::section(runs, logs, self)
+    }
+}

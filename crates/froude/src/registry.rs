@@ -24,7 +24,7 @@ pub(crate) const METHODS: [&dyn Method; 13] = [
     &rotation::TURNED,
     &sway::SWAYED,
     &steady::source::STEADY_TOW,
-    &weight_tow::source::PULLED,
+    &weight_tow::PULLED,
     &accelerated_tow::source::ACCELERATED,
     &excited_response::source::EXCITED,
 ];

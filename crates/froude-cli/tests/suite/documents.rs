@@ -47,7 +47,7 @@ fn the_key_tables_of_the_book_are_those_that_the_methods_declare() {
         ("sway", sway::KEYS),
         ("sway", sway::PLAN),
         ("steady", steady::section::KEYS),
-        ("weight-tow", weight_tow::section::KEYS),
+        ("weight-tow", weight_tow::KEYS),
         ("accelerated-tow", accelerated_tow::section::KEYS),
         ("excited-response", excited_response::section::KEYS),
         ("excited-response", excited_response::section::PLAN),

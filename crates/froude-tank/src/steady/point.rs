@@ -57,6 +57,16 @@ pub struct Load {
     pub drift: Option<[f64; 2]>,
 }
 
+impl Load {
+    /// A load that no sensor reads.
+    #[must_use]
+    pub fn stated(name: &str, value: f64) -> Self {
+        let (correlation_s, effective_n, trend) = (0.0, 1.0, 0.0);
+        let read = Mean { value, standard: 0.0, correlation_s, effective_n, trend, trend_standard: f64::INFINITY };
+        Self { name: name.to_owned(), value, standard: 0.0, read, zero: 0.0, drift: None }
+    }
+}
+
 /// One observation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
@@ -68,6 +78,15 @@ pub struct Point {
     pub speed_scatter_m_s: f64,
     /// The loads.
     pub loads: Vec<Load>,
+}
+
+impl Point {
+    /// An observation of these samples, without a zero.
+    #[must_use]
+    pub fn stated(speed_m_s: f64, loads: Vec<Load>, used: Range<usize>) -> Self {
+        let window = Window { before: used.start..used.start, after: used.end..used.end, steady: used };
+        Self { window, speed_m_s, speed_scatter_m_s: 0.0, loads }
+    }
 }
 
 /// Reduces a run to its observation.

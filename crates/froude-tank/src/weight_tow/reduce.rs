@@ -7,51 +7,21 @@
 use froude_records::run::Declared;
 use froude_rig::weight_tow::G_M_S2;
 
+use super::WeightTow;
 use super::balance::{Balance, Pull, balance, no_terminal};
-use super::section::WeightTowSpec;
-use super::track::{Track, track};
+use super::track::{Track, metres, track};
+use crate::conditioning::stretches::{in_words, touching};
 use crate::error::TankError;
-use crate::steady::point::{Load, Point, Run, observed};
+use crate::observed::method::{Moves, Run};
+use crate::steady::point::{Load, Point, Run as Parts, observed};
 use crate::steady::section::SteadySpec;
 use crate::steady::window::{Motion, Window};
 
-/// One run: positions in metres, and loads of the water on the body along its axes; there may be none.
+/// What a run tells beside its observation.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WeightRun<'a> {
-    /// Its name.
-    pub id: &'a str,
-    /// Angle of attack, rad.
-    pub angle_rad: f64,
-    /// W, N.
-    pub weight_n: f64,
-    /// Time, s.
-    pub time_s: &'a [f64],
+pub struct Found {
     /// Position along the rail, m.
-    pub position_m: &'a [f64],
-    /// `f_x` and `f_y`, N, by name.
-    pub loads: Vec<(&'a str, &'a [f64])>,
-}
-
-/// What a standard uncertainty of a declared number moves an observation by.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Moves {
-    /// Its speed, m/s.
-    pub speed_m_s: f64,
-    /// Its loads, N.
-    pub loads_n: Vec<f64>,
-}
-
-impl Moves {
-    fn none(loads: &[Load]) -> Self {
-        Self { speed_m_s: 0.0, loads_n: vec![0.0; loads.len()] }
-    }
-}
-
-/// A run as it was reduced.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reduced {
-    /// The observation.
-    pub point: Point,
+    pub position_m: Vec<f64>,
     /// Its track.
     pub track: Track,
     /// Its balance; `None` where no moving mass is declared.
@@ -60,16 +30,20 @@ pub struct Reduced {
     pub drag_n: f64,
     /// Standard uncertainty of its drag along the rail by the acceleration, N.
     pub drag_standard_n: f64,
-    /// What scale, moving mass, friction and the unknown law of the drag move, in this order.
+    /// What the errors of [`ERRORS`] move.
     pub moves: [Moves; 4],
 }
 
-impl Reduced {
+impl Found {
     /// Its speed as part of the terminal one; `None` where it is steady.
     #[must_use]
     pub fn reached(&self) -> Option<f64> {
         self.balance.map(|b| self.track.speed_m_s / b.terminal_m_s)
     }
+}
+
+fn unmoved(loads: &[Load]) -> Moves {
+    Moves { speed_m_s: 0.0, loads_n: vec![0.0; loads.len()] }
 }
 
 /// What is declared, moved by a standard uncertainty to see what that does.
@@ -82,28 +56,63 @@ struct Moved {
     near: Option<[f64; 4]>,
 }
 
-/// Names of the errors of [`Reduced::moves`].
+/// Names of the errors that all runs share.
 pub const ERRORS: [&str; 4] =
     ["scale of the picture", "moving mass", "friction of the rig", "law of the drag in the balance"];
 
-/// Reduces a run; `noise_m` takes the place of the errors that its track shows, for a run that is only planned.
+/// Positions of the wagon, m: of its mark by scale and lens, or as they stand.
+fn position_m(run: &Run<'_>, rig: &WeightTow) -> Vec<f64> {
+    match (run.channel("mark"), rig.scale_m) {
+        (mark @ [_, ..], Some(scale)) => metres(mark, scale.value, rig.lens),
+        _ => [run.channel("y/position"), run.channel("position")].concat(),
+    }
+}
+
+/// A run as the balance takes it.
+struct Pulled<'a> {
+    id: &'a str,
+    angle_rad: f64,
+    weight_n: f64,
+    time_s: &'a [f64],
+    position_m: &'a [f64],
+}
+
+/// Reduces a run.
 ///
 /// # Errors
 ///
-/// [`TankError`]: no motion, neither steady nor to be balanced, loads that give none.
-pub fn reduce(run: &WeightRun<'_>, spec: &WeightTowSpec, noise_m: Option<f64>) -> Result<Reduced, TankError> {
+/// [`TankError`]: no motion, neither steady nor to be balanced, loads that give none, marks in what is used.
+pub fn reduce(run: &Run<'_>, rig: &WeightTow) -> Result<(Point, Found), TankError> {
+    let (point, found) = observed_by(run, rig)?;
+    let (used, what) = if found.balance.is_some() {
+        (&found.track.moving, "what moves, which the equation of motion is fitted to")
+    } else {
+        (&found.track.window, "the last part of its way")
+    };
+    let marks = touching(run.time_s, used, run.marks);
+    if marks.is_empty() {
+        return Ok((point, found));
+    }
+    let marks = in_words(&marks);
+    Err(run.refused(format!("{what}, holds {marks}; film it again, or give the camera a view without what was marked")))
+}
+
+fn observed_by(logged: &Run<'_>, spec: &WeightTow) -> Result<(Point, Found), TankError> {
+    let position_m = position_m(logged, spec);
+    let run = &Pulled {
+        id: &logged.point.id,
+        angle_rad: logged.point.condition("angle"),
+        weight_n: logged.point.condition("weight"),
+        time_s: logged.time_s,
+        position_m: &position_m,
+    };
     let mut track = track(run.id, run.time_s, run.position_m, spec.window_m)?;
-    if let Some(noise_m) = noise_m {
+    if let Some(noise_m) = spec.noise_m {
         track.change[1] = track.change_per_noise * noise_m;
         (track.noise_m, track.standard_m_s) = (noise_m, track.per_noise * noise_m);
     }
-    let own = Run {
-        id: run.id,
-        time_s: run.time_s,
-        motion: Motion::Position(run.position_m),
-        loads: run.loads.clone(),
-        zero: None,
-    };
+    let loads = logged.channels.iter().filter(|(name, _)| name.starts_with("f_")).copied().collect();
+    let own = Parts { id: run.id, time_s: run.time_s, motion: Motion::Position(run.position_m), loads, zero: None };
     let window = Window { steady: track.window.clone(), before: track.before.clone(), after: track.after.clone() };
     let mut point = observed(&own, window, &SteadySpec::default())?;
     point.speed_m_s = track.speed_m_s;
@@ -112,9 +121,10 @@ pub fn reduce(run: &WeightRun<'_>, spec: &WeightTowSpec, noise_m: Option<f64>) -
     let [change, standard] = track.change;
     let is_steady = spec.moving_mass_kg.is_none() && change.abs() + 2.0 * standard <= spec.tolerance;
     if is_steady && !point.loads.is_empty() {
-        let mut moves: [Moves; 4] = std::array::from_fn(|_| Moves::none(&point.loads));
+        let mut moves: [Moves; 4] = std::array::from_fn(|_| unmoved(&point.loads));
         moves[0].speed_m_s = scale * track.speed_m_s;
-        return Ok(Reduced { point, track, balance: None, drag_n: force_n, drag_standard_n: 0.0, moves });
+        let (drag_n, drag_standard_n) = (force_n, 0.0);
+        return Ok((point, Found { track, balance: None, drag_n, drag_standard_n, moves, position_m }));
     }
     // Without a cell the balance of a steady run is that of its weight.
     let mass = match spec.moving_mass_kg {
@@ -169,13 +179,13 @@ pub fn reduce(run: &WeightRun<'_>, spec: &WeightTowSpec, noise_m: Option<f64>) -
     ];
     let moving_kg = mass.value + run.weight_n / G_M_S2;
     let drag_standard_n = moving_kg * found.map_or(0.0, |b| b.standard_m_s2);
-    Ok(Reduced { point, track, balance: found, drag_n, drag_standard_n, moves })
+    Ok((point, Found { track, balance: found, drag_n, drag_standard_n, moves, position_m }))
 }
 
 /// The balance of a run that still accelerates, where it has come far enough.
 fn balanced(
-    run: &WeightRun<'_>,
-    spec: &WeightTowSpec,
+    run: &Pulled<'_>,
+    spec: &WeightTow,
     track: &Track,
     pull: Pull,
     moved: &Moved,
@@ -206,7 +216,7 @@ fn balanced(
 }
 
 /// Sets the force along the rail, leaving that across it; without a cell the body must lie along the rail.
-fn along_the_rail(run: &WeightRun<'_>, point: &mut Point, drag_n: f64) -> Result<(), TankError> {
+fn along_the_rail(run: &Pulled<'_>, point: &mut Point, drag_n: f64) -> Result<(), TankError> {
     if point.loads.is_empty() {
         point.loads.push(by_weight(run, drag_n)?);
         return Ok(());
@@ -224,18 +234,10 @@ fn along_the_rail(run: &WeightRun<'_>, point: &mut Point, drag_n: f64) -> Result
 }
 
 /// Without a load cell the drag along the rail is what pulls; across it nothing is known, so that the body must lie along the rail.
-fn by_weight(run: &WeightRun<'_>, force_n: f64) -> Result<Load, TankError> {
+fn by_weight(run: &Pulled<'_>, force_n: f64) -> Result<Load, TankError> {
     if run.angle_rad != 0.0 {
         let what = "at an angle and without a load cell, so that what acts across the rail is unknown";
         return Err(no_terminal(run.id, what));
     }
-    let read = froude_fit::series::Mean {
-        value: -force_n,
-        standard: 0.0,
-        correlation_s: 0.0,
-        effective_n: 1.0,
-        trend: 0.0,
-        trend_standard: f64::INFINITY,
-    };
-    Ok(Load { name: "f_x".to_owned(), value: -force_n, standard: 0.0, read, zero: 0.0, drift: None })
+    Ok(Load::stated("f_x", -force_n))
 }

@@ -9,13 +9,21 @@ use std::ops::Range;
 
 use froude_fit::autocorrelation::integrated_time;
 
-use super::section::Lens;
 use crate::error::TankError;
 
 /// The wagon moves from this part of its way …
 const FROM: f64 = 0.01;
 /// Fewest frames of a window.
 const FEWEST_FRAMES: usize = 8;
+
+/// Radial distortion along the rail: x ← (x − c)(1 + k (x − c)²).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lens {
+    /// c, pixels.
+    pub centre_px: f64,
+    /// k, 1/pixel².
+    pub radial: f64,
+}
 
 /// Positions of a mark, m; `scale_m` is the size of a pixel.
 #[must_use]

@@ -5,6 +5,7 @@ mod decay;
 mod decay_limits;
 mod declared;
 mod excited_response;
+mod hanging;
 mod hostile_sidecars;
 mod oscillation;
 mod rotation;

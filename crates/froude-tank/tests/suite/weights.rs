@@ -2,8 +2,10 @@
 
 use froude_records::run::Declared;
 use froude_rig::weight_tow::{WeightRig, pull};
-use froude_tank::weight_tow::reduce::{WeightRun, reduce};
-use froude_tank::weight_tow::section::WeightTowSpec;
+use froude_tank::observed::method::{Point, Run};
+use froude_tank::weight_tow::WeightTow;
+use froude_tank::weight_tow::reduce::reduce;
+use indexmap::IndexMap;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
@@ -12,7 +14,7 @@ use rand_pcg::Pcg64Mcg;
 #[test]
 fn the_drag_of_a_run_that_still_accelerates_has_the_error_that_it_states() {
     let drag = |v: f64| 0.113 * (v / 0.9 + 2.0 / 3.0 * (v / 0.3).powi(2));
-    let spec = WeightTowSpec {
+    let spec = WeightTow {
         scale_m: None,
         lens: None,
         moving_mass_kg: Some(Declared::exact(4.0)),
@@ -23,6 +25,7 @@ fn the_drag_of_a_run_that_still_accelerates_has_the_error_that_it_states() {
         travel_m: 0.8,
         still_s: 2.0,
         rate_hz: 50.0,
+        noise_m: None,
     };
     for weight_n in [0.025, 0.06, 0.113] {
         let rig = WeightRig {
@@ -40,15 +43,17 @@ fn the_drag_of_a_run_that_still_accelerates_has_the_error_that_it_states() {
         for _ in 0..n {
             let mut error = || -> f64 { 6e-4 * rng.sample::<f64, _>(StandardNormal) };
             let position_m: Vec<f64> = trace.position_m.iter().map(|x| x + error()).collect();
-            let run = WeightRun {
-                id: "a",
-                angle_rad: 0.0,
-                weight_n,
+            let run = Run {
+                point: Point {
+                    id: "a".to_owned(),
+                    configuration: String::new(),
+                    conditions: IndexMap::from([("weight", weight_n)]),
+                },
                 time_s: &trace.time_s,
-                position_m: &position_m,
-                loads: Vec::new(),
+                channels: vec![("position", &position_m)],
+                marks: &[],
             };
-            let found = reduce(&run, &spec, None).unwrap();
+            let (_, found) = reduce(&run, &spec).unwrap();
             let v = found.track.speed_m_s;
             let slope = (drag(v + 1e-4) - drag(v - 1e-4)) / 2e-4;
             let law = found.moves[3].loads_n[0];

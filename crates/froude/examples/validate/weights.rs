@@ -12,15 +12,14 @@ use froude::identify::eiv;
 use froude::identify::law::ForceLaw;
 use froude::identify::reduce::reduce_table;
 use froude::identify::source::identify_observations;
+use froude::methods::tank::observed::plan::{exact, expected};
+use froude::methods::tank::observed::source::{Reduced, shared, with_speeds};
+use froude::methods::tank::observed::twin::Twin;
 use froude::methods::tank::steady::plan::Expected;
 use froude::methods::tank::steady::row::{Row, table};
 use froude::methods::tank::steady::simulate::{Plan, loads_at};
-use froude::methods::tank::weight_tow::plan::{exact, expected};
-use froude::methods::tank::weight_tow::reduce::{Reduced, reduce};
-use froude::methods::tank::weight_tow::section::{WeightTowSpec, plan};
-use froude::methods::tank::weight_tow::simulate::{Weights, declared, simulated, weights_of};
-use froude::methods::tank::weight_tow::source::{shared, with_track};
-use froude::records::campaign::{Campaign, PlanBlock, SensorSpec, Source};
+use froude::methods::tank::weight_tow::WeightTow;
+use froude::records::campaign::{Campaign, SensorSpec, Source};
 use froude::records::campaign_file::read_campaign;
 use froude::records::run::Declared;
 use froude::records::units::Dimension;
@@ -37,18 +36,15 @@ const SECTION: &str = "Weight-driven rig: tracks in pixels by their twin";
 struct Case {
     campaign: Campaign,
     source: Source,
-    spec: WeightTowSpec,
-    weights: Weights,
+    twin: Twin<WeightTow>,
 }
 
 impl Case {
-    fn read(root: &Path, edit: impl Fn(&mut WeightTowSpec, &mut Vec<PlanBlock>)) -> Result<Self, Box<dyn Error>> {
+    fn read(root: &Path) -> Result<Self, Box<dyn Error>> {
         let campaign = read_campaign(&root.join("examples/mamba-weights/campaign.toml"))?;
         let source = campaign.sources[0].clone();
-        let (mut spec, mut blocks) = (declared(&source)?, plan(&source)?);
-        edit(&mut spec, &mut blocks);
-        let weights = weights_of(&campaign, &source, &spec, blocks)?;
-        Ok(Self { campaign, source, spec, weights })
+        let twin = Twin::of(&campaign, &source)?;
+        Ok(Self { campaign, source, twin })
     }
 
     fn sensors(&self) -> &[SensorSpec] {
@@ -57,44 +53,40 @@ impl Case {
 
     fn of(
         &self,
-        weights: &Weights,
+        twin: &Twin<WeightTow>,
         sensors: &[SensorSpec],
         seed: u64,
     ) -> Result<(Fitted, Codes), Box<dyn Error + Send + Sync>> {
-        let logged = simulated(weights, &self.spec, sensors, &self.source.uncertainty, 1 + seed);
-        let mut rows = Vec::new();
-        let mut reduced: Vec<Reduced> = Vec::new();
-        for run in &logged {
-            let found = reduce(&run.view(), &self.spec, None)?;
-            rows.push(Row {
-                run: run.id.clone(),
-                configuration: run.configuration.clone(),
-                angle_rad: run.angle_rad,
-                temperature_k: None,
-                point: found.point.clone(),
-            });
-            reduced.push(found);
-        }
-        let own = with_track(&self.source, &reduced);
+        let logged = twin.simulated(sensors, &self.source.uncertainty, 1 + seed);
+        let reduced = logged.iter().map(|run| Reduced::of(&twin.method, &run.view())).collect::<Result<Vec<_>, _>>()?;
+        let row = |run: &Reduced<WeightTow>| Row {
+            run: run.point.id.clone(),
+            configuration: run.point.configuration.clone(),
+            angle_rad: run.point.condition("angle"),
+            temperature_k: None,
+            point: run.observation.clone(),
+        };
+        let rows: Vec<Row> = reduced.iter().map(row).collect();
+        let own = with_speeds(&self.source, &twin.method, &reduced);
         let mut observations = reduce_table(&self.campaign, &own, &table(own.input.path(), &rows), Vec::new())?;
-        observations.shared_errors.extend(shared(&reduced, &observations.data.loads()));
+        observations.shared_errors.extend(shared(&twin.method, &reduced, &observations.data.loads()));
         let mut result = identify_observations(&self.campaign, &own, observations, "weight_tow", &|_| {})?;
         Ok((result.estimates.remove(0).coefficients, of_scatter(&result.findings)))
     }
 
     fn fits(&self, sensors: &[SensorSpec], seeds: usize) -> (Vec<Fitted>, Vec<Codes>) {
-        (0..seeds).into_par_iter().filter_map(|seed| self.of(&self.weights, sensors, seed as u64).ok()).unzip()
+        (0..seeds).into_par_iter().filter_map(|seed| self.of(&self.twin, sensors, seed as u64).ok()).unzip()
     }
 
     fn forecast(&self, sensors: &[SensorSpec]) -> Result<Vec<Expected>, Box<dyn Error>> {
-        let (_, reduced) = exact(&self.weights, &self.spec, sensors)?;
+        let (_, reduced) = exact(&self.twin, sensors)?;
         let in_variables = self.campaign.identify.errors_in_variables;
-        Ok(expected(&self.weights, &self.source, &self.spec, &reduced, (sensors, in_variables))?)
+        Ok(expected(&self.twin, &self.source, &reduced, (sensors, in_variables))?)
     }
 }
 
 pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn Error>> {
-    let case = Case::read(root, |_, _| {})?;
+    let case = Case::read(root)?;
     for (words, factor) in [("5 mN and half a pixel", 1.0), ("50 mN and half a pixel", 10.0)] {
         let louder = |s: &SensorSpec| SensorSpec {
             noise: s.noise.map(|n| if s.quantity == "mark" { n } else { factor * n }),
@@ -109,10 +101,10 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
     }
     let sensors = case.sensors();
     let (fits, refused) = answered(seeds, |seed| {
-        let plan = &case.weights.plan;
+        let plan = &case.twin.plan;
         let plan = Plan { of_run: factors(plan.data.rows, seed), ..plan.clone() };
-        let weights = Weights { plan, ..case.weights.clone() };
-        case.of(&weights, sensors, seed).map(|(fitted, _)| fitted)
+        let twin = Twin { plan, ..case.twin.clone() };
+        case.of(&twin, sensors, seed).map(|(fitted, _)| fitted)
     });
     let each = covered(case.forecast(sensors)?.into_iter().map(|e| (e.name, e.value)), &fits);
     between_runs(claims, SECTION, &format!("{seeds} campaigns of 78 runs"), &each, &refused);
@@ -191,15 +183,19 @@ const LOAD_N: f64 = 1e-3;
 impl Errors {
     fn read(root: &Path) -> Result<Self, Box<dyn Error>> {
         // Weights that drive H1LT at 0.1, 0.2 and 0.3 m/s along the rail at 0 deg, without friction.
-        let any = Case::read(root, |_, _| {})?;
-        let ahead = |u: f64| -> f64 { -loads_at(&any.weights.plan, 0, u, 0.0)[0] };
-        let weight_n = [0.1, 0.2, 0.3].map(ahead).to_vec();
-        let case = Case::read(root, |spec, blocks| {
-            spec.friction_n = Declared::exact(0.0);
-            blocks[0].configurations = vec!["H1LT".to_owned()];
-            blocks[0].speed_m_s.clone_from(&weight_n);
-        })?;
-        let plan = &case.weights.plan;
+        let Case { campaign, source, twin: any } = Case::read(root)?;
+        let weights = [0.1, 0.2, 0.3].map(|u| -loads_at(&any.plan, 0, u, 0.0)[0]);
+        // The plan has three weights too, and the first of its two configurations is this.
+        let mut planned: Vec<f64> = any.points.iter().map(|point| point.condition("weight")).collect();
+        planned.dedup();
+        let mut points = any.points.clone();
+        points.retain(|point| point.configuration == "H1LT");
+        for point in &mut points {
+            let at = planned.iter().position(|weight| *weight == point.condition("weight")).ok_or("no such weight")?;
+            point.conditions.insert("weight", weights[at]);
+        }
+        let method = WeightTow { friction_n: Declared::exact(0.0), ..any.method };
+        let plan = &Twin::with(&campaign, &source, method, points)?.plan;
         let mut data = plan.data.clone();
         let loads = plan.law.predict(&data, &plan.values)?;
         data.channels.shift_remove("f_x");

@@ -17,16 +17,10 @@
 //! angle  = { start = "3 deg", stop = "39 deg", step = "3 deg" }
 //! ```
 
-use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
-use froude_records::RecordError;
-use froude_records::campaign::{PlanBlock, Source};
-use froude_records::run::Declared;
-use froude_records::section::Section;
-use froude_records::section_values::{Asks, MOST_RUNS};
+use froude_identify::declare::{IfMissing, Key, Kind, Range};
 use froude_records::units::Dimension;
 
-use crate::declared::{REPEATS, configurations, runs_of};
-use crate::names::WEIGHT_TOW;
+use crate::declared::REPEATS;
 
 const LENS: &[Key] = &[
     Key::new(
@@ -112,84 +106,3 @@ pub const PLAN: &[Key] = &[
     Key::new("angle", Kind::Axis(Dimension::ONE), IfMissing::Is("0 deg"), "angle of the body to the rail"),
     REPEATS,
 ];
-
-/// What is declared of rig and camera.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WeightTowSpec {
-    /// Size of a pixel at the plane of the mark, m.
-    pub scale_m: Option<Declared>,
-    /// The camera's lens.
-    pub lens: Option<Lens>,
-    /// All that moves with the wagon, and its water, kg.
-    pub moving_mass_kg: Option<Declared>,
-    /// Of pulleys and rail, N.
-    pub friction_n: Declared,
-    /// The last part of the way, m, that speed and loads are taken over.
-    pub window_m: f64,
-    /// Change of the speed over it that counts as steady, as part of the speed.
-    pub tolerance: f64,
-    /// Part of the terminal speed that a balanced run must have reached.
-    pub reached: f64,
-    /// Way of a planned run, m.
-    pub travel_m: f64,
-    /// Its time at rest before and after, s.
-    pub still_s: f64,
-    /// Its frames, and samples, a second.
-    pub rate_hz: f64,
-}
-
-/// Radial distortion along the rail: x ← (x − c)(1 + k (x − c)²).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lens {
-    /// c, pixels.
-    pub centre_px: f64,
-    /// k, 1/pixel².
-    pub radial: f64,
-}
-
-/// Reads `[source.weight_tow]`.
-pub(super) fn weight_tow(s: &Section<'_>) -> Result<WeightTowSpec, RecordError> {
-    let values = Values::read(s, KEYS)?;
-    let number = |values: &Values, key: &str| values.need(key, values.number(key));
-    let lens = values.table("lens").map(|l| -> Result<Lens, RecordError> {
-        Ok(Lens { centre_px: number(l, "centre")?, radial: number(l, "radial")? })
-    });
-    let tow = values.need("tow", values.table("tow"))?;
-    Ok(WeightTowSpec {
-        scale_m: values.constant("scale"),
-        lens: lens.transpose()?,
-        moving_mass_kg: values.constant("moving_mass"),
-        friction_n: values.need("friction", values.constant("friction"))?,
-        window_m: number(&values, "window")?,
-        tolerance: number(&values, "tolerance")?,
-        reached: number(&values, "reached")?,
-        travel_m: number(tow, "travel")?,
-        still_s: number(tow, "still")?,
-        rate_hz: number(tow, "rate")?,
-    })
-}
-
-/// The runs that a source plans: every weight at every angle for every configuration. A weight, N, stands where the speed of a table's plan does.
-///
-/// # Errors
-///
-/// [`RecordError`] with its place.
-pub fn plan(source: &Source) -> Result<Vec<PlanBlock>, RecordError> {
-    runs_of(source, WEIGHT_TOW, block, |p| Asks {
-        count: p.configurations.len() * p.speed_m_s.len() * p.angle_rad.len() * p.repeats,
-        samples: 0.0,
-    })
-}
-
-/// Reads a `[[source.plan]]` of weights.
-fn block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
-    let values = Values::read(s, PLAN)?;
-    values.at_most(MOST_RUNS)?;
-    Ok(PlanBlock {
-        configurations: configurations(&values),
-        speed_m_s: values.numbers("weight"),
-        angle_rad: values.numbers("angle"),
-        pitch_rad: vec![0.0],
-        repeats: values.need("repeats", values.count("repeats"))?,
-    })
-}

@@ -1,0 +1,313 @@
+//! The twin of a campaign's runs: the logs and sidecars that it would give for chosen true coefficients.
+//!
+//! Every declared constant is drawn once for the campaign about what is declared; a relative error of a load or of the speed that `[[source.uncertainty]]` states, once
+//! for the campaign or for each run as the entry says. Each load of a run has a zero of its own.
+
+use froude_fit::budget::Uncertain;
+use froude_identify::method::{Export, MethodError};
+use froude_identify::simulate::{planned, truth};
+use froude_records::campaign::{BudgetEntry, Campaign, PlanBlock, SensorSpec, Shared, Source};
+use froude_records::units::Dimension;
+use froude_rig::steady::{Reading, read};
+
+use super::matrix;
+use super::method::{Constant, Declared, Observed, Point, Run, values};
+use super::source::section;
+use crate::channel::Channel;
+use crate::declared::needed;
+use crate::error::undeclared;
+use crate::sensors::{Senses, reading, seed_and_sensors};
+use crate::steady::simulate::{Plan, loads_at};
+use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
+
+/// Loads of the true law on a body at the angle of a run.
+#[derive(Debug, Clone, Copy)]
+pub struct Loads<'a> {
+    plan: &'a Plan,
+    row: usize,
+    angle_rad: f64,
+}
+
+impl Loads<'_> {
+    /// All loads at a speed, N, in the order of [`Self::names`].
+    #[must_use]
+    pub fn at(&self, speed_m_s: f64) -> Vec<f64> {
+        loads_at(self.plan, self.row, speed_m_s, self.angle_rad)
+    }
+
+    /// One of them; zero of one that the law does not have.
+    #[must_use]
+    pub fn of(&self, name: &str, speed_m_s: f64) -> f64 {
+        self.names().iter().position(|own| own == name).map_or(0.0, |k| self.at(speed_m_s)[k])
+    }
+
+    /// Their names.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.plan.law.responses
+    }
+}
+
+/// What a run of the twin is done with.
+#[derive(Debug)]
+pub struct Rig<'a> {
+    /// True values of the constants.
+    pub constants: &'a [f64],
+    /// The speed that it is observed at by the declared constants, m/s.
+    pub speed_m_s: f64,
+    /// Loads of the water on the body.
+    pub loads: Loads<'a>,
+    /// A log shows the speed so many times too large.
+    pub stretch: f64,
+    /// How each load is read.
+    pub readings: Vec<Reading>,
+    pub(crate) sensors: &'a [SensorSpec],
+    pub(crate) draws: &'a mut Draws,
+    pub(crate) seed: u64,
+}
+
+impl Rig<'_> {
+    /// A log of channels that are no loads, as their sensors show them.
+    #[must_use]
+    pub fn log(&self, time_s: Vec<f64>, channels: &[(&str, Vec<f64>)]) -> Trace {
+        let shown = |(k, (name, values)): (usize, &(&str, Vec<f64>))| {
+            let reading = reading(self.sensors, &[name], 0.0, 1.0);
+            ((*name).to_owned(), read(&reading, &time_s, values, seed_of(self.seed, k)))
+        };
+        let columns = channels.iter().enumerate().map(shown).collect();
+        Trace { time_s, columns }
+    }
+}
+
+/// What is logged of a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trace {
+    /// Time, s.
+    pub time_s: Vec<f64>,
+    /// Channels by name, SI.
+    pub columns: Vec<(String, Vec<f64>)>,
+}
+
+/// A run with its log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulated {
+    /// As it was planned.
+    pub point: Point,
+    /// What was logged.
+    pub trace: Trace,
+}
+
+impl Simulated {
+    /// The log as the reduction takes it.
+    #[must_use]
+    pub fn view(&self) -> Run<'_> {
+        Run {
+            point: self.point.clone(),
+            time_s: &self.trace.time_s,
+            channels: self.trace.columns.iter().map(|(name, values)| (name.as_str(), values.as_slice())).collect(),
+            marks: &[],
+        }
+    }
+
+    /// Length of the log, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.trace.time_s.last().copied().unwrap_or(0.0)
+    }
+}
+
+/// A source's planned runs, the method, and the truth.
+#[derive(Debug, Clone)]
+pub struct Twin<M> {
+    /// The method as it is declared.
+    pub method: M,
+    /// The runs.
+    pub points: Vec<Point>,
+    /// Their settings at the speeds that they are observed at, the law and its coefficients.
+    pub plan: Plan,
+}
+
+impl<M: Observed> Twin<M> {
+    /// Of a campaign.
+    ///
+    /// # Errors
+    ///
+    /// What the campaign does not declare; a law with loads that the method does not observe, a run without a speed.
+    pub fn of(campaign: &Campaign, source: &Source) -> Result<Self, MethodError> {
+        let values = needed(source, M::SPEC.name, section::<M>, M::SPEC.missing)?;
+        let method = M::read(&Declared { campaign, source, values: &values })?;
+        Self::with(campaign, source, method, matrix::plan::<M>(source)?)
+    }
+
+    /// Of runs that are stated.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::of`].
+    pub fn with(campaign: &Campaign, source: &Source, method: M, points: Vec<Point>) -> Result<Self, MethodError> {
+        // The speed of a run is known only by the law, and the law is read over settings that have one.
+        let block = |point: &Point| PlanBlock {
+            configurations: vec![point.configuration.clone()],
+            speed_m_s: vec![1.0],
+            angle_rad: vec![point.condition("angle")],
+            pitch_rad: vec![0.0],
+            repeats: 1,
+        };
+        let own = Source { plan: points.iter().map(block).collect(), ..source.clone() };
+        let mut alone = campaign.clone();
+        alone.sources = vec![own.clone()];
+        let mut data = planned(&alone, &own)?;
+        data.channels
+            .retain(|name, _| !["f_x", "f_y"].contains(&name.as_str()) || M::SPEC.loads.contains(&name.as_str()));
+        let (law, values) = truth(&alone, &data)?;
+        if let Some(load) = law.responses.iter().find(|load| !M::SPEC.loads.contains(&load.as_str())) {
+            let what = format!(
+                "the law {} gives {load}, and {} observes {}: take a law of that in [simulate] model",
+                law.name,
+                M::SPEC.called,
+                M::SPEC.loads.join(" and ")
+            );
+            return Err(undeclared(campaign.path.display(), what));
+        }
+        let mut out = Self { method, points, plan: Plan { data, law, values, of_run: Vec::new() } };
+        let speed = |(row, point): (usize, &Point)| {
+            out.method.speed(point, &out.loads(row)).map_err(|what| undeclared(&source.place, what))
+        };
+        let speeds = out.points.iter().enumerate().map(speed).collect::<Result<Vec<f64>, _>>()?;
+        out.plan.data.put("speed", speeds, Dimension::SPEED);
+        out.plan.data.velocity_from_speed_and_angle();
+        Ok(out)
+    }
+
+    fn loads(&self, row: usize) -> Loads<'_> {
+        Loads { plan: &self.plan, row, angle_rad: self.points[row].condition("angle") }
+    }
+
+    /// The speed that a run is observed at, m/s.
+    pub(super) fn speed_m_s(&self, row: usize) -> f64 {
+        self.plan.data.values("speed").map_or(0.0, |speeds| speeds[row])
+    }
+
+    /// What the twin has: the method's own channels, and the loads of the law that it reads.
+    pub(super) fn senses(&self) -> Vec<Senses<'_>> {
+        let sense = |(name, has_memory): &(&'static str, bool)| {
+            if *has_memory { Senses::with_memory([*name]) } else { Senses::white(name) }
+        };
+        let read = self.plan.law.responses.iter().map(String::as_str).filter(|load| channel::<M>(load).is_some());
+        M::SPEC.senses.iter().map(sense).chain([Senses::with_memory(read)]).collect()
+    }
+
+    /// The logs of all planned runs; the same seed gives the same logs. `sensors` are those of `[[simulate.sensor]]`, `budget` that of the source.
+    #[must_use]
+    pub fn simulated(&self, sensors: &[SensorSpec], budget: &[BudgetEntry], seed: u64) -> Vec<Simulated> {
+        self.drawn(&self.method.constants(), sensors, budget, seed)
+    }
+
+    /// The same without errors of sensors and of what is declared.
+    #[must_use]
+    pub fn exactly(&self) -> Vec<Simulated> {
+        self.noisy(&[], 0)
+    }
+
+    /// The same with the errors of sensors alone.
+    pub(super) fn noisy(&self, sensors: &[SensorSpec], seed: u64) -> Vec<Simulated> {
+        let exact = |c: Constant| Constant { known: c.known.map(|known| Uncertain::new(known.value, 0.0)), ..c };
+        let constants: Vec<Constant> = self.method.constants().into_iter().map(exact).collect();
+        self.drawn(&constants, sensors, &[], seed)
+    }
+
+    fn drawn(
+        &self,
+        constants: &[Constant],
+        sensors: &[SensorSpec],
+        budget: &[BudgetEntry],
+        seed: u64,
+    ) -> Vec<Simulated> {
+        let mut draws = Draws::of(seed);
+        let mut drawn = values(constants);
+        for (value, known) in drawn.iter_mut().zip(constants).filter_map(|(v, c)| Some((v, c.known?))) {
+            *value = draws.about(known);
+        }
+        let common: Vec<f64> = budget.iter().map(|_| draws.normal()).collect();
+        let mut out = Vec::new();
+        for (row, point) in self.points.iter().enumerate() {
+            let names = &self.plan.law.responses;
+            let mut gains = vec![1.0; names.len()];
+            let mut stretch = 1.0;
+            for (entry, common) in budget.iter().zip(&common).filter(|(entry, _)| entry.relative) {
+                let z = if entry.shared == Shared::Campaign { *common } else { draws.normal() };
+                if entry.quantity == "speed" {
+                    stretch *= 1.0 + entry.standard * z;
+                } else if let Some(k) = names.iter().position(|name| *name == entry.quantity) {
+                    gains[k] *= 1.0 + entry.standard * z;
+                }
+            }
+            let zero = |name: &str| channel::<M>(name).map_or(0.0, |channel| channel.zero);
+            let each = names.iter().zip(&gains);
+            let readings =
+                each.map(|(name, gain)| reading(sensors, &[name], zero(name) * draws.normal(), *gain)).collect();
+            let mut rig = Rig {
+                constants: &drawn,
+                speed_m_s: self.speed_m_s(row),
+                loads: self.loads(row),
+                stretch,
+                readings,
+                sensors,
+                draws: &mut draws,
+                seed: seed_of(seed, row),
+            };
+            let trace = self.method.twin(point, &mut rig);
+            out.push(Simulated { point: point.clone(), trace });
+        }
+        out
+    }
+}
+
+/// A channel that logs of the method may have.
+fn channel<M: Observed>(name: &str) -> Option<&'static Channel> {
+    M::SPEC.channels.iter().find(|channel| channel.name == name)
+}
+
+/// The files of all planned runs of a source: a log and its sidecar each.
+///
+/// # Errors
+///
+/// What the campaign does not declare.
+pub fn files<M: Observed>(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
+    let twin = Twin::<M>::of(campaign, source)?;
+    let (seed, sensors) = seed_and_sensors(campaign, &twin.senses())?;
+    let runs = twin.simulated(sensors, &source.uncertainty, seed);
+    Ok(runs.iter().flat_map(files_of::<M>).collect())
+}
+
+fn files_of<M: Observed>(run: &Simulated) -> [Export; 2] {
+    let spec = M::SPEC;
+    let logged: Vec<(&Channel, &[f64])> = (run.trace.columns.iter())
+        .filter_map(|(name, values)| Some((channel::<M>(name)?, values.as_slice())))
+        .collect();
+    let columns: Vec<(&[f64], usize)> = logged.iter().map(|(channel, values)| (*values, channel.column.3)).collect();
+    let heads: Vec<&str> = std::iter::once("time").chain(logged.iter().map(|(channel, _)| channel.column.0)).collect();
+    let condition = |condition: &super::method::Condition| {
+        let value = run.point.conditions.get(condition.name)?;
+        let unit = condition.dimension.to_string();
+        Some(match condition.dimension {
+            // Digits beyond those of an angle as it is declared are those of a conversion.
+            Dimension::ONE => format!("{} = \"{} deg\"", condition.name, (value.to_degrees() * 1e9).round() / 1e9),
+            _ => format!("{} = \"{value} {unit}\"", condition.name),
+        })
+    };
+    let described: Vec<[&str; 5]> = (logged.iter())
+        .map(|(channel, _)| [channel.column.0, channel.name, channel.unit, channel.column.1, channel.column.2])
+        .collect();
+    let sidecar = Sidecar {
+        said: "A run of the twin.",
+        method: spec.name,
+        role: "test",
+        configuration: &run.point.configuration,
+        conditions: &spec.conditions.iter().filter_map(condition).collect::<Vec<_>>(),
+        time: "time",
+        columns: &described,
+        width: heads.iter().map(|head| head.len()).max().unwrap_or(0),
+    };
+    pair(&run.point.id, csv(&heads.join(","), &run.trace.time_s, &columns), sidecar.text())
+}
