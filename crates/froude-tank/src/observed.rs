@@ -10,9 +10,11 @@
 //!
 //! Not here: runs of many rows ([`crate::accelerated_tow`]), bodies that a motor drives ([`crate::driven`]).
 
+pub mod linear;
 pub mod matrix;
 pub mod method;
 mod page;
 pub mod plan;
+pub mod settings;
 pub mod source;
 pub mod twin;

@@ -44,11 +44,14 @@ use crate::log::TankLog;
 use crate::logs;
 use crate::method::TankMethod;
 use crate::names::WEIGHT_TOW;
-use crate::observed::method::{ANGLE, Condition, Constant, Declared, Moves, Observed, Planned, Point, Run, Spec};
+use crate::observed::linear::variance;
+use crate::observed::method::{
+    ANGLE, Condition, Constant, Declared, Moves, Observed, Planned, Point, Run, Spec, Unstated,
+};
 use crate::observed::source::{self, Reduced};
 use crate::observed::twin::{Loads, Rig, Trace};
-use crate::steady::plan::variance;
 use crate::steady::point::Point as Observation;
+use crate::steady::row::Row;
 
 pub use keys::{KEYS, PLAN};
 
@@ -58,6 +61,7 @@ pub const PULLED: TankMethod = source::method::<WeightTow>(
     &[
         "runs of a wagon that a hanging weight pulls, filmed: the speed at the end of the way, the drag by load cell or by the equation of motion",
     ],
+    source::NEEDS,
     &[WEIGHT_TOW, "models", "uncertainty", "plan", "keep", "group", "tare"],
 );
 
@@ -166,7 +170,7 @@ impl Observed for WeightTow {
                 dimension: Dimension::FORCE,
                 column: ["weight_n", "weight [N]"],
                 digits: Digits::Significant(3),
-                otherwise: Err(
+                otherwise: Unstated::Refused(
                     "the weight that pulls is not stated; write [conditions] weight = \"0.1 N\" in its sidecar",
                 ),
             },
@@ -207,7 +211,8 @@ impl Observed for WeightTow {
         rig::pulled(self, run, rig)
     }
 
-    fn takes(&self, has: &dyn Fn(&str) -> bool) -> Result<Vec<&'static Channel>, String> {
+    fn takes(&self, log: &TankLog) -> Result<Vec<&'static Channel>, String> {
+        let has = |name: &str| log.log.channels.contains_key(name);
         let way = WAYS.iter().find(|way| has(way.name)).unwrap_or(&WAYS[2]);
         if way.name == MARK.name && self.scale_m.is_none() {
             return Err(
@@ -259,7 +264,7 @@ impl Observed for WeightTow {
         step.with("speed", found.track.speed_m_s, "m/s")
     }
 
-    fn about_run(&self, run: &Reduced<Self>) -> Vec<Finding> {
+    fn about_run(&self, _: &TankLog, _: &Run<'_>, run: &Reduced<Self>) -> Vec<Finding> {
         let (id, found) = (&run.point.id, &run.found);
         let Some(balance) = &found.balance else { return Vec::new() };
         let mut out = Vec::new();
@@ -298,6 +303,7 @@ impl Observed for WeightTow {
             }),
             t.number("reached", "", |row| row.run.found.reached()),
             t.number("terminal_m_s", "terminal speed [m/s]", |row| row.speed_m_s).significant(3),
+            t.number("duration_s", "duration [s]", |row| row.duration_s).places(1),
         ]
     }
 
@@ -309,7 +315,7 @@ impl Observed for WeightTow {
         )
     }
 
-    fn section(&self, runs: &[Reduced<Self>], logs: &[TankLog]) -> Section {
+    fn section(&self, runs: &[Reduced<Self>], _: &[Row], logs: &[TankLog]) -> Section {
         page::section(runs, logs, self)
     }
 }

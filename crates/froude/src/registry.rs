@@ -23,7 +23,7 @@ pub(crate) const METHODS: [&dyn Method; 13] = [
     &oscillation::FORCED,
     &rotation::TURNED,
     &sway::SWAYED,
-    &steady::source::STEADY_TOW,
+    &steady::STEADY_TOW,
     &weight_tow::PULLED,
     &accelerated_tow::source::ACCELERATED,
     &excited_response::source::EXCITED,

@@ -59,6 +59,17 @@ impl Values {
         Ok(out)
     }
 
+    /// The values where nobody writes the section.
+    ///
+    /// # Errors
+    ///
+    /// A key that has no default.
+    pub fn defaults(section: &'static str, keys: &'static [Key]) -> Result<Self, RecordError> {
+        let text = Source { path: std::path::Path::new(""), text: "" };
+        let document = parse(text)?;
+        Self::read(&Section::new(text, section, document.get_ref(), 0), keys)
+    }
+
     /// The value of a declared key, as what its kind makes it; another key or kind is a mistake in the program.
     fn of<'a, T>(&'a self, key: &str, take: impl Fn(&'a Parsed) -> Option<T>) -> Option<T> {
         debug_assert!(self.all.contains_key(key), "{} declares no {key}", self.label);

@@ -3,6 +3,7 @@
 use froude_identify::declare::Values;
 use froude_records::RecordError;
 use froude_records::campaign::Source;
+use froude_records::run::Role;
 use froude_records::section::Section;
 use froude_records::section_values::{Asks, MOST_RUNS};
 use indexmap::IndexMap;
@@ -17,7 +18,8 @@ fn block<M: Observed>(s: &Section<'_>) -> Result<Vec<Point>, RecordError> {
     values.at_most(MOST_RUNS)?;
     let has = |name: &str| spec.plan.iter().any(|key| key.name == name);
     let names = if has("configurations") { configurations(&values) } else { vec![String::new()] };
-    let point = |configuration| Point { id: String::new(), configuration, conditions: IndexMap::new() };
+    let point =
+        |configuration| Point { id: String::new(), role: Role::Test, configuration, conditions: IndexMap::new() };
     let mut points: Vec<Point> = names.into_iter().map(point).collect();
     for condition in spec.conditions.iter().filter(|condition| has(condition.name)) {
         let each = values.numbers(condition.name);

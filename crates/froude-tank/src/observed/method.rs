@@ -3,10 +3,11 @@
 use froude_fit::budget::Uncertain;
 use froude_identify::declare::{Key, Values};
 use froude_identify::method::MethodError;
+use froude_identify::uncertainty::SharedError;
 use froude_records::block::{Digits, ResultColumn, Section, TableBuilder};
 use froude_records::campaign::{Campaign, SensorSpec, Source};
 use froude_records::finding::Finding;
-use froude_records::run::marks::Mark;
+use froude_records::run::Role;
 use froude_records::run::step::Step;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
@@ -19,6 +20,8 @@ use crate::error::TankError;
 use crate::log::TankLog;
 use crate::logs;
 use crate::steady::point::Point as Observation;
+use crate::steady::row::Row;
+use crate::steady::window::Told;
 
 /// A method as data.
 #[derive(Debug, Clone, Copy)]
@@ -27,6 +30,8 @@ pub struct Spec {
     pub name: &'static str,
     /// In a message, with its article: `a drop`.
     pub called: &'static str,
+    /// Roles of the runs that are read. Those of the role test are observed; a still run is not reduced.
+    pub roles: &'static [Role],
     /// The keys of its section.
     pub keys: &'static [Key],
     /// What to write where there is no section; empty where all keys have defaults.
@@ -54,6 +59,7 @@ impl Spec {
     pub const GENERAL: Self = Self {
         name: "",
         called: "",
+        roles: &[Role::Test],
         keys: &[],
         missing: "",
         plan: &[],
@@ -78,8 +84,19 @@ pub struct Condition {
     pub column: [&'static str; 2],
     /// Of its column.
     pub digits: Digits,
-    /// What to write where a run states none, or its value there.
-    pub otherwise: Result<f64, &'static str>,
+    /// What holds where a run states none.
+    pub otherwise: Unstated,
+}
+
+/// What holds where a run does not state a condition.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unstated {
+    /// This value, SI.
+    Is(f64),
+    /// The run is refused with what to write.
+    Refused(&'static str),
+    /// It has none; another channel may tell it, or nobody needs it.
+    Nothing,
 }
 
 /// The angle of attack, whose loads lie along the axes of the body.
@@ -88,7 +105,7 @@ pub const ANGLE: Condition = Condition {
     dimension: Dimension::ONE,
     column: ["angle_rad", "angle [deg]"],
     digits: Digits::Plain(4),
-    otherwise: Ok(0.0),
+    otherwise: Unstated::Is(0.0),
 };
 
 /// What one run is.
@@ -96,6 +113,8 @@ pub const ANGLE: Condition = Condition {
 pub struct Point {
     /// Its name.
     pub id: String,
+    /// What it is done for.
+    pub role: Role,
     /// What is mounted; empty where there is one configuration without a name.
     pub configuration: String,
     /// Conditions by name, SI.
@@ -119,8 +138,8 @@ pub struct Run<'a> {
     pub time_s: &'a [f64],
     /// Channels that [`Observed::takes`] names.
     pub channels: Vec<(&'a str, &'a [f64])>,
-    /// What is not to be used of it.
-    pub marks: &'a [Mark],
+    /// What its sidecar declares of its parts.
+    pub told: Told<'a>,
 }
 
 impl<'a> Run<'a> {
@@ -204,13 +223,36 @@ pub trait Observed: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// What the rig would log of a planned run.
     fn twin(&self, run: &Point, rig: &mut Rig<'_>) -> Trace;
 
-    /// The channels that a log with these is read by; it needs all of them.
+    /// The channels that a log is read by; it needs all of them.
     ///
     /// # Errors
     ///
     /// What it lacks, and what to do.
-    fn takes(&self, _has: &dyn Fn(&str) -> bool) -> Result<Vec<&'static Channel>, String> {
+    fn takes(&self, _log: &TankLog) -> Result<Vec<&'static Channel>, String> {
         Ok(Self::SPEC.channels.iter().collect())
+    }
+
+    /// The same method with what runs tell about other runs.
+    ///
+    /// # Errors
+    ///
+    /// A run that does not tell it, and what to do.
+    fn beside(self, _logs: &[TankLog]) -> Result<Self, MethodError> {
+        Ok(self)
+    }
+
+    /// Corrects the observations by runs of other roles; what their errors do, and what was found.
+    ///
+    /// # Errors
+    ///
+    /// An observation that cannot be corrected.
+    fn corrected(
+        &self,
+        _rows: &mut [Row],
+        _others: &[Reduced<Self>],
+        _source: &str,
+    ) -> Result<(Vec<SharedError>, Vec<Finding>), TankError> {
+        Ok((Vec::new(), Vec::new()))
     }
 
     /// The same method where runs are planned only: what it reads of the errors in a log is what these sensors have.
@@ -269,13 +311,13 @@ pub trait Observed: Clone + std::fmt::Debug + Send + Sync + 'static {
     }
 
     /// What a run shows.
-    fn about_run(&self, _run: &Reduced<Self>) -> Vec<Finding> {
+    fn about_run(&self, _log: &TankLog, _run: &Run<'_>, _found: &Reduced<Self>) -> Vec<Finding> {
         Vec::new()
     }
 
-    /// Columns of the plan that only this method has; each row has a run and the interval to expect.
-    fn columns<'r>(&self, _t: &TableBuilder<'r, Planned<'r, Self>>) -> Vec<ResultColumn> {
-        Vec::new()
+    /// Columns of the run matrix behind the conditions.
+    fn columns<'r>(&self, t: &TableBuilder<'r, Planned<'r, Self>>) -> Vec<ResultColumn> {
+        vec![t.number("duration_s", "duration [s]", |row| row.duration_s).places(1)]
     }
 
     /// What the plan says of its runs, behind their number and time: `over 2 m of way, …`.
@@ -283,8 +325,8 @@ pub trait Observed: Clone + std::fmt::Debug + Send + Sync + 'static {
         "waits between them not counted".to_owned()
     }
 
-    /// The part of the page about the runs.
-    fn section(&self, runs: &[Reduced<Self>], _logs: &[TankLog]) -> Section {
+    /// The part of the page about the runs; `rows` are their observations as they are fitted.
+    fn section(&self, runs: &[Reduced<Self>], _rows: &[Row], _logs: &[TankLog]) -> Section {
         page::section(runs)
     }
 }

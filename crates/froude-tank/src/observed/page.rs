@@ -13,7 +13,8 @@ pub(super) fn section<M: Observed>(runs: &[Reduced<M>]) -> Section {
         t.text("run", "run", |run| run.point.id.clone()),
         t.text("configuration", "configuration", |run| run.point.configuration.clone()),
     ];
-    columns.extend(M::SPEC.conditions.iter().map(|condition| {
+    let is_stated = |name: &str| runs.iter().any(|run| run.point.conditions.contains_key(name));
+    columns.extend(M::SPEC.conditions.iter().filter(|condition| is_stated(condition.name)).map(|condition| {
         let [key, head] = condition.column;
         ResultColumn { digits: condition.digits, ..t.number(key, head, |run| run.point.condition(condition.name)) }
     }));

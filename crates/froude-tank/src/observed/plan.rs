@@ -1,7 +1,7 @@
 //! The plan: run matrix, time in the tank, and the intervals to expect.
 //!
 //! Each planned run is simulated without errors and reduced. The noise of its load, what the errors of its speed do to that (an error δU moves a load by −∂f/∂U δU), and what the declared
-//! constants move, go through the linearised fit ([`crate::steady::plan`]).
+//! constants move, go through the linearised fit ([`mod@super::linear`]).
 
 use froude_identify::method::{MethodError, Prospect};
 use froude_records::block::{ResultColumn, ResultTable, TableBuilder};
@@ -9,14 +9,16 @@ use froude_records::campaign::{Campaign, SensorSpec, Source};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
+use super::linear::{PlannedError, declared, linearised};
 use super::method::{Observed, Planned, values};
+use super::settings::{Plan, loads_at};
 use super::source::Reduced;
 use super::twin::{Simulated, Twin};
 use crate::error::TankError;
-use crate::plan::{Expected, prospect as of_plan};
+use crate::plan::{intervals, prospect as of_plan};
 use crate::sensors::seed_and_sensors;
-use crate::steady::plan::{self as steady, PlannedError};
-use crate::steady::simulate::{Plan, loads_at};
+
+pub use crate::plan::Expected;
 
 /// Step of differences by the speed, as part of it.
 const STEP: f64 = 1e-4;
@@ -67,7 +69,7 @@ pub fn expected<M: Observed>(
     };
     let slopes: Vec<Vec<f64>> = (0..n).map(slope).collect();
     let repeated = repeated(twin, sensors, &slopes, reduced);
-    let (declared, rows) = steady::declared(plan, &source.uncertainty)?;
+    let (of_budget, rows) = declared(plan, &source.uncertainty)?;
     let variance = |r: usize, i: usize| -> f64 {
         let by_speed = (slopes[i][r] * twin.method.speed_standard_m_s(&reduced[i].found)).powi(2);
         let own = twin.method.variance(&reduced[i], &plan.law.responses[r], sensors).map(|own| by_speed + own);
@@ -82,8 +84,8 @@ pub fn expected<M: Observed>(
     };
     let of_rig =
         |(k, name): (usize, &&str)| PlannedError { name: (*name).to_owned(), dof: f64::INFINITY, moves: moved(k) };
-    let errors: Vec<PlannedError> = twin.method.errors().iter().enumerate().map(of_rig).chain(declared).collect();
-    steady::linearised(plan, &variance, &errors, in_variables)
+    let errors: Vec<PlannedError> = twin.method.errors().iter().enumerate().map(of_rig).chain(of_budget).collect();
+    linearised(plan, &variance, &errors, in_variables)
 }
 
 /// Variance of each load of each run with what its speed does to it, N², by repeated runs with noise alone; nothing where the method states its own. A repeat that gives no
@@ -128,15 +130,18 @@ pub fn prospect<M: Observed>(campaign: &Campaign, source: &Source) -> Result<Pro
     let (runs, reduced) = exact(&twin, sensors).map_err(MethodError::refused)?;
     let expected = expected(&twin, source, &reduced, (sensors, campaign.identify.errors_in_variables))?;
     let duration_s: f64 = runs.iter().map(Simulated::duration_s).sum();
+    let has_speed_errors = reduced.iter().any(|run| twin.method.speed_standard_m_s(&run.found) > 0.0);
+    let bias = ", nor that errors of the speed bias a fit without errors_in_variables";
     let paragraph = format!(
         "{} of {:.1} min in all on the log, {}. The intervals are those of the \
-         linearised fit at the true coefficients of [simulate], with the noise of [[simulate.sensor]] and everything that is declared; bounds are not counted, nor that errors of the \
-         speed bias a fit without errors_in_variables.",
+         linearised fit at the true coefficients of [simulate], with the noise of [[simulate.sensor]] and everything that is declared; bounds are not counted{}.",
         counted(runs.len(), "run", "runs"),
         duration_s / 60.0,
-        twin.method.about_plan(&reduced)
+        twin.method.about_plan(&reduced),
+        if has_speed_errors { bias } else { "" }
     );
-    let tables = [matrix(&twin, &runs, &reduced), steady::coefficients(&twin.plan, &expected)];
+    let law = format!(", with the law {} of [simulate]", twin.plan.law.name);
+    let tables = [matrix(&twin, &runs, &reduced), intervals(&expected, &law)];
     Ok(of_plan(source, (runs.len(), duration_s), tables, vec![paragraph]))
 }
 
@@ -154,11 +159,11 @@ fn matrix<M: Observed>(twin: &Twin<M>, runs: &[Simulated], reduced: &[Reduced<M>
         t.text("run", "run", |row| row.run.point.id.clone()),
         t.text("configuration", "configuration", |row| row.run.point.configuration.clone()),
     ];
-    columns.extend(M::SPEC.conditions.iter().map(|condition| {
+    let is_planned = |name: &str| M::SPEC.plan.iter().any(|key| key.name == name);
+    columns.extend(M::SPEC.conditions.iter().filter(|condition| is_planned(condition.name)).map(|condition| {
         let [key, head] = condition.column;
         ResultColumn { digits: condition.digits, ..t.number(key, head, |row| row.run.point.condition(condition.name)) }
     }));
     columns.extend(twin.method.columns(&t));
-    columns.push(t.number("duration_s", "duration [s]", |row| row.duration_s).places(1));
     t.build(columns)
 }

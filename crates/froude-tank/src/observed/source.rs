@@ -8,35 +8,38 @@ use froude_identify::uncertainty::SharedError;
 use froude_records::RecordError;
 use froude_records::campaign::{BudgetEntry, Campaign, Shared, Source};
 use froude_records::estimate::ErrorKind;
-use froude_records::run::Role;
+use froude_records::run::{Frame, Role};
 use froude_records::section::Section;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
-use super::method::{Declared, Moves, Observed, Point, Run, values};
+use super::method::{ANGLE, Declared, Moves, Observed, Point, Run, Unstated, values};
 use super::{matrix, plan, twin};
 use crate::channel::Channel;
-use crate::declared::needed;
 use crate::error::{TankError, undeclared};
 use crate::log::TankLog;
 use crate::logs::{self, Logs};
 use crate::method::TankMethod;
 use crate::steady::point::Point as Observation;
 use crate::steady::row::{Row, table};
+use crate::steady::walls::Walls;
+use crate::steady::window::Told;
 
-const NEEDS: &[Need] = &[Need::of(&["test"], &[])];
+/// What runs alone need.
+pub const NEEDS: &[Need] = &[Need::of(&["test"], &[])];
 
 /// The method as it stands in the registry; `takes` has the keys of a source beside those of every source: its own section, `models`, `uncertainty`, `plan`.
 #[must_use]
 pub const fn method<M: Observed>(
     name: &'static [&'static str; 1],
     words: &'static [&'static str; 1],
+    needs: &'static [Need],
     takes: &'static [&'static str],
 ) -> TankMethod {
     TankMethod {
         names: name,
         words,
-        needs: NEEDS,
+        needs,
         runs: name[0],
         takes,
         identify: |campaign, source, _, progress| identified::<M>(campaign, source, progress),
@@ -55,6 +58,17 @@ pub(super) fn section<M: Observed>(s: &Section<'_>) -> Result<Values, RecordErro
 fn check<M: Observed>(source: &Source) -> Result<(), RecordError> {
     source.section(M::SPEC.name)?.map(|s| section::<M>(&s)).transpose()?;
     matrix::plan::<M>(source).map(drop)
+}
+
+/// The method as a source declares it; without a section of its own, as its defaults are.
+pub(super) fn read<M: Observed>(campaign: &Campaign, source: &Source) -> Result<M, MethodError> {
+    let spec = M::SPEC;
+    let values = match source.section(spec.name)?.map(|s| section::<M>(&s)).transpose()? {
+        Some(values) => values,
+        None if spec.missing.is_empty() => Values::defaults(spec.name, spec.keys)?,
+        None => return Err(undeclared(&source.place, spec.missing)),
+    };
+    M::read(&Declared { campaign, source, values: &values })
 }
 
 /// A run as it was reduced.
@@ -88,27 +102,45 @@ impl<M: Observed> Reduced<M> {
     }
 }
 
+impl<M: Observed> From<Reduced<M>> for Row {
+    /// A run of the twin as the row of a table.
+    fn from(run: Reduced<M>) -> Self {
+        Self {
+            angle_rad: run.point.condition(ANGLE.name),
+            run: run.point.id,
+            configuration: run.point.configuration,
+            temperature_k: None,
+            point: run.observation,
+        }
+    }
+}
+
 fn identified<M: Observed>(
     campaign: &Campaign,
     source: &Source,
     progress: &dyn Fn(&str),
 ) -> Result<Found, MethodError> {
     let spec = M::SPEC;
-    let declared = needed(source, spec.name, section::<M>, spec.missing)?;
-    let method = M::read(&Declared { campaign, source, values: &declared })?;
+    let method = read::<M>(campaign, source)?;
     progress("reading the runs");
     let Logs { runs: logs, mut files, mut findings } =
-        logs::read(source.input.path(), spec.name, &[Role::Test], spec.reads, progress)?;
+        logs::read(source.input.path(), spec.name, spec.roles, spec.reads, progress)?;
+    let method = method.beside(&logs)?;
     progress("reducing the runs");
-    let (mut rows, mut reduced) = (Vec::new(), Vec::new());
+    let (mut rows, mut reduced, mut others) = (Vec::new(), Vec::new(), Vec::new());
     let mut first: Option<TankError> = None;
-    for log in &logs {
-        match Reduced::of(&method, &run(&method, log)?) {
-            Ok(run) => {
-                logs::add_step(&mut files, log, method.step(log, &run));
-                findings.extend(method.about_run(&run));
-                rows.push(Row::of(log, run.observation.clone())?);
-                reduced.push(run);
+    for log in logs.iter().filter(|log| log.log.meta.role != Role::Still) {
+        let run = run(&method, log)?;
+        match Reduced::of(&method, &run) {
+            Ok(found) => {
+                logs::add_step(&mut files, log, method.step(log, &found));
+                findings.extend(method.about_run(log, &run, &found));
+                if found.point.role == Role::Test {
+                    rows.push(Row::of(log, found.observation.clone())?);
+                    reduced.push(found);
+                } else {
+                    others.push(found);
+                }
             }
             Err(error) => {
                 findings.push(logs::left_out(&error));
@@ -119,9 +151,13 @@ fn identified<M: Observed>(
     if rows.is_empty() {
         return Err(logs::no_run(source, first));
     }
+    let (mut errors, found) = method.corrected(&mut rows, &others, &source.name).map_err(MethodError::refused)?;
+    findings.extend(found);
+    let walls = Walls::of(campaign);
+    findings.extend(rows.iter().filter_map(|row| walls.and_then(|walls| walls.finding(row))));
     let own = with_speeds(source, &method, &reduced);
     let mut observations = reduce_table(campaign, &own, &table(source.input.path(), &rows), files)?;
-    let errors = shared(&method, &reduced, &observations.data.loads());
+    errors.extend(shared(&method, &reduced, &observations.data.loads()));
     if !errors.is_empty() && observations.data.rows != rows.len() {
         let names: Vec<&str> = errors.iter().map(|error| error.name.as_str()).collect();
         let what = format!(
@@ -135,7 +171,7 @@ fn identified<M: Observed>(
         progress(&format!("fitting {model}"));
     })?;
     findings.append(&mut result.findings);
-    let blocks = vec![method.section(&reduced, &logs)];
+    let blocks = vec![method.section(&reduced, &rows, &logs)];
     Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
 }
 
@@ -145,20 +181,32 @@ fn run<'a, M: Observed>(method: &M, log: &'a TankLog) -> Result<Run<'a>, MethodE
     let refuse = |what: &str| MethodError::input(&log.log.path, what);
     let mut conditions = IndexMap::new();
     for condition in M::SPEC.conditions {
-        let stated = logs::condition(log, condition.name, condition.dimension)?;
-        conditions.insert(condition.name, stated.map_or(condition.otherwise, Ok).map_err(refuse)?);
+        let value = match (logs::condition(log, condition.name, condition.dimension)?, condition.otherwise) {
+            (Some(stated), _) => Some(stated),
+            (None, Unstated::Is(value)) => Some(value),
+            (None, Unstated::Refused(what)) => return Err(refuse(what)),
+            (None, Unstated::Nothing) => None,
+        };
+        conditions.extend(value.map(|value| (condition.name, value)));
     }
-    let has = |name: &str| log.log.channels.contains_key(name);
     let values = |channel: &'static Channel| {
-        let found = logs::channel(log, channel.name, channel.dimension, M::SPEC.guessed, channel.along)?;
-        Ok((channel.name, found.values.as_slice()))
+        let name = channel.name;
+        let found = logs::channel(log, name, channel.dimension, M::SPEC.guessed, channel.along)?;
+        if M::SPEC.loads.contains(&name) && found.meaning.frame != Frame::Body {
+            let what = format!(
+                "{name} is along the axes of {:?}; loads are taken along those of the body: declare how the cell lies in [frames.cell] and write frame = \"cell\", or frame = \"body\" where it is mounted with the body",
+                found.meaning.frame.name()
+            );
+            return Err(refuse(&what));
+        }
+        Ok((name, found.values.as_slice()))
     };
-    let takes = method.takes(&has).map_err(|what| refuse(&what))?;
+    let takes = method.takes(log).map_err(|what| refuse(&what))?;
     Ok(Run {
-        point: Point { id: meta.id.clone(), configuration: meta.configuration.clone(), conditions },
+        point: Point { id: meta.id.clone(), role: meta.role, configuration: meta.configuration.clone(), conditions },
         time_s: &log.log.time_s,
         channels: takes.into_iter().map(values).collect::<Result<_, MethodError>>()?,
-        marks: &log.declared.marks,
+        told: Told { marks: &log.declared.marks, segments: &log.declared.segments },
     })
 }
 

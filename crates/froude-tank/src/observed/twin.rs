@@ -1,6 +1,6 @@
 //! The twin of a campaign's runs: the logs and sidecars that it would give for chosen true coefficients.
 //!
-//! Every declared constant is drawn once for the campaign about what is declared; a relative error of a load or of the speed that `[[source.uncertainty]]` states, once
+//! Every declared constant is drawn once for the campaign about what is declared; a relative error of a load or the speed, and an error of the angle, that `[[source.uncertainty]]` states, once
 //! for the campaign or for each run as the entry says. Each load of a run has a zero of its own.
 
 use froude_fit::budget::Uncertain;
@@ -8,16 +8,16 @@ use froude_identify::method::{Export, MethodError};
 use froude_identify::simulate::{planned, truth};
 use froude_records::campaign::{BudgetEntry, Campaign, PlanBlock, SensorSpec, Shared, Source};
 use froude_records::units::Dimension;
-use froude_rig::steady::{Reading, read};
+use froude_rig::steady::{self, Reading};
 
 use super::matrix;
-use super::method::{Constant, Declared, Observed, Point, Run, values};
-use super::source::section;
+use super::method::{ANGLE, Constant, Observed, Point, Run, values};
+use super::settings::{Plan, loads_at};
+use super::source::read;
 use crate::channel::Channel;
-use crate::declared::needed;
 use crate::error::undeclared;
 use crate::sensors::{Senses, reading, seed_and_sensors};
-use crate::steady::simulate::{Plan, loads_at};
+use crate::steady::window::Told;
 use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
 
 /// Loads of the true law on a body at the angle of a run.
@@ -55,7 +55,7 @@ pub struct Rig<'a> {
     pub constants: &'a [f64],
     /// The speed that it is observed at by the declared constants, m/s.
     pub speed_m_s: f64,
-    /// Loads of the water on the body.
+    /// Loads of the water on the body at its true angle.
     pub loads: Loads<'a>,
     /// A log shows the speed so many times too large.
     pub stretch: f64,
@@ -72,7 +72,7 @@ impl Rig<'_> {
     pub fn log(&self, time_s: Vec<f64>, channels: &[(&str, Vec<f64>)]) -> Trace {
         let shown = |(k, (name, values)): (usize, &(&str, Vec<f64>))| {
             let reading = reading(self.sensors, &[name], 0.0, 1.0);
-            ((*name).to_owned(), read(&reading, &time_s, values, seed_of(self.seed, k)))
+            ((*name).to_owned(), steady::read(&reading, &time_s, values, seed_of(self.seed, k)))
         };
         let columns = channels.iter().enumerate().map(shown).collect();
         Trace { time_s, columns }
@@ -105,7 +105,7 @@ impl Simulated {
             point: self.point.clone(),
             time_s: &self.trace.time_s,
             channels: self.trace.columns.iter().map(|(name, values)| (name.as_str(), values.as_slice())).collect(),
-            marks: &[],
+            told: Told::default(),
         }
     }
 
@@ -134,9 +134,7 @@ impl<M: Observed> Twin<M> {
     ///
     /// What the campaign does not declare; a law with loads that the method does not observe, a run without a speed.
     pub fn of(campaign: &Campaign, source: &Source) -> Result<Self, MethodError> {
-        let values = needed(source, M::SPEC.name, section::<M>, M::SPEC.missing)?;
-        let method = M::read(&Declared { campaign, source, values: &values })?;
-        Self::with(campaign, source, method, matrix::plan::<M>(source)?)
+        Self::with(campaign, source, read(campaign, source)?, matrix::plan::<M>(source)?)
     }
 
     /// Of runs that are stated.
@@ -145,10 +143,14 @@ impl<M: Observed> Twin<M> {
     ///
     /// As [`Self::of`].
     pub fn with(campaign: &Campaign, source: &Source, method: M, points: Vec<Point>) -> Result<Self, MethodError> {
-        // The speed of a run is known only by the law, and the law is read over settings that have one.
+        // Where only the law tells the speed of a run, the law is read over what is planned instead, which differs between runs alike.
+        let instead = |point: &Point| {
+            let other = point.conditions.iter().find(|(name, _)| **name != ANGLE.name);
+            point.conditions.get("speed").copied().or_else(|| Some(*other?.1)).unwrap_or(1.0)
+        };
         let block = |point: &Point| PlanBlock {
             configurations: vec![point.configuration.clone()],
-            speed_m_s: vec![1.0],
+            speed_m_s: vec![instead(point)],
             angle_rad: vec![point.condition("angle")],
             pitch_rad: vec![0.0],
             repeats: 1,
@@ -171,7 +173,7 @@ impl<M: Observed> Twin<M> {
         }
         let mut out = Self { method, points, plan: Plan { data, law, values, of_run: Vec::new() } };
         let speed = |(row, point): (usize, &Point)| {
-            out.method.speed(point, &out.loads(row)).map_err(|what| undeclared(&source.place, what))
+            out.method.speed(point, &out.loads(row, 0.0)).map_err(|what| undeclared(&source.place, what))
         };
         let speeds = out.points.iter().enumerate().map(speed).collect::<Result<Vec<f64>, _>>()?;
         out.plan.data.put("speed", speeds, Dimension::SPEED);
@@ -179,8 +181,8 @@ impl<M: Observed> Twin<M> {
         Ok(out)
     }
 
-    fn loads(&self, row: usize) -> Loads<'_> {
-        Loads { plan: &self.plan, row, angle_rad: self.points[row].condition("angle") }
+    fn loads(&self, row: usize, off_rad: f64) -> Loads<'_> {
+        Loads { plan: &self.plan, row, angle_rad: self.points[row].condition(ANGLE.name) + off_rad }
     }
 
     /// The speed that a run is observed at, m/s.
@@ -233,13 +235,15 @@ impl<M: Observed> Twin<M> {
         for (row, point) in self.points.iter().enumerate() {
             let names = &self.plan.law.responses;
             let mut gains = vec![1.0; names.len()];
-            let mut stretch = 1.0;
-            for (entry, common) in budget.iter().zip(&common).filter(|(entry, _)| entry.relative) {
+            let (mut stretch, mut off_rad) = (1.0, 0.0);
+            for (entry, common) in budget.iter().zip(&common) {
                 let z = if entry.shared == Shared::Campaign { *common } else { draws.normal() };
-                if entry.quantity == "speed" {
-                    stretch *= 1.0 + entry.standard * z;
-                } else if let Some(k) = names.iter().position(|name| *name == entry.quantity) {
-                    gains[k] *= 1.0 + entry.standard * z;
+                let of_load = names.iter().position(|name| *name == entry.quantity);
+                match (entry.quantity.as_str(), entry.relative, of_load) {
+                    ("speed", true, _) => stretch *= 1.0 + entry.standard * z,
+                    ("angle", false, _) => off_rad += entry.standard * z,
+                    (_, true, Some(k)) => gains[k] *= 1.0 + entry.standard * z,
+                    _ => {}
                 }
             }
             let zero = |name: &str| channel::<M>(name).map_or(0.0, |channel| channel.zero);
@@ -249,7 +253,7 @@ impl<M: Observed> Twin<M> {
             let mut rig = Rig {
                 constants: &drawn,
                 speed_m_s: self.speed_m_s(row),
-                loads: self.loads(row),
+                loads: self.loads(row, off_rad),
                 stretch,
                 readings,
                 sensors,
@@ -288,7 +292,9 @@ fn files_of<M: Observed>(run: &Simulated) -> [Export; 2] {
     let columns: Vec<(&[f64], usize)> = logged.iter().map(|(channel, values)| (*values, channel.column.3)).collect();
     let heads: Vec<&str> = std::iter::once("time").chain(logged.iter().map(|(channel, _)| channel.column.0)).collect();
     let condition = |condition: &super::method::Condition| {
-        let value = run.point.conditions.get(condition.name)?;
+        // What a log shows is not stated beside it.
+        let is_logged = logged.iter().any(|(channel, _)| channel.name == condition.name);
+        let value = run.point.conditions.get(condition.name).filter(|_| !is_logged)?;
         let unit = condition.dimension.to_string();
         Some(match condition.dimension {
             // Digits beyond those of an angle as it is declared are those of a conversion.

@@ -3,7 +3,7 @@
 //! ```toml
 //! [source.steady]
 //! settle    = "1 s"                                  # left out after the speed became constant
-//! shortest  = "2 s"                                  # a shorter window is none
+//! shortest  = "2 s"                                  # of a window that is accepted
 //! tolerance = "1 %"                                  # of the speed of each block about that of the window
 //! block     = "0.5 s"
 //! drift     = { rate = "2 mN/min", most = "10 mN" }  # of the zero between a still run and a test
@@ -12,12 +12,10 @@
 
 use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
 use froude_records::RecordError;
-use froude_records::campaign::Source;
-use froude_records::section::Section;
 use froude_records::units::Dimension;
 use froude_rig::steady::Tow;
 
-use crate::names::STEADY;
+use crate::declared::REPEATS;
 
 /// N/s.
 const FORCE_RATE: Dimension = Dimension::new(1, 1, -3);
@@ -69,6 +67,20 @@ pub const KEYS: &[Key] = &[
     ),
 ];
 
+/// The keys of a block of a plan.
+pub const PLAN: &[Key] = &[
+    Key::new("configurations", Kind::Texts, IfMissing::Nothing("one unnamed body"), "names of the configurations"),
+    Key::new(
+        "speed",
+        Kind::Axis(Dimension::SPEED),
+        IfMissing::Required("write \"0.1 m/s\", a list, or { start, stop, step }"),
+        "speed of the tow, ahead or (below zero) astern",
+    )
+    .within(Range::NotZero("a tow goes somewhere, ahead or (below zero) astern")),
+    Key::new("angle", Kind::Axis(Dimension::ONE), IfMissing::Is("0 deg"), "angle of the body to its way"),
+    REPEATS,
+];
+
 /// How steady tows are reduced, and how planned ones are driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteadySpec {
@@ -102,41 +114,33 @@ impl Default for SteadySpec {
     }
 }
 
-/// What a source says of it, or what is usual.
-///
-/// # Errors
-///
-/// [`RecordError`] with its place.
-pub fn declared(source: &Source) -> Result<SteadySpec, RecordError> {
-    source.section(STEADY)?.map_or_else(|| Ok(SteadySpec::default()), |s| steady(&s))
-}
-
-/// Reads `[source.steady]`.
-fn steady(s: &Section<'_>) -> Result<SteadySpec, RecordError> {
-    let values = Values::read(s, KEYS)?;
-    let number = |values: &Values, key: &str| values.need(key, values.number(key));
-    let drift = values.table("drift").map(|d| -> Result<Drift, RecordError> {
-        Ok(Drift { rate_n_s: number(d, "rate")?, most_n: number(d, "most")? })
-    });
-    let tow = values.need("tow", values.table("tow"))?;
-    Ok(SteadySpec {
-        settle_s: number(&values, "settle")?,
-        shortest_s: number(&values, "shortest")?,
-        tolerance: number(&values, "tolerance")?,
-        block_s: number(&values, "block")?,
-        drift: drift.transpose()?,
-        tow: Tow {
-            still_s: number(tow, "still")?,
-            acceleration_m_s2: number(tow, "acceleration")?,
-            steady_s: number(tow, "steady")?,
-            rate_hz: number(tow, "rate")?,
-        },
-    })
+impl SteadySpec {
+    /// By the values of [`KEYS`].
+    pub(super) fn of(values: &Values) -> Result<Self, RecordError> {
+        let number = |values: &Values, key: &str| values.need(key, values.number(key));
+        let drift = values.table("drift").map(|d| -> Result<Drift, RecordError> {
+            Ok(Drift { rate_n_s: number(d, "rate")?, most_n: number(d, "most")? })
+        });
+        let tow = values.need("tow", values.table("tow"))?;
+        Ok(Self {
+            settle_s: number(values, "settle")?,
+            shortest_s: number(values, "shortest")?,
+            tolerance: number(values, "tolerance")?,
+            block_s: number(values, "block")?,
+            drift: drift.transpose()?,
+            tow: Tow {
+                still_s: number(tow, "still")?,
+                acceleration_m_s2: number(tow, "acceleration")?,
+                steady_s: number(tow, "steady")?,
+                rate_hz: number(tow, "rate")?,
+            },
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use froude_records::section::{Source as Text, parse};
+    use froude_records::section::{Section, Source as Text, parse};
 
     use super::*;
 
@@ -144,6 +148,7 @@ mod tests {
     fn an_empty_section_is_what_is_usual() {
         let text = Text { path: std::path::Path::new("c.toml"), text: "" };
         let document = parse(text).unwrap();
-        assert_eq!(steady(&Section::new(text, "source.steady", document.get_ref(), 0)).unwrap(), SteadySpec::default());
+        let section = Section::new(text, "source.steady", document.get_ref(), 0);
+        assert_eq!(SteadySpec::of(&Values::read(&section, KEYS).unwrap()).unwrap(), SteadySpec::default());
     }
 }

@@ -8,16 +8,15 @@
 //! **Source.** Newton; USR, the rig of Table 3. For s = 0, v² = v_∞²(1 − e^{−2F x/(m v_∞²)}).
 
 use froude_fit::faer::Mat;
-use froude_fit::faer::prelude::*;
+use froude_fit::nonlinear::{Model, Parameter, Settings, minimise};
 
 use crate::error::TankError;
+use crate::inverted::inverted;
 
 /// s beforehand: the mean and standard deviation of what lies evenly between 0 and 1.
 const SHARE: [f64; 2] = [0.5, 0.288_675_134_594_812_9];
-/// Steps of Gauss and Newton.
-const MOST_STEPS: usize = 100;
-/// Converged when a step moves v_∞ by less than this part.
-const SMALL: f64 = 1e-7;
+/// v_∞ is looked for from this part of the speed at the end.
+const LEAST_SPEED: f64 = 1e-3;
 /// Step of differences, as part of the value.
 const STEP: f64 = 1e-6;
 /// Errors of a track are at least this part of its way: what the integration and the rounding of a file leave.
@@ -66,50 +65,17 @@ pub fn balance(
     let noise_m = noise_m.max(LEAST_NOISE * (position_m[n - 1] - position_m[0]).abs());
     let first = (n / 10).max(1);
     let begins = ((position_m[first] - position_m[0]) / (time_s[first] - time_s[0])).max(0.0);
-    let mut at = near.unwrap_or([1.3 * speed_m_s, position_m[0], begins, SHARE[0]]);
     let scale = [speed_m_s, speed_m_s, speed_m_s, 1.0];
-    let track = Track { time_s, position_m, noise_m, share_off };
+    let track = Track { time_s, position_m, noise_m, share_off, pull, scale };
+    let start = near.unwrap_or([1.3 * speed_m_s, position_m[0], begins, SHARE[0]]);
+    let named = ["terminal speed", "start", "speed there", "linear share"].into_iter().zip(start).zip(scale);
+    let mut parameters: Vec<Parameter> = named.map(|((name, at), scale)| Parameter::new(name, at, scale)).collect();
+    parameters[0].lower = LEAST_SPEED * speed_m_s;
+    let found = minimise(&track, &parameters, &Settings::default()).map_err(|_| refuse("without any drag"))?;
+    let at: [f64; 4] = std::array::from_fn(|j| found.values[j]);
+    let (left, slopes) = (&found.residuals[0], &found.columns[0]);
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let [mut left] = track.residuals([at], pull);
-    let (mut square, mut damping) = (dot(&left, &left), 1e-3);
-    let mut inverse = None;
-    for _ in 0..MOST_STEPS {
-        let moved: [[f64; 4]; 4] = std::array::from_fn(|j| {
-            let mut p = at;
-            p[j] += STEP * scale[j];
-            p
-        });
-        let slopes = track
-            .residuals(moved, pull)
-            .map(|own| own.iter().zip(&left).map(|(there, here)| (here - there) / STEP).collect::<Vec<f64>>());
-        let gram = Mat::from_fn(4, 4, |i, j| dot(&slopes[i], &slopes[j]));
-        let right = Mat::from_fn(4, 1, |i, _| dot(&slopes[i], &left));
-        let unit: Vec<f64> = (0..4).map(|i| gram[(i, i)].sqrt()).collect();
-        let solved = |damping: f64, right: Mat<f64>| {
-            let k = right.ncols();
-            let scaled =
-                Mat::from_fn(4, 4, |i, j| gram[(i, j)] / (unit[i] * unit[j]) + if i == j { damping } else { 0.0 });
-            let solver = scaled.llt(froude_fit::faer::Side::Lower).ok()?;
-            let x = solver.solve(Mat::from_fn(4, k, |i, j| right[(i, j)] / unit[i]));
-            Some(Mat::from_fn(4, k, |i, j| x[(i, j)] / unit[i]))
-        };
-        inverse = solved(0.0, Mat::<f64>::identity(4, 4));
-        let Some(step) = solved(damping, right) else { return Err(refuse("without any drag")) };
-        let next: [f64; 4] = std::array::from_fn(|j| at[j] + scale[j] * step[(j, 0)]);
-        let there = if next[0] > 0.0 { track.residuals([next], pull).concat() } else { Vec::new() };
-        let better = if there.is_empty() { f64::INFINITY } else { dot(&there, &there) };
-        if better <= square {
-            (at, left, square, damping) = (next, there, better, (0.1 * damping).max(1e-12));
-            if step[(0, 0)].abs() < SMALL {
-                break;
-            }
-        } else {
-            damping *= 10.0;
-            if damping > 1e12 {
-                break;
-            }
-        }
-    }
+    let inverse = inverted(&Mat::from_fn(4, 4, |i, j| dot(&slopes[i], &slopes[j])));
     let inverse = inverse.ok_or_else(|| refuse("without any drag"))?;
     if at[0] > 20.0 * speed_m_s {
         return Err(refuse("as if there were no drag at all"));
@@ -119,7 +85,7 @@ pub fn balance(
     let slope: [f64; 4] = std::array::from_fn(|j| {
         let mut p = at;
         p[j] += STEP * scale[j];
-        (acceleration(p) - here) / STEP
+        (acceleration(p) - here) / (STEP * scale[j])
     });
     // cᵀ (J + P)⁻¹ J (J + P)⁻¹ c with c the slope, J of the track, and P = 1/σ_s² beforehand.
     let moved = |i: usize| (0..4).map(|j| inverse[(i, j)] * slope[j]).sum::<f64>();
@@ -168,14 +134,37 @@ struct Track<'a> {
     position_m: &'a [f64],
     noise_m: f64,
     share_off: f64,
+    pull: Pull,
+    /// A natural step of each parameter.
+    scale: [f64; 4],
+}
+
+impl Model for Track<'_> {
+    fn runs(&self) -> usize {
+        1
+    }
+
+    fn residuals(&self, _: usize, theta: &[f64]) -> Option<Vec<f64>> {
+        let [own] = self.left([std::array::from_fn(|j| theta[j])]);
+        Some(own)
+    }
+
+    fn derivatives(&self, _: usize, theta: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let moved = |k: usize| std::array::from_fn(|j| theta[j] + if k == j { STEP * self.scale[j] } else { 0.0 });
+        let [here, there @ ..] = self.left([moved(4), moved(0), moved(1), moved(2), moved(3)]);
+        let column = |(there, scale): (Vec<f64>, f64)| {
+            there.iter().zip(&here).map(|(there, here)| (there - here) / (STEP * scale)).collect()
+        };
+        Some(there.into_iter().zip(self.scale).map(column).collect())
+    }
 }
 
 impl Track<'_> {
     /// What motions of these terminal speeds, starts, speeds there and linear shares leave of the track, in its errors, and of s beforehand.
     ///
     /// They are stepped side by side, by Runge and Kutta's rule of fourth order: each waits for itself only.
-    fn residuals<const N: usize>(&self, p: [[f64; 4]; N], pull: Pull) -> [Vec<f64>; N] {
-        let laws = p.map(|p| Law::of(p, pull));
+    fn left<const N: usize>(&self, p: [[f64; 4]; N]) -> [Vec<f64>; N] {
+        let laws = p.map(|p| Law::of(p, self.pull));
         let (mut x, mut v) = (p.map(|p| p[1]), p.map(|p| p[2]));
         let n = self.position_m.len();
         let mut out: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(n + 1));

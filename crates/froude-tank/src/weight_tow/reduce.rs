@@ -89,7 +89,7 @@ pub fn reduce(run: &Run<'_>, rig: &WeightTow) -> Result<(Point, Found), TankErro
     } else {
         (&found.track.window, "the last part of its way")
     };
-    let marks = touching(run.time_s, used, run.marks);
+    let marks = touching(run.time_s, used, run.told.marks);
     if marks.is_empty() {
         return Ok((point, found));
     }

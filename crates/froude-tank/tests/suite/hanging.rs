@@ -8,8 +8,8 @@ use froude_tank::TankError;
 use froude_tank::channel::Channel;
 use froude_tank::declared::{REPEATS, uncertain};
 use froude_tank::method::TankMethod;
-use froude_tank::observed::method::{Condition, Constant, Declared, Observed, Point, Run, Spec};
-use froude_tank::observed::source::method;
+use froude_tank::observed::method::{Condition, Constant, Declared, Observed, Point, Run, Spec, Unstated};
+use froude_tank::observed::source::{NEEDS, method};
 use froude_tank::observed::twin::{Loads, Rig, Trace};
 use froude_tank::steady::point::{Load, Point as Observation};
 
@@ -19,10 +19,11 @@ pub struct Hanging {
     weight: Constant,
 }
 
-/// As it stands in the registry: its name, what it does, and what a source of it takes.
+/// As it stands in the registry: its name, what it does, what runs it needs, and what a source of it takes.
 pub const HANGING: TankMethod = method::<Hanging>(
     &["hanging"],
     &["drag of a body that hangs in a stream, by the tilt of its wire"],
+    NEEDS,
     &["hanging", "models", "uncertainty", "plan"],
 );
 
@@ -57,7 +58,7 @@ impl Observed for Hanging {
             dimension: Dimension::SPEED,
             column: ["speed_m_s", "speed [m/s]"],
             digits: Digits::Significant(3),
-            otherwise: Err("write [conditions] speed = \"0.2 m/s\", that of the stream, in its sidecar"),
+            otherwise: Unstated::Refused("write [conditions] speed = \"0.2 m/s\", that of the stream, in its sidecar"),
         }],
         channels: &[Channel {
             name: "tilt",

@@ -1,8 +1,9 @@
 //! The weight-driven rig on its twin: what a single run states of its speed and its drag.
 
-use froude_records::run::Declared;
+use froude_records::run::{Declared, Role};
 use froude_rig::weight_tow::{WeightRig, pull};
 use froude_tank::observed::method::{Point, Run};
+use froude_tank::steady::window::Told;
 use froude_tank::weight_tow::WeightTow;
 use froude_tank::weight_tow::reduce::reduce;
 use indexmap::IndexMap;
@@ -46,12 +47,13 @@ fn the_drag_of_a_run_that_still_accelerates_has_the_error_that_it_states() {
             let run = Run {
                 point: Point {
                     id: "a".to_owned(),
+                    role: Role::Test,
                     configuration: String::new(),
                     conditions: IndexMap::from([("weight", weight_n)]),
                 },
                 time_s: &trace.time_s,
                 channels: vec![("position", &position_m)],
-                marks: &[],
+                told: Told::default(),
             };
             let (_, found) = reduce(&run, &spec).unwrap();
             let v = found.track.speed_m_s;

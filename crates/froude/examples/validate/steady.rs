@@ -6,12 +6,12 @@ use std::path::Path;
 use froude::fit::coverage::Count;
 use froude::identify::reduce::reduce_table;
 use froude::identify::source::identify_observations;
-use froude::methods::tank::TankError;
-use froude::methods::tank::steady::plan::{Expected, expected};
-use froude::methods::tank::steady::point;
+use froude::methods::tank::observed::plan::{Expected, exact, expected};
+use froude::methods::tank::observed::settings::Plan;
+use froude::methods::tank::observed::source::Reduced;
+use froude::methods::tank::observed::twin::Twin;
+use froude::methods::tank::steady::Steady;
 use froude::methods::tank::steady::row::{Row, table};
-use froude::methods::tank::steady::section::declared;
-use froude::methods::tank::steady::simulate::{Plan, plan_of, simulated};
 use froude::records::campaign::{Campaign, SensorSpec, Source};
 use froude::records::campaign_file::read_campaign;
 use froude::records::estimate::Coefficient;
@@ -30,7 +30,10 @@ const SECTION: &str = "Steady tows: raw series by their twin";
 pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn Error>> {
     let campaign = read_campaign(&root.join("examples/mamba-steady/campaign.toml"))?;
     let source = Source { models: vec!["f4".to_owned()], model_places: Vec::new(), ..campaign.sources[0].clone() };
-    let plan = plan_of(&campaign, &source)?;
+    let twin = Twin::<Steady>::of(&campaign, &source)?;
+    let forecast = |sensors: &[SensorSpec]| -> Result<Vec<Expected>, Box<dyn Error>> {
+        Ok(expected(&twin, &source, &exact(&twin, sensors)?.1, (sensors, false))?)
+    };
     let sensors = campaign.simulate.as_ref().map_or(&[] as &[_], |s| s.sensors.as_slice());
     for (words, factor) in [("0.02 N", 1.0), ("0.2 N", 10.0)] {
         let louder = |s: &SensorSpec| SensorSpec {
@@ -38,21 +41,21 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
             ..s.clone()
         };
         let sensors: Vec<SensorSpec> = sensors.iter().map(louder).collect();
-        let forecast = expected(&plan, &source, &sensors)?;
+        let forecast = forecast(&sensors)?;
         let seeds = campaigns_of(factor == 1.0, seeds);
         let (fits, codes): (Vec<Fitted>, Vec<Codes>) = (0..seeds)
             .into_par_iter()
-            .filter_map(|seed| one(&campaign, &source, &plan, &sensors, seed as u64).ok())
+            .filter_map(|seed| one(&campaign, &source, &twin, &sensors, seed as u64).ok())
             .unzip();
         judged_codes(claims, SECTION, &format!("tests of the scatter at {words}, {seeds} sound campaigns"), codes);
         judge(claims, SECTION, &forecast, &fits, (words, "56 tows", factor == 1.0, seeds));
     }
     let seeds = seeds.min(2_000);
     let (fits, refused) = answered(seeds, |seed| {
-        let plan = Plan { of_run: factors(plan.data.rows, seed), ..plan.clone() };
-        one(&campaign, &source, &plan, sensors, seed).map(|(fitted, _)| fitted)
+        let plan = Plan { of_run: factors(twin.points.len(), seed), ..twin.plan.clone() };
+        one(&campaign, &source, &Twin { plan, ..twin.clone() }, sensors, seed).map(|(fitted, _)| fitted)
     });
-    let truths = expected(&plan, &source, sensors)?.into_iter().map(|e| (e.name, e.value));
+    let truths = forecast(sensors)?.into_iter().map(|e| (e.name, e.value));
     let each = covered(truths, &fits);
     between_runs(claims, SECTION, &format!("{seeds} campaigns of 56 tows"), &each, &refused);
     Ok(())
@@ -62,22 +65,13 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
 fn one(
     campaign: &Campaign,
     source: &Source,
-    plan: &Plan,
+    twin: &Twin<Steady>,
     sensors: &[SensorSpec],
     seed: u64,
 ) -> Result<(Fitted, Codes), Box<dyn Error + Send + Sync>> {
-    let spec = declared(source)?;
-    let logged = simulated(plan, spec.tow, sensors, &source.uncertainty, 1 + seed);
-    let rows = logged.iter().map(|run| {
-        Ok(Row {
-            run: run.id.clone(),
-            configuration: run.configuration.clone(),
-            angle_rad: run.angle_rad,
-            temperature_k: None,
-            point: point(&run.view(), &spec)?,
-        })
-    });
-    let rows: Vec<Row> = rows.collect::<Result<_, TankError>>()?;
+    let logged = twin.simulated(sensors, &source.uncertainty, 1 + seed);
+    let reduced = logged.iter().map(|run| Reduced::of(&twin.method, &run.view())).collect::<Result<Vec<_>, _>>()?;
+    let rows: Vec<Row> = reduced.into_iter().map(Row::from).collect();
     let observations = reduce_table(campaign, source, &table(source.input.path(), &rows), Vec::new())?;
     let mut result = identify_observations(campaign, source, observations, "steady", &|_| {})?;
     Ok((result.estimates.remove(0).coefficients, of_scatter(&result.findings)))

@@ -12,12 +12,11 @@ use froude::identify::eiv;
 use froude::identify::law::ForceLaw;
 use froude::identify::reduce::reduce_table;
 use froude::identify::source::identify_observations;
-use froude::methods::tank::observed::plan::{exact, expected};
+use froude::methods::tank::observed::plan::{Expected, exact, expected};
+use froude::methods::tank::observed::settings::{Plan, loads_at};
 use froude::methods::tank::observed::source::{Reduced, shared, with_speeds};
 use froude::methods::tank::observed::twin::Twin;
-use froude::methods::tank::steady::plan::Expected;
 use froude::methods::tank::steady::row::{Row, table};
-use froude::methods::tank::steady::simulate::{Plan, loads_at};
 use froude::methods::tank::weight_tow::WeightTow;
 use froude::records::campaign::{Campaign, SensorSpec, Source};
 use froude::records::campaign_file::read_campaign;
@@ -59,14 +58,7 @@ impl Case {
     ) -> Result<(Fitted, Codes), Box<dyn Error + Send + Sync>> {
         let logged = twin.simulated(sensors, &self.source.uncertainty, 1 + seed);
         let reduced = logged.iter().map(|run| Reduced::of(&twin.method, &run.view())).collect::<Result<Vec<_>, _>>()?;
-        let row = |run: &Reduced<WeightTow>| Row {
-            run: run.point.id.clone(),
-            configuration: run.point.configuration.clone(),
-            angle_rad: run.point.condition("angle"),
-            temperature_k: None,
-            point: run.observation.clone(),
-        };
-        let rows: Vec<Row> = reduced.iter().map(row).collect();
+        let rows: Vec<Row> = reduced.iter().cloned().map(Row::from).collect();
         let own = with_speeds(&self.source, &twin.method, &reduced);
         let mut observations = reduce_table(&self.campaign, &own, &table(own.input.path(), &rows), Vec::new())?;
         observations.shared_errors.extend(shared(&twin.method, &reduced, &observations.data.loads()));

@@ -1,7 +1,6 @@
-//! The plan of steady tows: run matrix, time, travel, and the intervals to expect.
+//! The linearised fit of planned runs.
 //!
-//! Each planned run is towed without noise on the twin and reduced; the lengths of its window and its parts at rest, the noise of the sensors and its
-//! correlation give the variance of its mean. With X the regressors of a load at the truth and S the variances of its rows,
+//! With X the regressors of a load at the truth and S the variances of its rows,
 //!
 //! C = (XᵀX)⁻¹ Xᵀ S X (XᵀX)⁻¹ + Σ_e (XᵀX)⁻¹ Xᵀ J_e s_e² J_eᵀ X (XᵀX)⁻¹
 //!
@@ -11,38 +10,19 @@
 
 use froude_fit::budget::Kind;
 use froude_fit::faer::Mat;
-use froude_identify::method::{MethodError, Prospect};
-use froude_records::block::{ResultTable, TableBuilder};
-use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
-use froude_records::text::counted;
+use froude_identify::method::MethodError;
+use froude_records::campaign::{BudgetEntry, SensorSpec, Shared};
 
-use super::section::{self, SteadySpec};
-use super::simulate::senses;
-use super::simulate::{Plan, Simulated, loads_at, plan_of, simulated};
-use super::window::window;
+use super::settings::{Plan, loads_at};
 use crate::error::undeclared;
 use crate::inverted::inverted;
 use crate::joint::conclude::part;
-use crate::plan;
-use crate::sensors::seed_and_sensors;
-
-pub use crate::plan::Expected;
+use crate::plan::Expected;
 
 /// What a taper over a window costs in independent samples ([`froude_fit::series`]).
 const TAPER_COST: f64 = 0.6875 / 0.5625;
 /// Step of differences by speed and angle, as part of the standard uncertainty.
 const STEP: f64 = 1e-3;
-
-/// Lengths of the steady window and of a part at rest, s, of each planned run.
-fn windows(plan: &Plan, spec: &SteadySpec) -> Result<Vec<[f64; 2]>, MethodError> {
-    let parts_s = |run: &Simulated| {
-        let run = run.view();
-        window(run.id, run.time_s, run.motion, spec)
-            .map(|w| [w.steady.len(), w.before.len()].map(|n| n as f64 / spec.tow.rate_hz))
-    };
-    let exact = simulated(plan, spec.tow, &[], &[], 0);
-    exact.iter().map(parts_s).collect::<Result<_, _>>().map_err(MethodError::refused)
-}
 
 /// An error that all runs share, in a plan: what it moves each load of each run by, in the order of the law's responses.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,20 +33,6 @@ pub struct PlannedError {
     pub dof: f64,
     /// By response, by run, N or N m.
     pub moves: Vec<Vec<f64>>,
-}
-
-/// The intervals to expect of the coefficients of the planned law.
-///
-/// # Errors
-///
-/// Runs without a window, coefficients that the plan does not determine.
-pub fn expected(plan: &Plan, source: &Source, sensors: &[SensorSpec]) -> Result<Vec<Expected>, MethodError> {
-    let spec = section::declared(source)?;
-    let windows_s = windows(plan, &spec)?;
-    let step_s = 1.0 / spec.tow.rate_hz;
-    let own = |r: usize, i: usize| variance(sensors, &plan.law.responses[r], windows_s[i], step_s);
-    let (errors, rows) = declared(plan, &source.uncertainty)?;
-    linearised(plan, &|r, i| own(r, i) + rows[r][i], &errors, false)
 }
 
 /// What a budget does to a plan: the errors that all runs share, and the variances that each run has for itself, by response.
@@ -186,51 +152,4 @@ fn direction(plan: &Plan, entry: &BudgetEntry, r: usize, truth: &[f64]) -> Optio
         if h > 0.0 { -(load(h) - load(-h)) / (2.0 * STEP) } else { 0.0 }
     };
     Some((0..n).map(one).collect())
-}
-
-/// What the plan of a source takes and determines.
-///
-/// # Errors
-///
-/// What the campaign does not declare, runs without a window, coefficients that the plan does not determine.
-pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
-    let spec = section::declared(source)?;
-    let plan = plan_of(campaign, source)?;
-    let (_, sensors) = seed_and_sensors(campaign, &senses(&plan))?;
-    let windows_s = windows(&plan, &spec)?;
-    let expected = expected(&plan, source, sensors)?;
-    let speed = |i: &usize| plan.data.values("speed").map_or(0.0, |v| v[*i].abs());
-    let duration = |i: &usize| 2.0 * (spec.tow.still_s + speed(i) / spec.tow.acceleration_m_s2) + spec.tow.steady_s;
-    let travel = |i: &usize| speed(i).powi(2) / spec.tow.acceleration_m_s2 + speed(i) * spec.tow.steady_s;
-    let steady_m = |i: &usize| windows_s[*i][0] * speed(i);
-    let all: Vec<usize> = (0..plan.data.rows).collect();
-    let duration_s: f64 = all.iter().map(duration).sum();
-    let longest_m = all.iter().map(travel).fold(0.0, f64::max);
-    let all_steady_m: f64 = all.iter().map(steady_m).sum();
-    let t = TableBuilder::new("matrix", "Run matrix.", &all);
-    let matrix = t.build(vec![
-        t.text("run", "run", |i| format!("{:03}", i + 1)),
-        t.text("configuration", "configuration", |i| plan.data.configuration[*i].clone()),
-        t.number("speed_m_s", "speed [m/s]", speed).significant(3),
-        t.number("angle_rad", "angle [deg]", |i| plan.data.values("angle").map_or(0.0, |a| a[*i])).plain(4),
-        t.number("duration_s", "duration [s]", duration).places(1),
-        t.number("travel_m", "travel [m]", travel).places(2),
-        t.number("window_s", "steady window [s]", |i| windows_s[*i][0]).places(1),
-        t.number("steady_distance_m", "steady distance [m]", steady_m).places(2),
-    ]);
-    let paragraph = format!(
-        "{} of {:.1} min in all on the log, waits between them and the way back not counted; {:.1} m of steady distance; the longest needs {:.2} m of travel. The intervals are those of the \
-         linearised fit at the true coefficients of [simulate], with the noise of [[simulate.sensor]] and everything that is declared; bounds are not counted.",
-        counted(plan.data.rows, "run", "runs"),
-        duration_s / 60.0,
-        all_steady_m,
-        longest_m
-    );
-    let tables = [matrix, coefficients(&plan, &expected)];
-    Ok(plan::prospect(source, (plan.data.rows, duration_s), tables, vec![paragraph]))
-}
-
-/// The intervals to expect of the plan's law.
-pub(crate) fn coefficients(plan: &Plan, expected: &[Expected]) -> ResultTable {
-    plan::intervals(expected, &format!(", with the law {} of [simulate]", plan.law.name))
 }
