@@ -3,11 +3,13 @@
 use froude_fit::budget::Uncertain;
 use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, Truth};
+use froude_records::run::Role;
 use indexmap::IndexMap;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
+use crate::channel::Channel;
 use crate::error::undeclared;
 
 /// Draws that a seed determines, each after the last.
@@ -40,46 +42,66 @@ pub(crate) fn seed_of(seed: u64, run: usize) -> u64 {
     seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(run as u64 + 1)
 }
 
-/// The log and the sidecar of a run, by its name.
-pub(crate) fn pair(id: &str, log: String, sidecar: String) -> [Export; 2] {
-    [("csv", log), ("toml", sidecar)]
-        .map(|(end, text)| Export { name: format!("{id}.{end}"), content: text.into_bytes() })
+/// A column of a log.
+pub(crate) struct Column<'a> {
+    /// Its head, channel, unit, frame, and what stands behind them in the sidecar.
+    pub described: [&'a str; 5],
+    /// Decimal places.
+    pub places: usize,
+    pub values: &'a [f64],
 }
 
-/// A log: the time and columns, each to so many places.
-pub(crate) fn csv(head: &str, time_s: &[f64], columns: &[(&[f64], usize)]) -> String {
-    let mut out = format!("{head}\n");
-    for (i, t) in time_s.iter().enumerate() {
-        out += &format!("{t:.6}");
-        for (column, places) in columns {
-            out += &format!(",{:.places$}", column[i]);
-        }
-        out.push('\n');
+impl<'a> Column<'a> {
+    pub(crate) fn of(channel: &Channel, values: &'a [f64]) -> Self {
+        let (head, frame, comment, places) = channel.column;
+        Self { described: [head, channel.name, channel.unit, frame, comment], places, values }
     }
-    out
 }
 
-/// A sidecar: what the run is, its configuration and conditions, and its columns.
-pub(crate) struct Sidecar<'a> {
-    /// The comment at its head.
+/// A run with its log.
+pub(crate) struct Logged<'a> {
+    /// Its name.
+    pub id: &'a str,
+    /// The comment at the head of its sidecar.
     pub said: &'a str,
     pub method: &'a str,
-    pub role: &'a str,
+    pub role: Role,
     /// Empty where nothing is stated.
     pub configuration: &'a str,
     /// Lines of `[conditions]`.
     pub conditions: &'a [String],
-    /// The column of the time.
-    pub time: &'a str,
-    /// Column, channel, unit, frame, and what stands behind.
-    pub columns: &'a [[&'a str; 5]],
-    /// Columns are filled up to this.
-    pub width: usize,
+    /// Head of the time, and the times, s.
+    pub time: (&'a str, &'a [f64]),
+    pub columns: &'a [Column<'a>],
 }
 
-impl Sidecar<'_> {
-    pub(crate) fn text(&self) -> String {
-        let Self { said, method, role, configuration, time, width, .. } = self;
+impl Logged<'_> {
+    /// The log and the sidecar.
+    pub(crate) fn files(&self) -> [Export; 2] {
+        [("csv", self.log()), ("toml", self.sidecar())]
+            .map(|(end, text)| Export { name: format!("{}.{end}", self.id), content: text.into_bytes() })
+    }
+
+    fn heads(&self) -> Vec<&str> {
+        std::iter::once(self.time.0).chain(self.columns.iter().map(|column| column.described[0])).collect()
+    }
+
+    fn log(&self) -> String {
+        let mut out = format!("{}\n", self.heads().join(","));
+        for (i, t) in self.time.1.iter().enumerate() {
+            out += &format!("{t:.6}");
+            for Column { places, values, .. } in self.columns {
+                out += &format!(",{:.places$}", values[i]);
+            }
+            out.push('\n');
+        }
+        out
+    }
+
+    fn sidecar(&self) -> String {
+        let Self { said, method, configuration, .. } = self;
+        let role = self.role.name();
+        let width = self.heads().iter().map(|head| head.len()).max().unwrap_or(0);
         let mut out = format!("# {said}\nschema = 1\nmethod = \"{method}\"\nrole = \"{role}\"\n");
         if !configuration.is_empty() {
             out += &format!("\n[mounted]\nconfiguration = {configuration:?}\n");
@@ -87,10 +109,10 @@ impl Sidecar<'_> {
         if !self.conditions.is_empty() {
             out += &format!("\n[conditions]\n{}\n", self.conditions.join("\n"));
         }
-        out += &format!("\n[columns]\n{time:width$} = {{ name = \"time\", unit = \"s\" }}\n");
-        for [column, name, unit, frame, behind] in self.columns {
+        out += &format!("\n[columns]\n{:width$} = {{ name = \"time\", unit = \"s\" }}\n", self.time.0);
+        for Column { described: [head, name, unit, frame, comment], .. } in self.columns {
             out += &format!(
-                "{column:width$} = {{ name = \"{name}\", unit = \"{unit}\", sign = 1, frame = \"{frame}\", clock = \"log\" }}{behind}\n"
+                "{head:width$} = {{ name = \"{name}\", unit = \"{unit}\", sign = 1, frame = \"{frame}\", clock = \"log\" }}{comment}\n"
             );
         }
         out

@@ -20,7 +20,7 @@ use super::setup::{Setup, declared, no_mass, setup_of};
 use crate::declared::uncertain;
 use crate::error::undeclared;
 use crate::sensors::{Senses, reading, seed_and_sensors};
-use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
+use crate::twin::{Column, Draws, Logged, seed_of};
 
 /// Standard deviation of the zero of a run, N.
 const ZERO_N: f64 = 0.2;
@@ -229,23 +229,23 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let planned = planned(&blocks, &setup);
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let runs = simulated(&planned, &setup, &truth, sensors, seed).ok_or_else(|| no_mass(source, &setup))?;
-    Ok(runs.iter().flat_map(|run| pair(&run.planned.id, log(&run.trace), sidecar(run, &setup))).collect())
+    Ok(runs.iter().flat_map(|run| files_of(run, &setup)).collect())
 }
 
-fn log(trace: &AcceleratedTrace) -> String {
-    csv("time,x,force", &trace.time_s, &[(&trace.position_m, 8), (&trace.force_n, 6)])
-}
-
-fn sidecar(run: &Simulated, setup: &Setup) -> String {
-    let sidecar = Sidecar {
+fn files_of(run: &Simulated, setup: &Setup) -> [Export; 2] {
+    let column = |described, places, values| Column { described, places, values };
+    let logged = Logged {
+        id: &run.planned.id,
         said: "A run of the twin.",
         method: ACCELERATED_TOW,
-        role: if run.planned.is_dry { Role::DryAir } else { Role::Test }.name(),
+        role: if run.planned.is_dry { Role::DryAir } else { Role::Test },
         configuration: &setup.bodies[run.planned.body].name,
         conditions: &[],
-        time: "time",
-        columns: &[["x", "position", "m", "body", ""], ["force", "force", "N", "body", "   # of the rig on the body"]],
-        width: 5,
+        time: ("time", &run.trace.time_s),
+        columns: &[
+            column(["x", "position", "m", "body", ""], 8, &run.trace.position_m),
+            column(["force", "force", "N", "body", "   # of the rig on the body"], 6, &run.trace.force_n),
+        ],
     };
-    sidecar.text()
+    logged.files()
 }

@@ -14,7 +14,7 @@ use super::run::{DecayRun, DecaySetup, Restoring};
 use super::section::DecayPlan;
 use crate::error::undeclared;
 use crate::sensors::{Senses, seed_and_sensors};
-use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
+use crate::twin::{self, Column, Draws, seed_of};
 
 /// Standard deviation of the zero of a release, as part of its displacement.
 const ZERO: f64 = 0.02;
@@ -168,8 +168,7 @@ pub fn files(campaign: &Campaign, blocks: &[DecayPlan], setup: &DecaySetup) -> R
     let planned = planned(blocks);
     let (seed, sensors) = seed_and_sensors(campaign, &senses(setup.axis))?;
     let logs = simulated(&planned, setup, truth, sensors, seed);
-    let text = |run: &Planned| sidecar(run, setup.axis);
-    Ok(planned.iter().zip(&logs).flat_map(|(run, log)| pair(&run.id, csv_of(log, setup.axis), text(run))).collect())
+    Ok(planned.iter().zip(&logs).flat_map(|(run, log)| files_of(run, log, setup.axis)).collect())
 }
 
 /// Name of the column that moves, with its unit.
@@ -177,21 +176,17 @@ const fn column(axis: Motion) -> [&'static str; 2] {
     if axis.is_rotation() { ["angle", "rad"] } else { ["position", "m"] }
 }
 
-fn csv_of(log: &Logged, axis: Motion) -> String {
-    csv(&format!("time,{}", column(axis)[0]), &log.time_s, &[(&log.position, 8)])
-}
-
-fn sidecar(run: &Planned, axis: Motion) -> String {
+fn files_of(run: &Planned, log: &Logged, axis: Motion) -> [Export; 2] {
     let [name, unit] = column(axis);
-    let sidecar = Sidecar {
+    let logged = twin::Logged {
+        id: &run.id,
         said: "A release of the twin.",
         method: FREE_DECAY,
-        role: Role::Decay.name(),
+        role: Role::Decay,
         configuration: &run.configuration,
         conditions: &[],
-        time: "time",
-        columns: &[[name, name, unit, "sensor", ""]],
-        width: 0,
+        time: ("time", &log.time_s),
+        columns: &[Column { described: [name, name, unit, "sensor", ""], places: 8, values: &log.position }],
     };
-    sidecar.text()
+    logged.files()
 }

@@ -19,7 +19,7 @@ use super::setup::Setup;
 use super::spec::{Channel, Constant, Enters, Factor, Point};
 use crate::error::{TankError, undeclared};
 use crate::sensors::{Senses, of_sensor, seed_and_sensors};
-use crate::twin::{Draws, Sidecar, csv, pair, seed_of, true_value};
+use crate::twin::{Column, Draws, Logged, seed_of, true_value};
 
 /// Natural frequency of the twin's servo, rad/s, and its damping ratio: a joint module that overshoots a little.
 const SERVO: (f64, f64) = (30.0, 0.6);
@@ -223,32 +223,25 @@ pub fn files<M: MotorDriven>(campaign: &Campaign, source: &Source) -> Result<Vec
 /// The log and the sidecar of a run; `said` is a line for people at the head of the sidecar.
 #[must_use]
 pub fn files_of<M: MotorDriven>(run: &Planned, trace: &SwungTrace, said: &str) -> [Export; 2] {
-    let spec = M::SPEC;
-    let channels: Vec<&Channel> = std::iter::once(&spec.motion).chain(spec.loads).collect();
-    let names: Vec<&str> = std::iter::once("time").chain(channels.iter().map(|channel| channel.column.0)).collect();
+    let (spec, point) = (M::SPEC, &run.point);
+    let channels = std::iter::once(&spec.motion).chain(spec.loads);
     let values = std::iter::once(&trace.motion).chain(&trace.loads);
-    let columns: Vec<(&[f64], usize)> =
-        values.zip(&channels).map(|(values, channel)| (values.as_slice(), channel.column.3)).collect();
-    let role = if spec.roles.1.contains(&run.point.role) { run.point.role } else { Role::Test };
+    let columns: Vec<Column<'_>> = channels.zip(values).map(|(channel, values)| Column::of(channel, values)).collect();
+    let role = if spec.roles.1.contains(&point.role) { point.role } else { Role::Test };
     let condition = |(name, value): (&&str, &f64)| {
         let unit = spec.conditions.iter().find(|c| c.name == *name).map_or("1", |c| c.unit);
         format!("{name} = \"{value} {unit}\"")
     };
-    let described: Vec<[&str; 5]> = (channels.iter())
-        .map(|channel| {
-            let (column, frame, comment, _) = channel.column;
-            [column, channel.name, channel.unit, frame, comment]
-        })
-        .collect();
-    let sidecar = Sidecar {
+    let conditions: Vec<String> = point.conditions.iter().map(condition).collect();
+    let logged = Logged {
+        id: &run.id,
         said,
         method: spec.name,
-        role: role.name(),
-        configuration: &run.point.configuration,
-        conditions: &run.point.conditions.iter().map(condition).collect::<Vec<_>>(),
-        time: "time",
-        columns: &described,
-        width: names.iter().map(|name| name.len()).max().unwrap_or(0),
+        role,
+        configuration: &point.configuration,
+        conditions: &conditions,
+        time: ("time", &trace.time_s),
+        columns: &columns,
     };
-    pair(&run.id, csv(&names.join(","), &trace.time_s, &columns), sidecar.text())
+    logged.files()
 }

@@ -15,7 +15,7 @@ use super::coefficients::NAMES;
 use super::section::{self, ExcitedPlan, setup_of};
 use super::setup::{Setup, Shows, WaveRun};
 use crate::sensors::{Senses, reading, seed_and_sensors};
-use crate::twin::{Draws, Sidecar, csv, pair, seed_of, true_value, truths};
+use crate::twin::{Column, Draws, Logged, seed_of, true_value, truths};
 
 /// Speed of the twin's waves for the phase between wavemaker and body: they have come in by so many turns and a part, whose size does not matter.
 const PHASE_RAD: f64 = -0.7;
@@ -145,30 +145,28 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let planned = planned(&section::plan(source)?, &setup, truth(campaign)?);
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let runs = simulated(&planned, &setup, sensors, seed);
-    Ok(runs.iter().flat_map(|run| pair(&run.planned.id, log(run), sidecar(&run.planned))).collect())
+    Ok(runs.iter().flat_map(files_of).collect())
 }
 
-fn log(run: &Simulated) -> String {
-    let signal = if run.planned.is_held { "fz" } else { "acc" };
-    let columns: [(&[f64], usize); 2] = [(&run.trace.reference_m, 8), (&run.trace.signal, 7)];
-    csv(&format!("t,wavemaker,{signal}"), &run.trace.time_s, &columns)
-}
-
-fn sidecar(run: &Planned) -> String {
-    let (role, signal) = if run.is_held {
+fn files_of(run: &Simulated) -> [Export; 2] {
+    let (role, signal) = if run.planned.is_held {
         (Role::Held, ["fz", "f_z", "N", "body", "           # of the water on the body, upwards"])
     } else {
         (Role::Free, ["acc", "acceleration", "m/s^2", "body", "   # upwards"])
     };
-    let sidecar = Sidecar {
+    let column = |described, places, values| Column { described, places, values };
+    let logged = Logged {
+        id: &run.planned.id,
         said: "A run of the twin.",
         method: EXCITED_RESPONSE,
-        role: role.name(),
+        role,
         configuration: "",
-        conditions: &[format!("period = \"{} s\"", run.period_s)],
-        time: "t",
-        columns: &[["wavemaker", "reference", "m", "sensor", ""], signal],
-        width: 9,
+        conditions: &[format!("period = \"{} s\"", run.planned.period_s)],
+        time: ("t", &run.trace.time_s),
+        columns: &[
+            column(["wavemaker", "reference", "m", "sensor", ""], 8, &run.trace.reference_m),
+            column(signal, 7, &run.trace.signal),
+        ],
     };
-    sidecar.text()
+    logged.files()
 }

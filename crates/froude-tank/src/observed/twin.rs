@@ -11,14 +11,14 @@ use froude_records::units::Dimension;
 use froude_rig::steady::{self, Reading};
 
 use super::matrix;
-use super::method::{ANGLE, Constant, Observed, Point, Run, values};
+use super::method::{ANGLE, Condition, Constant, Observed, Point, Run, values};
 use super::settings::{Plan, loads_at};
 use super::source::read;
 use crate::channel::Channel;
 use crate::error::undeclared;
 use crate::sensors::{Senses, reading, seed_and_sensors};
 use crate::steady::window::Told;
-use crate::twin::{Draws, Sidecar, csv, pair, seed_of};
+use crate::twin::{Column, Draws, Logged, seed_of};
 
 /// Loads of the true law on a body at the angle of a run.
 #[derive(Debug, Clone, Copy)]
@@ -285,35 +285,29 @@ pub fn files<M: Observed>(campaign: &Campaign, source: &Source) -> Result<Vec<Ex
 }
 
 fn files_of<M: Observed>(run: &Simulated) -> [Export; 2] {
-    let spec = M::SPEC;
-    let logged: Vec<(&Channel, &[f64])> = (run.trace.columns.iter())
-        .filter_map(|(name, values)| Some((channel::<M>(name)?, values.as_slice())))
-        .collect();
-    let columns: Vec<(&[f64], usize)> = logged.iter().map(|(channel, values)| (*values, channel.column.3)).collect();
-    let heads: Vec<&str> = std::iter::once("time").chain(logged.iter().map(|(channel, _)| channel.column.0)).collect();
-    let condition = |condition: &super::method::Condition| {
+    let (spec, Simulated { point, trace }) = (M::SPEC, run);
+    let columns: Vec<Column<'_>> =
+        trace.columns.iter().filter_map(|(name, values)| Some(Column::of(channel::<M>(name)?, values))).collect();
+    let condition = |condition: &Condition| {
         // What a log shows is not stated beside it.
-        let is_logged = logged.iter().any(|(channel, _)| channel.name == condition.name);
-        let value = run.point.conditions.get(condition.name).filter(|_| !is_logged)?;
-        let unit = condition.dimension.to_string();
+        let is_logged = columns.iter().any(|column| column.described[1] == condition.name);
+        let value = point.conditions.get(condition.name).filter(|_| !is_logged)?;
         Some(match condition.dimension {
             // Digits beyond those of an angle as it is declared are those of a conversion.
             Dimension::ONE => format!("{} = \"{} deg\"", condition.name, (value.to_degrees() * 1e9).round() / 1e9),
-            _ => format!("{} = \"{value} {unit}\"", condition.name),
+            dimension => format!("{} = \"{value} {dimension}\"", condition.name),
         })
     };
-    let described: Vec<[&str; 5]> = (logged.iter())
-        .map(|(channel, _)| [channel.column.0, channel.name, channel.unit, channel.column.1, channel.column.2])
-        .collect();
-    let sidecar = Sidecar {
+    let conditions: Vec<String> = spec.conditions.iter().filter_map(condition).collect();
+    let run = Logged {
+        id: &point.id,
         said: "A run of the twin.",
         method: spec.name,
-        role: "test",
-        configuration: &run.point.configuration,
-        conditions: &spec.conditions.iter().filter_map(condition).collect::<Vec<_>>(),
-        time: "time",
-        columns: &described,
-        width: heads.iter().map(|head| head.len()).max().unwrap_or(0),
+        role: point.role,
+        configuration: &point.configuration,
+        conditions: &conditions,
+        time: ("time", &trace.time_s),
+        columns: &columns,
     };
-    pair(&run.point.id, csv(&heads.join(","), &run.trace.time_s, &columns), sidecar.text())
+    run.files()
 }
