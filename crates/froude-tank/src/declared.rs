@@ -1,7 +1,5 @@
 //! What the methods read of their sections of a campaign alike: constants, cycles, frequencies, plans.
 
-use std::f64::consts::TAU;
-
 use froude_fit::budget::Uncertain;
 use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
 use froude_identify::method::MethodError;
@@ -11,7 +9,6 @@ use froude_records::run::Declared;
 use froude_records::section::Section;
 use froude_records::section_values::{Asks, MOST_RUNS, OF_RUNS, plan_of};
 use froude_records::units::Dimension;
-use froude_rig::swung::Swing;
 
 use crate::error::undeclared;
 use crate::motion::Cycles;
@@ -47,7 +44,7 @@ pub(crate) fn check<T, P>(
 pub(crate) fn runs_of<T>(
     source: &Source,
     method: &str,
-    read: fn(&Section<'_>) -> Result<T, RecordError>,
+    read: impl Fn(&Section<'_>) -> Result<T, RecordError>,
     asks: impl Fn(&T) -> Asks,
 ) -> Result<Vec<T>, RecordError> {
     plan_of(&source.blocks(method)?, OF_RUNS, MOST_RUNS, read, asks)
@@ -127,55 +124,4 @@ pub(crate) fn configurations(values: &Values) -> Vec<String> {
 #[must_use]
 pub const fn amplitude(dimension: Dimension, advice: &'static str, doc: &'static str) -> Key {
     Key::new("amplitude", Kind::Axis(dimension), IfMissing::Required(advice), doc).within(Range::Positive)
-}
-
-/// How a motor moves a body in the runs of one block of a plan: every amplitude at every frequency.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Swings {
-    /// Amplitudes, rad or m.
-    pub amplitude: Vec<f64>,
-    /// Angular frequencies.
-    pub omega_rad_s: Vec<f64>,
-    /// Periods of each run, start-up included.
-    pub periods: f64,
-    /// Time at rest before each.
-    pub still_s: f64,
-    /// Samples a second.
-    pub rate_hz: f64,
-    /// How often each is run.
-    pub repeats: usize,
-}
-
-impl Swings {
-    /// Of the values of a block of a plan.
-    pub(crate) fn of(values: &Values) -> Result<Self, RecordError> {
-        let count = |key: &str| values.need(key, values.count(key));
-        let number = |key: &str| values.need(key, values.number(key));
-        Ok(Self {
-            amplitude: values.numbers("amplitude"),
-            omega_rad_s: values.numbers("frequency"),
-            periods: count("periods")? as f64,
-            still_s: number("still")?,
-            rate_hz: number("rate")?,
-            repeats: count("repeats")?,
-        })
-    }
-
-    /// Every amplitude at every frequency, as often as each is run.
-    pub(crate) fn each(&self) -> impl Iterator<Item = Swing> + '_ {
-        let (still_s, periods) = (self.still_s, self.periods);
-        let swing = move |amplitude, omega_rad_s| Swing { amplitude, omega_rad_s, still_s, periods };
-        let of_amplitude = move |a: f64| self.omega_rad_s.iter().map(move |w| swing(a, *w));
-        let all = self.amplitude.iter().copied().flat_map(of_amplitude);
-        all.flat_map(|swing| std::iter::repeat_n(swing, self.repeats))
-    }
-
-    /// What they ask for, `times` over: the periods of each, with still water before and behind them.
-    pub(crate) fn asks(&self, times: usize) -> Asks {
-        let count = times * self.amplitude.len() * self.omega_rad_s.len() * self.repeats;
-        // Every frequency stands in an equal part of the runs.
-        let sum_s = self.omega_rad_s.iter().map(|w| TAU * self.periods / w).sum::<f64>();
-        let mean_s = sum_s / self.omega_rad_s.len().max(1) as f64;
-        Asks { count, samples: count as f64 * (mean_s + 2.0 * self.still_s) * self.rate_hz }
-    }
 }

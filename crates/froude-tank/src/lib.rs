@@ -21,6 +21,7 @@ pub mod joint;
 pub mod log;
 mod logs;
 mod long_logs;
+mod matrix;
 pub mod method;
 pub mod motion;
 pub mod names;

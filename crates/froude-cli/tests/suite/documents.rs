@@ -51,6 +51,7 @@ fn the_key_tables_of_the_book_are_those_that_the_methods_declare() {
         ("weight-tow", weight_tow::KEYS),
         ("weight-tow", weight_tow::PLAN),
         ("accelerated-tow", accelerated_tow::section::KEYS),
+        ("accelerated-tow", accelerated_tow::section::PLAN),
         ("excited-response", excited_response::section::KEYS),
         ("excited-response", excited_response::section::PLAN),
     ] {

@@ -23,10 +23,11 @@ use super::rows::{Rows, row_errors, sample_s, window};
 use super::section;
 use super::setup::{Setup, declared, no_mass, setup_of};
 use super::simulate::senses;
-use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
+use super::simulate::{Planned, Simulated, Truths, planned, simulated};
 use crate::error::undeclared;
 use crate::inverted::inverted;
 use crate::joint::conclude::part;
+use crate::matrix::of_configurations;
 use crate::noise::correlated;
 use crate::plan::{self, Expected};
 use crate::sensors::seed_and_sensors;
@@ -258,10 +259,10 @@ fn exactly(setup: &Setup) -> Setup {
 ///
 /// What the campaign does not declare, and what the plan does not determine.
 pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
-    let (spec, blocks) = (declared(source)?, section::plan(source)?);
-    let setup = setup_of(campaign, source, &spec, &configurations(&blocks))?;
+    let (spec, points) = (declared(source)?, section::plan(source)?);
+    let setup = setup_of(campaign, source, &spec, &of_configurations(points.iter()))?;
     let truth = Truths::of(campaign, source, &setup)?;
-    let planned = planned(&blocks, &setup);
+    let planned = planned(&points, &setup);
     let (_, sensors) = seed_and_sensors(campaign, &senses())?;
     let found = forecast(&planned, &setup, &truth, sensors, source)?;
     let duration_s: f64 = planned.iter().map(|run| run.profile.duration_s()).sum();

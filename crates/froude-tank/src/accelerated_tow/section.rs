@@ -17,12 +17,13 @@
 use froude_identify::declare::{ByConfiguration, IfMissing, Key, Kind, Range, Values};
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Source};
-use froude_records::run::Declared;
+use froude_records::run::{Declared, Role};
 use froude_records::section::Section;
-use froude_records::section_values::{Asks, MOST_RUNS};
 use froude_records::units::Dimension;
+use froude_rig::accelerated_tow::Profile;
 
-use crate::declared::{REPEATS, configurations, runs_of};
+use crate::declared::REPEATS;
+use crate::matrix::{Plan, Point};
 use crate::names::ACCELERATED_TOW;
 
 /// The keys of `[source.accelerated_tow]`.
@@ -107,27 +108,6 @@ pub struct AcceleratedTowSpec {
     pub window_s: f64,
 }
 
-/// One block of planned runs: every acceleration to every speed for every configuration.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AcceleratedPlan {
-    /// Configurations; one empty text where the body has only one.
-    pub configurations: Vec<String>,
-    /// Speeds that are reached, m/s.
-    pub speed_m_s: Vec<f64>,
-    /// Accelerations up to them and back to rest, m/s².
-    pub acceleration_m_s2: Vec<f64>,
-    /// Time at the speed, s.
-    pub steady_s: f64,
-    /// Time at rest before and after, s.
-    pub still_s: f64,
-    /// Samples a second.
-    pub rate_hz: f64,
-    /// Whether they are done in air: the mass alone.
-    pub in_air: bool,
-    /// How often each is run.
-    pub repeats: usize,
-}
-
 /// Reads `[source.accelerated_tow]`.
 pub(super) fn accelerated_tow(s: &Section<'_>) -> Result<AcceleratedTowSpec, RecordError> {
     let values = Values::read(s, KEYS)?;
@@ -144,29 +124,15 @@ pub(super) fn accelerated_tow(s: &Section<'_>) -> Result<AcceleratedTowSpec, Rec
 /// # Errors
 ///
 /// [`RecordError`] with its place.
-pub fn plan(source: &Source) -> Result<Vec<AcceleratedPlan>, RecordError> {
-    runs_of(source, ACCELERATED_TOW, block, |p| {
-        let count = p.configurations.len() * p.speed_m_s.len() * p.acceleration_m_s2.len() * p.repeats;
-        let fastest = p.speed_m_s.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-        let slowest = p.acceleration_m_s2.iter().fold(f64::INFINITY, |least, a| a.min(least));
-        let lasts_s = p.steady_s + 2.0 * p.still_s + 2.0 * fastest / slowest;
-        Asks { count, samples: count as f64 * lasts_s * p.rate_hz }
-    })
+pub fn plan(source: &Source) -> Result<Vec<Point>, RecordError> {
+    let roles = ("medium", &[Role::Test, Role::DryAir][..]);
+    Plan { keys: PLAN, roles, asks: |point| (1, profile(point).duration_s()) }.points(source, ACCELERATED_TOW)
 }
 
-/// Reads a `[[source.plan]]` of accelerations.
-fn block(s: &Section<'_>) -> Result<AcceleratedPlan, RecordError> {
-    let values = Values::read(s, PLAN)?;
-    values.at_most(MOST_RUNS)?;
-    let number = |key: &str| values.need(key, values.number(key));
-    Ok(AcceleratedPlan {
-        configurations: configurations(&values),
-        speed_m_s: values.numbers("speed"),
-        acceleration_m_s2: values.numbers("acceleration"),
-        steady_s: number("steady")?,
-        still_s: number("still")?,
-        rate_hz: number("rate")?,
-        in_air: values.need("medium", values.word("medium", &[false, true]))?,
-        repeats: values.need("repeats", values.count("repeats"))?,
-    })
+/// How a planned run moves.
+#[must_use]
+pub fn profile(point: &Point) -> Profile {
+    let [speed_m_s, acceleration_m_s2] = ["speed", "acceleration"].map(|name| point.condition(name));
+    let [steady_s, still_s] = ["steady", "still"].map(|name| point.condition(name));
+    Profile { speed_m_s, acceleration_m_s2, steady_s, still_s }
 }

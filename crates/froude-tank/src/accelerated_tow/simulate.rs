@@ -4,7 +4,7 @@
 //! has a zero of its own.
 
 use crate::names::ACCELERATED_TOW;
-use froude_identify::dataset::{Dataset, distinct};
+use froude_identify::dataset::Dataset;
 use froude_identify::law::ForceLaw;
 use froude_identify::method::{Export, MethodError};
 use froude_identify::simulate::truth;
@@ -15,10 +15,11 @@ use froude_rig::accelerated_tow::{AcceleratedTrace, Profile, accelerated};
 use super::law::{Channels, data, names, with_acceleration};
 use super::reduce::Mounted;
 use super::rows::{TowRun, Way};
-use super::section::{self, AcceleratedPlan};
+use super::section::{self, profile};
 use super::setup::{Setup, declared, no_mass, setup_of};
 use crate::declared::uncertain;
 use crate::error::undeclared;
+use crate::matrix::{Point, of_configurations};
 use crate::sensors::{Senses, reading, seed_and_sensors};
 use crate::twin::{Column, Draws, Logged, seed_of};
 
@@ -69,36 +70,17 @@ impl Simulated {
     }
 }
 
-/// The planned configurations, in order of first appearance.
+/// Planned runs with the bodies of a setup.
 #[must_use]
-pub fn configurations(blocks: &[AcceleratedPlan]) -> Vec<String> {
-    distinct(&blocks.iter().flat_map(|block| block.configurations.clone()).collect::<Vec<_>>())
-}
-
-/// The run matrix of a plan.
-#[must_use]
-pub fn planned(blocks: &[AcceleratedPlan], setup: &Setup) -> Vec<Planned> {
-    let mut out = Vec::new();
-    for block in blocks {
-        for configuration in &block.configurations {
-            let body = setup.bodies.iter().position(|b| b.name == *configuration).unwrap_or(0);
-            for &speed_m_s in &block.speed_m_s {
-                for &acceleration_m_s2 in &block.acceleration_m_s2 {
-                    for _ in 0..block.repeats {
-                        let (steady_s, still_s) = (block.steady_s, block.still_s);
-                        out.push(Planned {
-                            id: format!("{:03}", out.len() + 1),
-                            body,
-                            profile: Profile { speed_m_s, acceleration_m_s2, steady_s, still_s },
-                            rate_hz: block.rate_hz,
-                            is_dry: block.in_air,
-                        });
-                    }
-                }
-            }
-        }
-    }
-    out
+pub fn planned(points: &[Point], setup: &Setup) -> Vec<Planned> {
+    let one = |point: &Point| Planned {
+        id: point.id.clone(),
+        body: setup.bodies.iter().position(|b| b.name == point.configuration).unwrap_or(0),
+        profile: profile(point),
+        rate_hz: point.condition("rate"),
+        is_dry: point.role == Role::DryAir,
+    };
+    points.iter().map(one).collect()
 }
 
 /// What is true on the twin.
@@ -223,10 +205,10 @@ pub fn simulated(
 ///
 /// What the campaign does not declare.
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
-    let (spec, blocks) = (declared(source)?, section::plan(source)?);
-    let setup = setup_of(campaign, source, &spec, &configurations(&blocks))?;
+    let (spec, points) = (declared(source)?, section::plan(source)?);
+    let setup = setup_of(campaign, source, &spec, &of_configurations(points.iter()))?;
     let truth = Truths::of(campaign, source, &setup)?;
-    let planned = planned(&blocks, &setup);
+    let planned = planned(&points, &setup);
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
     let runs = simulated(&planned, &setup, &truth, sensors, seed).ok_or_else(|| no_mass(source, &setup))?;
     Ok(runs.iter().flat_map(|run| files_of(run, &setup)).collect())

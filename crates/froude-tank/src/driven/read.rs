@@ -24,7 +24,7 @@ pub(super) fn section<M: MotorDriven>(s: &Section<'_>) -> Result<Values, RecordE
 /// Reads section and plan of a source, so that an error in them is not passed over.
 pub(super) fn check<M: MotorDriven>(source: &Source) -> Result<(), RecordError> {
     source.section(M::SPEC.name)?.map(|s| section::<M>(&s)).transpose()?;
-    matrix::plan::<M>(source).map(drop)
+    matrix::planned::<M>(source).map(drop)
 }
 
 /// A setup for each law that the source asks for, or for `law` alone.

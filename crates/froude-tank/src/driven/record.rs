@@ -112,9 +112,10 @@ fn validity<M: MotorDriven>(fitted: &Fitted<'_, M>) -> IndexMap<String, Range> {
         (range.low, range.high) = (range.low.min(value), range.high.max(value));
     };
     for (run, motion) in fitted.runs.iter().zip(fitted.motions).filter(|(run, _)| run.point.role == Role::Test) {
-        for (name, value) in &run.point.conditions {
-            let unit = spec.conditions.iter().find(|c| c.name == *name).map_or("1", |c| c.unit);
-            take(name, *value, unit);
+        for condition in spec.conditions {
+            if let Some(value) = run.point.conditions.get(condition.name) {
+                take(condition.name, *value, condition.unit);
+            }
         }
         let amplitude = motion.angle.amplitude(1);
         take("amplitude", amplitude, spec.motion.unit);

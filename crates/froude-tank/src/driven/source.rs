@@ -17,13 +17,14 @@ use super::read::{check, setups};
 use super::run::Run;
 use super::setup::Setup;
 use super::spec::{Channel, Constant, Enters, Point};
-use super::{matrix, page, plan, record, twin};
+use super::{page, plan, record, twin};
 use crate::findings::warning;
 use crate::joint::JointFit;
 use crate::joint::findings::{contradicted, few_runs, misfit, of_motion, undetermined};
 use crate::log::TankLog;
 use crate::logs::{self, Logs, distinct};
 use crate::long_logs::{self, LENGTHS, Lengths};
+use crate::matrix::CONFIGURATIONS;
 use crate::method::TankMethod;
 use crate::motion::Sampled;
 
@@ -64,7 +65,7 @@ pub(crate) fn identified<M: MotorDriven>(
     let roles = spec.roles.1;
     let Logs { runs: logs, mut files, mut findings } =
         logs::read_averaging(source.input.path(), spec.name, roles, &words, lengths, progress)?;
-    if spec.plan.iter().all(|key| key.name != matrix::CONFIGURATIONS) {
+    if spec.plan.iter().all(|key| key.name != CONFIGURATIONS) {
         one_body(&logs)?;
     }
     let mut setups = setups::<M>(campaign, source, &logs::configurations(&logs), None)?;
@@ -212,7 +213,7 @@ fn run<M: MotorDriven>(log: &TankLog) -> Result<Run<'_>, MethodError> {
     };
     Ok(Run {
         id: &meta.id,
-        point: Point { role: meta.role, configuration: meta.configuration.clone(), conditions },
+        point: Point { id: meta.id.clone(), role: meta.role, configuration: meta.configuration.clone(), conditions },
         time_s: &log.log.time_s,
         motion: values(&spec.motion)?,
         loads: spec.loads.iter().map(values).collect::<Result<_, _>>()?,

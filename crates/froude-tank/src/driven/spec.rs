@@ -4,9 +4,9 @@ use froude_fit::budget::Uncertain;
 use froude_identify::declare::Key;
 use froude_records::run::Role;
 use froude_records::units::Dimension;
-use indexmap::IndexMap;
 
 pub use crate::channel::Channel;
+pub use crate::matrix::Point;
 
 /// A method as data.
 #[derive(Debug, Clone, Copy)]
@@ -84,25 +84,6 @@ pub struct Condition {
     pub unit: &'static str,
     /// Value for a run of this role, from its declared value if there is one; the error says what to do.
     pub of: fn(Role, Option<f64>) -> Result<f64, String>,
-}
-
-/// What one run is.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Point {
-    /// What is mounted, and in what.
-    pub role: Role,
-    /// The configuration; empty where there is one without a name.
-    pub configuration: String,
-    /// Conditions by name, SI.
-    pub conditions: IndexMap<&'static str, f64>,
-}
-
-impl Point {
-    /// A condition.
-    #[must_use]
-    pub fn condition(&self, name: &str) -> f64 {
-        self.conditions.get(name).copied().unwrap_or(0.0)
-    }
 }
 
 /// A coefficient that the method looks for.

@@ -11,13 +11,14 @@ use froude_rig::steady::Reading;
 use froude_rig::swung::{SwungSensor, SwungTrace, log};
 use indexmap::IndexMap;
 
-use super::matrix::{self, Planned, configurations, planned};
+use super::matrix::{Planned, planned};
 use super::method::MotorDriven;
 use super::read::setups;
 use super::run::Run;
 use super::setup::Setup;
-use super::spec::{Channel, Constant, Enters, Factor, Point};
+use super::spec::{Channel, Condition, Constant, Enters, Factor, Point};
 use crate::error::{TankError, undeclared};
+use crate::matrix::of_configurations;
 use crate::sensors::{Senses, of_sensor, seed_and_sensors};
 use crate::twin::{Column, Draws, Logged, seed_of, true_value};
 
@@ -103,7 +104,7 @@ impl<M: MotorDriven> Twin<M> {
     /// What the campaign does not declare; no `[simulate]`, or one with a record instead of coefficients.
     pub fn of(campaign: &Campaign, source: &Source) -> Result<Self, MethodError> {
         let spec = M::SPEC;
-        let planned = planned(&matrix::plan::<M>(source)?);
+        let planned = planned::<M>(source)?;
         let (model, values, stated) = match campaign.simulate.as_ref().map(|s| (&s.truth, &s.stated)) {
             Some((Stated::Coefficients { model, values }, stated)) => (model, values, stated),
             found => {
@@ -122,7 +123,9 @@ impl<M: MotorDriven> Twin<M> {
                 format!("[simulate] has model = {model:?}; {} has one law: write model = {:?}", spec.called, spec.name);
             return Err(undeclared(campaign.path.display(), what));
         }
-        let setup = setups::<M>(campaign, source, &configurations(&planned), Some(model))?.remove(0);
+        let setup =
+            setups::<M>(campaign, source, &of_configurations(planned.iter().map(|run| &run.point)), Some(model))?
+                .remove(0);
         let all = setup.method.coefficients();
         let constants = setup.constants.iter().filter_map(|c| c.unknown.as_ref());
         let constants = constants.map(|unknown| (unknown.name.as_str(), unknown.unit));
@@ -228,11 +231,11 @@ pub fn files_of<M: MotorDriven>(run: &Planned, trace: &SwungTrace, said: &str) -
     let values = std::iter::once(&trace.motion).chain(&trace.loads);
     let columns: Vec<Column<'_>> = channels.zip(values).map(|(channel, values)| Column::of(channel, values)).collect();
     let role = if spec.roles.1.contains(&point.role) { point.role } else { Role::Test };
-    let condition = |(name, value): (&&str, &f64)| {
-        let unit = spec.conditions.iter().find(|c| c.name == *name).map_or("1", |c| c.unit);
-        format!("{name} = \"{value} {unit}\"")
+    let condition = |condition: &Condition| {
+        let value = point.conditions.get(condition.name)?;
+        Some(format!("{} = \"{value} {}\"", condition.name, condition.unit))
     };
-    let conditions: Vec<String> = point.conditions.iter().map(condition).collect();
+    let conditions: Vec<String> = spec.conditions.iter().filter_map(condition).collect();
     let logged = Logged {
         id: &run.id,
         said,

@@ -21,15 +21,17 @@ use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::campaign::Source;
+use froude_records::run::Role;
 use froude_records::section::Section;
-use froude_records::section_values::{Asks, MOST_RUNS, at_most};
+use froude_records::section_values::MOST_RUNS;
 use froude_records::units::Dimension;
 
 use super::setup::{ACCELERATION, FORCE, POSITION, Setup};
 use crate::decay::axis::Motion;
-use crate::declared::{STIFFNESS, gain as gain_of, needed, runs_of, uncertain};
+use crate::declared::{STIFFNESS, gain as gain_of, needed, uncertain};
 use crate::error::undeclared;
 use crate::logs;
+use crate::matrix::{Plan, Point};
 use crate::names::EXCITED_RESPONSE;
 
 const WINDOW: &[Key] = &[
@@ -130,31 +132,6 @@ pub const PLAN: &[Key] = &[
         .within(Range::Positive),
 ];
 
-/// One block of planned runs: at every period so many with the body held, and so many with it free.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExcitedPlan {
-    /// Periods of the wave, s.
-    pub period_s: Vec<f64>,
-    /// Amplitude of the wavemaker, m.
-    pub stroke_m: f64,
-    /// Amplitude of the exciting force on the held body, N.
-    pub force_n: f64,
-    /// Runs with the body held, at each period.
-    pub held: usize,
-    /// Runs with it free.
-    pub free: usize,
-    /// At rest on the log before the wavemaker starts, s.
-    pub still_s: f64,
-    /// The wavemaker comes to its full stroke in this time, s.
-    pub ramp_s: f64,
-    /// The wave reaches the body so long after the wavemaker's start, s.
-    pub travel_s: f64,
-    /// The wavemaker runs for so long, and so does the log from there, s.
-    pub lasts_s: f64,
-    /// Samples a second.
-    pub rate_hz: f64,
-}
-
 /// Reads `[source.excited_response]`; the errors of the budget are not in it.
 pub(super) fn excited(s: &Section<'_>) -> Result<Setup, RecordError> {
     let values = Values::read(s, KEYS)?;
@@ -209,36 +186,17 @@ pub fn setup_of(source: &Source) -> Result<Setup, MethodError> {
     Ok(out)
 }
 
-/// The runs that a source plans.
+/// The waves that a source plans, each with so many runs held and free.
 ///
 /// # Errors
 ///
 /// [`RecordError`] with its place.
-pub fn plan(source: &Source) -> Result<Vec<ExcitedPlan>, RecordError> {
-    runs_of(source, EXCITED_RESPONSE, block, |p| {
-        let count = p.period_s.len() * (p.held + p.free);
-        let lasts_s = p.still_s + p.ramp_s + p.travel_s + p.lasts_s;
-        Asks { count, samples: count as f64 * lasts_s * p.rate_hz }
-    })
+pub fn plan(source: &Source) -> Result<Vec<Point>, RecordError> {
+    Plan { keys: PLAN, roles: ("", &[Role::Test]), asks }.points(source, EXCITED_RESPONSE)
 }
 
-/// Reads a `[[source.plan]]` of waves.
-fn block(s: &Section<'_>) -> Result<ExcitedPlan, RecordError> {
-    let values = Values::read(s, PLAN)?;
-    let number = |key: &str| values.need(key, values.number(key));
-    let count = |key: &str| values.need(key, values.count(key));
-    let out = ExcitedPlan {
-        period_s: values.numbers("period"),
-        stroke_m: number("stroke")?,
-        force_n: number("force")?,
-        held: count("held")?,
-        free: count("free")?,
-        still_s: number("still")?,
-        ramp_s: number("ramp")?,
-        travel_s: number("travel")?,
-        lasts_s: number("lasts")?,
-        rate_hz: number("rate")?,
-    };
-    at_most(&s.place(), &[("period", out.period_s.len()), ("held + free", out.held + out.free)], MOST_RUNS)?;
-    Ok(out)
+/// Runs of a wave, and how long each lasts, s.
+fn asks(wave: &Point) -> (usize, f64) {
+    let lasts_s = ["still", "ramp", "travel", "lasts"].map(|name| wave.condition(name)).iter().sum();
+    ((wave.condition("held") + wave.condition("free")) as usize, lasts_s)
 }

@@ -12,8 +12,9 @@ use froude_rig::excited_response::{WaveReadings, WaveRig, WaveTrace};
 use froude_rig::steady::Reading;
 
 use super::coefficients::NAMES;
-use super::section::{self, ExcitedPlan, setup_of};
+use super::section::{self, setup_of};
 use super::setup::{Setup, Shows, WaveRun};
+use crate::matrix::Point;
 use crate::sensors::{Senses, reading, seed_and_sensors};
 use crate::twin::{Column, Draws, Logged, seed_of, true_value, truths};
 
@@ -58,34 +59,34 @@ impl Simulated {
     }
 }
 
-/// The run matrix of a plan, at true coefficients A33 and B33.
+/// The runs of planned waves, at true coefficients A33 and B33.
 #[must_use]
-pub fn planned(blocks: &[ExcitedPlan], setup: &Setup, [added_kg, damping_n_s_m]: [f64; 2]) -> Vec<Planned> {
+pub fn planned(waves: &[Point], setup: &Setup, [added_kg, damping_n_s_m]: [f64; 2]) -> Vec<Planned> {
     let mut out = Vec::new();
-    for block in blocks {
-        for &period_s in &block.period_s {
-            let rig = WaveRig {
-                mass_kg: setup.mass_kg.value,
-                added_kg,
-                damping_n_s_m,
-                restoring_n_m: setup.restoring_n_m.value,
-                omega_rad_s: TAU / period_s,
-                stroke_m: block.stroke_m,
-                force_n: block.force_n,
-                phase_rad: PHASE_RAD,
-                still_s: block.still_s,
-                ramp_s: block.ramp_s,
-                travel_s: block.travel_s,
-                lasts_s: block.lasts_s,
-                rate_hz: block.rate_hz,
-                thrown_back: None,
-            };
-            for k in 0..block.held + block.free {
-                let is_held = k < block.held;
-                let role = if is_held { Role::Held } else { Role::Free }.name();
-                let id = format!("{:03}_{role}", out.len() + 1);
-                out.push(Planned { id, is_held, period_s, rig });
-            }
+    for wave in waves {
+        let of = |name: &str| wave.condition(name);
+        let rig = WaveRig {
+            mass_kg: setup.mass_kg.value,
+            added_kg,
+            damping_n_s_m,
+            restoring_n_m: setup.restoring_n_m.value,
+            omega_rad_s: TAU / of("period"),
+            stroke_m: of("stroke"),
+            force_n: of("force"),
+            phase_rad: PHASE_RAD,
+            still_s: of("still"),
+            ramp_s: of("ramp"),
+            travel_s: of("travel"),
+            lasts_s: of("lasts"),
+            rate_hz: of("rate"),
+            thrown_back: None,
+        };
+        let held = of("held") as usize;
+        for k in 0..held + of("free") as usize {
+            let is_held = k < held;
+            let role = if is_held { Role::Held } else { Role::Free }.name();
+            let id = format!("{:03}_{role}", out.len() + 1);
+            out.push(Planned { id, is_held, period_s: of("period"), rig });
         }
     }
     out

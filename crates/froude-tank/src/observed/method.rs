@@ -10,7 +10,6 @@ use froude_records::finding::Finding;
 use froude_records::run::Role;
 use froude_records::run::step::Step;
 use froude_records::units::Dimension;
-use indexmap::IndexMap;
 
 use super::page;
 use super::source::Reduced;
@@ -19,9 +18,12 @@ use crate::channel::Channel;
 use crate::error::TankError;
 use crate::log::TankLog;
 use crate::logs;
+use crate::matrix::Plan;
 use crate::steady::point::Point as Observation;
 use crate::steady::row::Row;
 use crate::steady::window::Told;
+
+pub use crate::matrix::Point;
 
 /// A method as data.
 #[derive(Debug, Clone, Copy)]
@@ -55,6 +57,11 @@ pub struct Spec {
 }
 
 impl Spec {
+    /// Its plan: what is simulated is as long as its rig makes it.
+    pub(super) const fn planned(&self) -> Plan {
+        Plan { keys: self.plan, roles: ("", &[Role::Test]), asks: |_| (1, 0.0) }
+    }
+
     /// Texts that fit most methods; the others have to be stated.
     pub const GENERAL: Self = Self {
         name: "",
@@ -107,27 +114,6 @@ pub const ANGLE: Condition = Condition {
     digits: Digits::Plain(4),
     otherwise: Unstated::Is(0.0),
 };
-
-/// What one run is.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Point {
-    /// Its name.
-    pub id: String,
-    /// What it is done for.
-    pub role: Role,
-    /// What is mounted; empty where there is one configuration without a name.
-    pub configuration: String,
-    /// Conditions by name, SI.
-    pub conditions: IndexMap<&'static str, f64>,
-}
-
-impl Point {
-    /// A condition.
-    #[must_use]
-    pub fn condition(&self, name: &str) -> f64 {
-        self.conditions.get(name).copied().unwrap_or(0.0)
-    }
-}
 
 /// A log as a method takes it: columns of one length, time increasing.
 #[derive(Debug, Clone)]

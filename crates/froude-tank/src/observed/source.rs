@@ -14,7 +14,7 @@ use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
 use super::method::{ANGLE, Declared, Moves, Observed, Point, Run, Unstated, values};
-use super::{matrix, plan, twin};
+use super::{plan, twin};
 use crate::channel::Channel;
 use crate::error::{TankError, undeclared};
 use crate::log::TankLog;
@@ -57,7 +57,7 @@ pub(super) fn section<M: Observed>(s: &Section<'_>) -> Result<Values, RecordErro
 /// Reads section and plan of a source, so that an error in them is not passed over.
 fn check<M: Observed>(source: &Source) -> Result<(), RecordError> {
     source.section(M::SPEC.name)?.map(|s| section::<M>(&s)).transpose()?;
-    matrix::plan::<M>(source).map(drop)
+    M::SPEC.planned().points(source, M::SPEC.name).map(drop)
 }
 
 /// The method as a source declares it; without a section of its own, as its defaults are.

@@ -10,7 +10,6 @@ use froude_records::campaign::{BudgetEntry, Campaign, PlanBlock, SensorSpec, Sha
 use froude_records::units::Dimension;
 use froude_rig::steady::{self, Reading};
 
-use super::matrix;
 use super::method::{ANGLE, Condition, Constant, Observed, Point, Run, values};
 use super::settings::{Plan, loads_at};
 use super::source::read;
@@ -134,7 +133,8 @@ impl<M: Observed> Twin<M> {
     ///
     /// What the campaign does not declare; a law with loads that the method does not observe, a run without a speed.
     pub fn of(campaign: &Campaign, source: &Source) -> Result<Self, MethodError> {
-        Self::with(campaign, source, read(campaign, source)?, matrix::plan::<M>(source)?)
+        let points = M::SPEC.planned().points(source, M::SPEC.name)?;
+        Self::with(campaign, source, read(campaign, source)?, points)
     }
 
     /// Of runs that are stated.

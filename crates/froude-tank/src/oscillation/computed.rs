@@ -10,11 +10,12 @@ use froude_records::run::Role;
 use froude_rig::swung::SwungTrace;
 
 use super::{Body, Oscillation};
-use crate::driven::matrix::{Planned, configurations, plan, planned};
+use crate::driven::matrix::{Planned, planned};
 use crate::driven::read::setups;
 use crate::driven::setup::Setup;
 use crate::driven::twin::files_of;
 use crate::error::undeclared;
+use crate::matrix::of_configurations;
 use froude_hydro::swing::Pivot;
 
 /// What is computed of a run.
@@ -38,9 +39,10 @@ pub struct Asked {
 ///
 /// What the campaign does not declare; a body that turns its heading; no run in water; a run twice; too few periods for the cycles that are asked for.
 pub fn asked(campaign: &Campaign, source: &Source) -> Result<(f64, Vec<Asked>), MethodError> {
-    let mut runs = planned(&plan::<Oscillation>(source)?);
+    let mut runs = planned::<Oscillation>(source)?;
     // Nothing that is computed depends on the drag law.
-    let setup: Setup<Oscillation> = setups(campaign, source, &configurations(&runs), None)?.remove(0);
+    let setup: Setup<Oscillation> =
+        setups(campaign, source, &of_configurations(runs.iter().map(|run| &run.point)), None)?.remove(0);
     let refuse = |what: &str| undeclared(&source.place, what);
     if setup.method.pivot != Pivot::Stream {
         return Err(refuse(

@@ -10,11 +10,10 @@ use froude::identify::source::{Asked, identify_laws};
 use froude::methods::tank::accelerated_tow::law::asked;
 use froude::methods::tank::accelerated_tow::plan::{Forecast, forecast};
 use froude::methods::tank::accelerated_tow::reduce::reduce;
-use froude::methods::tank::accelerated_tow::section::{AcceleratedPlan, plan};
+use froude::methods::tank::accelerated_tow::section::plan;
 use froude::methods::tank::accelerated_tow::setup::{Setup, declared, setup_of, without_rig};
-use froude::methods::tank::accelerated_tow::simulate::{
-    Planned, Simulated, Truths, configurations, planned, simulated,
-};
+use froude::methods::tank::accelerated_tow::simulate::{Planned, Simulated, Truths, planned, simulated};
+use froude::methods::tank::driven::spec::Point;
 use froude::records::campaign::{Campaign, SensorSpec, Source};
 use froude::records::campaign_file::read_campaign;
 use rayon::prelude::*;
@@ -34,14 +33,14 @@ struct Case {
 }
 
 impl Case {
-    fn read(root: &Path, edit: impl Fn(&mut AcceleratedPlan)) -> Result<Self, Box<dyn Error>> {
+    fn read(root: &Path, edit: impl Fn(&mut Vec<Point>)) -> Result<Self, Box<dyn Error>> {
         let campaign = read_campaign(&root.join("examples/mamba-accelerated/campaign.toml"))?;
         let source = campaign.sources[0].clone();
-        let mut blocks = plan(&source)?;
-        blocks.iter_mut().for_each(edit);
-        let setup = setup_of(&campaign, &source, &declared(&source)?, &configurations(&blocks))?;
+        let mut points = plan(&source)?;
+        edit(&mut points);
+        let setup = setup_of(&campaign, &source, &declared(&source)?, &[points[0].configuration.clone()])?;
         let truth = Truths::of(&campaign, &source, &setup)?;
-        let planned = planned(&blocks, &setup);
+        let planned = planned(&points, &setup);
         Ok(Self { campaign, source, setup, truth, planned })
     }
 
@@ -75,7 +74,10 @@ impl Case {
 
 pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn Error>> {
     let nine = Case::read(root, |_| {})?;
-    let one = Case::read(root, |block| (block.speed_m_s, block.acceleration_m_s2) = (vec![0.3], vec![0.1]))?;
+    let one = Case::read(root, |points| {
+        points.truncate(1);
+        points[0].conditions.extend([("speed", 0.3), ("acceleration", 0.1)]);
+    })?;
     // One run tells the correlation of its own noise only: its interval allows for what that may be.
     for (case, runs, bar) in [(&nine, "9 runs", Bar::Exactly), (&one, "1 run", Bar::AtLeast)] {
         for (words, factor) in [("20 mN", 1.0), ("200 mN", 10.0)] {
