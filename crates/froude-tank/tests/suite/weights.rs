@@ -1,8 +1,11 @@
 //! The weight-driven rig on its twin: what a single run states of its speed and its drag.
 
+use froude_records::campaign_file::read_campaign;
 use froude_records::run::{Declared, Role};
 use froude_rig::weight_tow::{WeightRig, pull};
 use froude_tank::observed::method::{Point, Run};
+use froude_tank::observed::plan::exact;
+use froude_tank::observed::twin::Twin;
 use froude_tank::steady::window::Told;
 use froude_tank::weight_tow::WeightTow;
 use froude_tank::weight_tow::reduce::reduce;
@@ -66,5 +69,21 @@ fn the_drag_of_a_run_that_still_accelerates_has_the_error_that_it_states() {
         }
         // The mean square of 300 has a standard deviation of 0.08; the law is the same in all of them, and moves their mean.
         assert!((square - 1.0).abs() < 0.35 && sum.abs() < 0.5, "{weight_n}: {sum} {square}");
+    }
+}
+
+/// A wagon that is pulled less accelerates less: an error of the friction moves the drag, F − m v̇, by less than itself, and by more than nothing. In each of the example's 78
+/// runs; where the fit of the motion stops early, it does not.
+#[test]
+fn an_error_of_the_friction_moves_the_drag_by_less_than_itself() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/mamba-weights/campaign.toml");
+    let campaign = read_campaign(std::path::Path::new(example)).unwrap();
+    let twin = Twin::<WeightTow>::of(&campaign, &campaign.sources[0]).unwrap();
+    let (_, reduced) = exact(&twin, &campaign.simulate.unwrap().sensors).unwrap();
+    assert_eq!(reduced.len(), 78);
+    for run in reduced {
+        let along = run.point.condition("angle").cos() * twin.method.friction_n.standard_uncertainty;
+        let part = run.moves[2].loads_n[0] / along;
+        assert!(part > 0.0 && part < 1.0, "{}: {part}", run.point.id);
     }
 }
