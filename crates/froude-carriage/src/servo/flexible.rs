@@ -145,7 +145,7 @@ pub struct Stepper {
 
 /// Where the masses are, and what holds them.
 #[derive(Debug, Clone, Copy)]
-struct Moment {
+pub(crate) struct Moment {
     state: [f64; STATES],
     friction_n: [f64; 2],
     /// Which way each friction stands at its limit; 0 within it.
@@ -153,7 +153,12 @@ struct Moment {
 }
 
 impl Moment {
-    const AT_REST: Self = Self { state: [0.0; STATES], friction_n: [0.0; 2], side: [0; 2] };
+    pub(crate) const AT_REST: Self = Self { state: [0.0; STATES], friction_n: [0.0; 2], side: [0; 2] };
+
+    /// Of the motor, from where it was at rest.
+    pub(crate) fn motor_m(&self) -> f64 {
+        self.state[0]
+    }
 }
 
 impl Stepper {
@@ -331,7 +336,7 @@ impl Stepper {
 
     /// Steps from one command to the next under a constant force on the motor.
     #[inline]
-    fn sample(&self, moment: &mut Moment, force_n: f64) {
+    pub(crate) fn sample(&self, moment: &mut Moment, force_n: f64) {
         for _ in 0..self.steps {
             let next = self.after(&self.step, moment, force_n);
             if next.side == moment.side {
