@@ -6,7 +6,6 @@
 //! | model                 | module           | equation                                                             |
 //! |-----------------------|------------------|----------------------------------------------------------------------|
 //! | rigid, the chain      | [`chain`], [`friction`] | `M q̈ + F_v q̇ + F_c sgn q̇ + offset = g u`, asymmetric, Stribeck, over position, over load |
-//! | rigid, closed loop    | [`instrument`], [`output_error`] | instruments or residuals from the model in the known loop |
 //! | two masses and a chain | [`two_mass`]    | MCD eq. 2a, 2b from motor-side signals                                |
 //!
 //! A record of hours goes through [`long`] a chunk at a time.
@@ -27,18 +26,15 @@ pub mod flexible;
 pub mod friction;
 mod gauss_newton;
 pub mod held_out;
-pub mod instrument;
 pub mod interval;
 pub mod log;
 pub mod long;
 pub mod motor;
-pub mod output_error;
 pub mod record;
 mod regression;
 pub mod report;
 pub(crate) mod rows;
 pub mod scale;
-pub mod simulate;
 pub mod two_mass;
 
 pub use crate::servo::two_mass::{FlexibleOptions, FlexibleReport, Gear};

@@ -19,16 +19,10 @@ use crate::servo::{Gear, ServoLog};
 pub fn servo_log(log: &RunLog) -> Result<ServoLog, MethodError> {
     let axis = log.meta.carriage.axis.name();
     let column = |name: &str, dimension| column(log, &format!("{axis}/{name}"), dimension).map(<[f64]>::to_vec);
-    let reference = format!("{axis}/reference_position");
     Ok(ServoLog {
         time_s: log.time_s.clone(),
         position_m: column("position", Dimension::LENGTH)?,
         command_v: column("command", Dimension::VOLTAGE)?,
-        reference_m: log
-            .channels
-            .contains_key(&reference)
-            .then(|| column("reference_position", Dimension::LENGTH))
-            .transpose()?,
         load_n: None,
     })
 }

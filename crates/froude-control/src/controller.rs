@@ -47,13 +47,6 @@ impl Controller {
         })
     }
 
-    /// The same with its tick counter at `tick`, which wraps.
-    #[must_use]
-    pub fn counting_from(mut self, tick: u64) -> Self {
-        self.tick = tick;
-        self
-    }
-
     /// The next command, from this tick and the ticks before it.
     ///
     /// Reads no clock, allocates nothing and cannot panic. The command is always finite and within the amplifier's range, and zero for an

@@ -171,13 +171,6 @@ impl DecayRig {
         0.5 * (self.inertia + self.added) * s.speed * s.speed + self.stiffness * lifted
     }
 
-    /// Power that damping and friction take, W.
-    #[must_use]
-    pub fn lost_w(&self, s: DecayState) -> f64 {
-        let v = s.speed.abs();
-        v * (self.coulomb + v * (self.linear + self.quadratic * v))
-    }
-
     /// One release as it is logged; the same seed gives the same log, bit for bit.
     #[must_use]
     pub fn release(&self, sensor: DecaySensor, release: Release, seed: u64) -> DecayTrace {
@@ -311,12 +304,16 @@ mod tests {
 
     fn energy_balance(is_pendulum: bool) {
         let rig = DecayRig { coulomb: 0.2, is_pendulum, ..RIG };
+        let lost_w = |s: DecayState| {
+            let v = s.speed.abs();
+            v * (rig.coulomb + v * (rig.linear + rig.quadratic * v))
+        };
         let defect = |h: f64| {
             let mut s = DecayState { position: 0.4, speed: 0.0 };
             let (start, mut lost) = (rig.energy_j(s), 0.0);
             for _ in 0..(4.0 / h) as u32 {
                 let (middle, next) = (rig.step(s, 0.5 * h), rig.step(s, h));
-                lost += h / 6.0 * (rig.lost_w(s) + 4.0 * rig.lost_w(middle) + rig.lost_w(next));
+                lost += h / 6.0 * (lost_w(s) + 4.0 * lost_w(middle) + lost_w(next));
                 s = next;
             }
             (start - rig.energy_j(s) - lost).abs() / start

@@ -395,17 +395,4 @@ impl Plant {
             + self.linear.load_mass_kg * self.load.speed_m_s * self.load.speed_m_s
             + self.linear.stiffness_n_m * s * s)
     }
-
-    /// The bits of the moving state, for replay tests.
-    #[must_use]
-    pub fn state_bits(&self) -> [u64; 6] {
-        [
-            self.motor.position_m.to_bits(),
-            self.motor.speed_m_s.to_bits(),
-            self.load.position_m.to_bits(),
-            self.load.speed_m_s.to_bits(),
-            self.motor.direction.to_bits(),
-            self.load.direction.to_bits(),
-        ]
-    }
 }

@@ -37,10 +37,7 @@ impl Propagators {
     pub fn of(masses: &TwoMasses, step_s: f64, reactions: [f64; 2]) -> Self {
         let pick = |m: &Matrix, row: usize, columns: [usize; 3]| columns.map(|c| m[row][c]);
         Self {
-            both: reactions.map(|reaction| {
-                let m = step(masses, step_s, Some(reaction), true);
-                [0, 1, 2, 3].map(|r| [4, 2, 3, 5, 6].map(|c| m[r][c]))
-            }),
+            both: reactions.map(|reaction| both(masses, step_s, reaction)),
             motor: reactions.map(|reaction| {
                 let m = step(masses, step_s, Some(reaction), false);
                 [0, 2].map(|r| pick(&m, r, [4, 2, 5]))
@@ -51,6 +48,13 @@ impl Propagators {
             },
         }
     }
+}
+
+/// One step with both masses sliding; the motor feels the chain's force times `reaction`.
+#[must_use]
+pub fn both(masses: &TwoMasses, step_s: f64, reaction: f64) -> Both {
+    let m = step(masses, step_s, Some(reaction), true);
+    [0, 1, 2, 3].map(|r| [4, 2, 3, 5, 6].map(|c| m[r][c]))
 }
 
 /// `reaction`: of the chain on a sliding motor; none when the motor is held.

@@ -255,7 +255,6 @@ pub struct Twin {
     ticks: u64,
     latched_us: u32,
     force_n: f64,
-    trace: u64,
     is_estop_open: bool,
     is_host_silent: bool,
     schedule: Vec<Scheduled>,
@@ -276,7 +275,6 @@ impl Twin {
             ticks: 0,
             latched_us: config.clock_start_us,
             force_n: 0.0,
-            trace: 0,
             is_estop_open: false,
             is_host_silent: false,
             schedule: Vec::new(),
@@ -324,15 +322,13 @@ impl Twin {
         let y = &self.axes[0];
         let felt_n = self.sensed_drag_n() + y.config.load.body_inertia_kg() * y.acceleration_m_s2;
         self.force_n = self.sensor.read(felt_n, &mut self.rng);
-        let tick = Tick {
+        Tick {
             latched_us: self.latched_us,
             axes: [self.axes[0].latch(&mut self.rng), self.axes[1].latch(&mut self.rng)],
             is_estop_open: self.is_estop_open,
             is_host_heard: !self.is_host_silent,
             request: None,
-        };
-        self.trace = folded(self.trace, &tick);
-        tick
+        }
     }
 
     fn sensed_drag_n(&self) -> f64 {
@@ -434,23 +430,4 @@ impl Twin {
     pub fn refused_inputs(&self) -> u64 {
         self.axes.iter().map(|a| a.amplifier.refused_inputs()).sum()
     }
-
-    /// A fingerprint of the moving state and of every tick so far: equal for equal replays.
-    #[must_use]
-    pub fn state_hash(&self) -> u64 {
-        let words =
-            self.axes.iter().flat_map(|a| a.plant.state_bits().into_iter().chain([a.amplifier.current_a().to_bits()]));
-        words.chain([self.force_n.to_bits(), self.ticks]).fold(self.trace, mixed)
-    }
-}
-
-/// FxHash's step: rotate, xor, multiply.
-fn mixed(hash: u64, word: u64) -> u64 {
-    (hash.rotate_left(5) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95)
-}
-
-fn folded(trace: u64, tick: &Tick) -> u64 {
-    let [y, x] = &tick.axes;
-    let counts = (u64::from(y.encoder_count) << 32) | u64::from(x.encoder_count);
-    mixed(mixed(trace, counts), y.current_a.to_bits() ^ x.current_a.to_bits().rotate_left(32))
 }

@@ -1,7 +1,7 @@
 //! Two masses and a chain, simulated.
 //!
-//! Between two commands the chain is linear but for the signs in Coulomb friction. The linear part is stepped by its matrix
-//! exponential, exact for constant forces; friction over a short step is the force, within ± its limit, that
+//! Between two commands the chain is linear but for the signs in Coulomb friction. The linear part is that of the carriage's twin, exact for
+//! constant forces ([`froude_rig::propagator`]); friction over a short step is the force, within ± its limit, that
 //! brings the speed to zero at the end of the step, or the limit itself where it cannot: sticking needs no threshold and no
 //! regularised sign. A step in which a mass stops, breaks away or turns is taken again in 32 pieces: only there does
 //! the instant of a change matter.
@@ -17,10 +17,10 @@
 //! # Source
 //!
 //! Moreau (1988), *Unilateral contact and dry friction in finite freedom dynamics*, CISM 302 (time stepping of friction impulses);
-//! Golub & Van Loan (2013), *Matrix Computations*, 9.3 (exponential by scaling and squaring); Anderson & Moore (1979), *Optimal
-//! Filtering*, 4.4 (the stationary gain). The linear part ([`TwoMasses`]) and the gear's law are those of the carriage's twin.
+//! Anderson & Moore (1979), *Optimal Filtering*, 4.4 (the stationary gain). The gear's law, too, is that of the twin. Friction is not: a twin
+//! must stick bit for bit and in the same step on any machine, an estimate must change little where a parameter does.
 
-use froude_signal::exponential::exponential;
+use froude_rig::propagator::{Both, both};
 use froude_signal::two_mass::TwoMasses;
 
 use crate::servo::error::ServoError;
@@ -103,7 +103,7 @@ impl TwoMass {
     }
 }
 
-/// Motor position, motor speed, load position, load speed.
+/// Motor position, load position, motor speed, load speed.
 const STATES: usize = 4;
 
 /// Most steps of the filter's covariance, and the part by which a settled gain still moves in one.
@@ -113,21 +113,13 @@ const GAIN_TOLERANCE: f64 = 1e-7;
 /// Pieces of a step in which something stops, breaks away or turns.
 const PIECES: usize = 32;
 
-/// The linear part over one step.
-#[derive(Debug, Clone)]
-struct Linear {
-    transition: [[f64; STATES]; STATES],
-    /// Response of the state to a unit force on the motor and on the load.
-    response: [[f64; STATES]; 2],
-    /// Forces on motor and load for a unit change of their own speeds.
-    stopping: [f64; 2],
-}
-
 /// An axis ready to be stepped.
 #[derive(Debug, Clone)]
 pub struct Stepper {
-    step: Linear,
-    piece: Linear,
+    step: Both,
+    piece: Both,
+    /// Over a sample.
+    sample: Both,
     /// Largest Coulomb friction, N.
     limit_n: [f64; 2],
     /// ½(1/η − η_b).
@@ -145,7 +137,7 @@ pub struct Stepper {
 
 /// Where the masses are, and what holds them.
 #[derive(Debug, Clone, Copy)]
-struct Moment {
+pub(crate) struct Moment {
     state: [f64; STATES],
     friction_n: [f64; 2],
     /// Which way each friction stands at its limit; 0 within it.
@@ -153,7 +145,12 @@ struct Moment {
 }
 
 impl Moment {
-    const AT_REST: Self = Self { state: [0.0; STATES], friction_n: [0.0; 2], side: [0; 2] };
+    pub(crate) const AT_REST: Self = Self { state: [0.0; STATES], friction_n: [0.0; 2], side: [0; 2] };
+
+    /// Of the motor, from where it was at rest.
+    pub(crate) fn motor_m(&self) -> f64 {
+        self.state[0]
+    }
 }
 
 impl Stepper {
@@ -185,29 +182,12 @@ impl Stepper {
         }
         let steps = (sample_s / longest_step_s - 1e-9).ceil().max(1.0);
         let masses = axis.masses();
-        // d/dt of motor position and speed, load position and speed, and of two constant forces.
-        let row = |[q, y, v_q, v_y, f_q, f_y]: [f64; 6]| [q, v_q, y, v_y, f_q, f_y];
-        let generator = [
-            [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-            row(masses.motor(0.5 * (drive + driven))),
-            [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
-            row(masses.load()),
-            [0.0; 6],
-            [0.0; 6],
-        ];
-        let over = |step_s: f64| {
-            let whole = exponential(generator.map(|row| row.map(|x| x * step_s)));
-            let response: [[f64; STATES]; 2] = std::array::from_fn(|f| std::array::from_fn(|i| whole[i][STATES + f]));
-            Linear {
-                transition: std::array::from_fn(|i| std::array::from_fn(|j| whole[i][j])),
-                response,
-                stopping: [response[0][1].recip(), response[1][3].recip()],
-            }
-        };
+        let over = |step_s: f64| both(&masses, step_s, 0.5 * (drive + driven));
         let late = axis.delay_s / sample_s;
         Ok(Self {
             step: over(sample_s / steps),
             piece: over(sample_s / steps / PIECES as f64),
+            sample: over(sample_s),
             limit_n,
             gear_loss: 0.5 * (drive - driven),
             stiffness_n_m: k,
@@ -269,10 +249,16 @@ impl Stepper {
     /// measured position.
     #[must_use]
     pub fn gain(&self, force_over_noise_n_m: f64) -> [f64; STATES] {
-        let (a, on_motor, on_load) = self.over_a_sample();
+        let over = &self.sample;
+        // A place keeps what it was; what it gains, and the speeds, follow from the extension and the speeds.
+        let a: [[f64; STATES]; STATES] = std::array::from_fn(|i| {
+            let [by_extension, by_motor, by_load, ..] = over[i];
+            let was = |j: usize| f64::from(u8::from(i == j));
+            [by_extension + was(0), was(1) - by_extension, by_motor, by_load]
+        });
         let q = force_over_noise_n_m * force_over_noise_n_m;
         let noise: [[f64; STATES]; STATES] =
-            std::array::from_fn(|i| std::array::from_fn(|j| q * (on_motor[i] * on_motor[j] + on_load[i] * on_load[j])));
+            std::array::from_fn(|i| std::array::from_fn(|j| q * (over[i][3] * over[j][3] + over[i][4] * over[j][4])));
         let mut covariance = noise;
         let mut gain = [0.0; STATES];
         for _ in 0..GAIN_STEPS {
@@ -294,25 +280,6 @@ impl Stepper {
         gain
     }
 
-    /// Transition over a sample, and the response to a unit force on motor and load.
-    fn over_a_sample(&self) -> ([[f64; STATES]; STATES], [f64; STATES], [f64; STATES]) {
-        let Linear { transition, response, .. } = &self.step;
-        let through = |x: &[f64; STATES]| -> [f64; STATES] {
-            std::array::from_fn(|i| (0..STATES).map(|k| transition[i][k] * x[k]).sum())
-        };
-        let column = |j: usize| -> [f64; STATES] { std::array::from_fn(|i| f64::from(u8::from(i == j))) };
-        let mut columns: [[f64; STATES]; STATES] = std::array::from_fn(column);
-        let mut forces = [[0.0; STATES]; 2];
-        for _ in 0..self.steps {
-            columns = columns.map(|c| through(&c));
-            for (f, unit) in forces.iter_mut().zip(response) {
-                let moved = through(f);
-                *f = std::array::from_fn(|i| moved[i] + unit[i]);
-            }
-        }
-        (std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i])), forces[0], forces[1])
-    }
-
     fn check(&self, moment: &Moment, k: usize) -> Result<(), ServoError> {
         if moment.state[0].is_nan() || moment.state[0].abs() > RUN_AWAY_M {
             return Err(ServoError::RanAway { time_s: k as f64 * self.sample_s });
@@ -331,7 +298,7 @@ impl Stepper {
 
     /// Steps from one command to the next under a constant force on the motor.
     #[inline]
-    fn sample(&self, moment: &mut Moment, force_n: f64) {
+    pub(crate) fn sample(&self, moment: &mut Moment, force_n: f64) {
         for _ in 0..self.steps {
             let next = self.after(&self.step, moment, force_n);
             if next.side == moment.side {
@@ -346,33 +313,35 @@ impl Stepper {
 
     /// After one step under a constant force on the motor.
     #[inline]
-    fn after(&self, linear: &Linear, moment: &Moment, force_n: f64) -> Moment {
-        let [on_motor, on_load] = &linear.response;
-        let state = &moment.state;
-        let mut free: [f64; STATES] = std::array::from_fn(|i| {
-            let row = &linear.transition[i];
-            row[0] * state[0] + row[1] * state[1] + row[2] * state[2] + row[3] * state[3] + on_motor[i] * force_n
-        });
+    fn after(&self, over: &Both, moment: &Moment, force_n: f64) -> Moment {
+        let [q, y, v_q, v_y] = moment.state;
+        let on_motor = over.map(|row| row[3]);
+        let on_load = over.map(|row| row[4]);
+        // Forces on motor and load for a unit change of their own speeds.
+        let stopping = [on_motor[2].recip(), on_load[3].recip()];
+        let gained = over.map(|row| row[0] * (q - y) + row[1] * v_q + row[2] * v_y + row[3] * force_n);
+        let mut free = [q + gained[0], y + gained[1], gained[2], gained[3]];
         if self.load_drag_n_s2_m2 != 0.0 {
             // v = v without drag − ½ response · D v|v|, solved for v.
-            let v = 0.5 * (state[3] + free[3] - on_load[3] * moment.friction_n[1]);
+            let v = 0.5 * (v_y + free[3] - on_load[3] * moment.friction_n[1]);
             let v = 2.0 * v / (1.0 + (1.0 + 2.0 * on_load[3] * self.load_drag_n_s2_m2 * v.abs()).sqrt());
             let drag_n = self.load_drag_n_s2_m2 * v * v.abs();
             (0..STATES).for_each(|i| free[i] -= on_load[i] * drag_n);
         }
         let [mut motor_limit_n, load_limit_n] = self.limit_n;
         if self.gear_loss != 0.0 {
-            let mean = |i: usize| 0.5 * (state[i] - state[i + 2] + free[i] - free[i + 2]);
-            motor_limit_n += self.gear_loss * (self.stiffness_n_m * mean(0) + self.damping_n_s_m * mean(1)).abs();
+            let mean_m = 0.5 * (q - y + free[0] - free[1]);
+            let mean_m_s = 0.5 * (v_q - v_y + free[2] - free[3]);
+            motor_limit_n += self.gear_loss * (self.stiffness_n_m * mean_m + self.damping_n_s_m * mean_m_s).abs();
         }
         // Friction that stops each mass at the end of the step, within its limit. The masses hardly act on each other within a
         // step, so that two sweeps settle it. No `clamp`: the limit of a motion that has run away is no number, and `check` says so.
         let [mut f_m, mut f_l] = moment.friction_n;
         for _ in 0..2 {
-            let v = free[1] - on_load[1] * f_l;
-            f_m = (v * linear.stopping[0]).max(-motor_limit_n).min(motor_limit_n);
+            let v = free[2] - on_load[2] * f_l;
+            f_m = (v * stopping[0]).max(-motor_limit_n).min(motor_limit_n);
             let v = free[3] - on_motor[3] * f_m;
-            f_l = (v * linear.stopping[1]).max(-load_limit_n).min(load_limit_n);
+            f_l = (v * stopping[1]).max(-load_limit_n).min(load_limit_n);
         }
         let side = |f: f64, limit: f64| i8::from(f >= limit) - i8::from(f <= -limit);
         Moment {

@@ -37,8 +37,6 @@ pub struct ServoLog {
     pub position_m: Vec<f64>,
     /// Command to the drive, V.
     pub command_v: Vec<f64>,
-    /// Reference position of the loop, m; needed by instruments and closed-loop simulation.
-    pub reference_m: Option<Vec<f64>>,
     /// Load that presses on the guides (weight less buoyancy), N; needed by friction over load.
     pub load_n: Option<Vec<f64>>,
 }
@@ -54,9 +52,8 @@ impl ServoLog {
         if n < 3 {
             return Err(ServoError::TooFewRows { rows: n, needed: 3 });
         }
-        let optional = [("reference position", &self.reference_m), ("load", &self.load_n)];
         let columns = [("position", &self.position_m), ("command", &self.command_v)].into_iter();
-        for (column, values) in columns.chain(optional.into_iter().filter_map(|(c, v)| v.as_ref().map(|v| (c, v)))) {
+        for (column, values) in columns.chain(self.load_n.as_ref().map(|load| ("load", load))) {
             if values.len() != n {
                 return Err(ServoError::Length { column, found: values.len(), expected: n });
             }
@@ -79,7 +76,6 @@ impl ServoLog {
             time_s: of(&self.time_s),
             position_m: of(&self.position_m),
             command_v: of(&self.command_v),
-            reference_m: self.reference_m.as_ref().map(of),
             load_n: self.load_n.as_ref().map(of),
         }
     }

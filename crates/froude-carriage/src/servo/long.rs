@@ -560,7 +560,7 @@ mod tests {
             })
             .collect();
         let load_n = load_n.then(|| time_s.iter().map(|t| 20.0 + (0.05 * t).sin()).collect());
-        ServoLog { time_s, position_m, command_v, load_n, ..ServoLog::default() }
+        ServoLog { time_s, position_m, command_v, load_n }
     }
 
     /// Both sides round alike but in another order: some 6000 roundings times a condition of some 100 are 1.3e-10.

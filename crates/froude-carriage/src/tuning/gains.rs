@@ -28,11 +28,6 @@ pub struct Encoder {
     pub tick_s: f64,
 }
 
-impl Encoder {
-    /// Without counts or ticks.
-    pub const IDEAL: Self = Self { count_rad: 0.0, most_v: f64::INFINITY, tick_s: 0.0 };
-}
-
 impl Demand {
     /// Whether the margins keep it, the whole loop lying in the band that they are of.
     #[must_use]

@@ -9,6 +9,7 @@
 
 use super::LoopGains;
 use super::resonance::TwoMassModes;
+use crate::servo::flexible::{Moment, Stepper, TwoMass};
 
 /// A trapezoid of speed from rest to rest, and the friction that it meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,15 +60,17 @@ impl Tracking {
     }
 }
 
-/// Steps of integration in a tick.
-const SUBSTEPS: usize = 5;
+/// Of a loop that runs away.
+const NOWHERE: Tracking = Tracking { error_rad: f64::INFINITY, speed_rad_s: f64::INFINITY };
 
 /// Follows a ramp. Infinite where the loop runs away.
 #[must_use]
 pub fn follow(modes: &TwoMassModes, gains: &LoopGains, forward: &Forward, ramp: &Ramp) -> Tracking {
-    let mut drive = TwoMasses::new(modes, ramp);
     let tick_s = gains.tick_s.max(1e-5);
-    let h = tick_s / SUBSTEPS as f64;
+    let Ok(drive) = Stepper::new(&axis(modes, ramp), tick_s, tick_s) else {
+        return NOWHERE;
+    };
+    let mut moment = Moment::AT_REST;
     let ramp_s = ramp.speed_rad_s / ramp.acceleration_rad_s2;
     let ticks = ((2.0 * (ramp_s + ramp.hold_s)) / tick_s).ceil() as usize;
     // Half a tick of the delay is the held command's own.
@@ -80,7 +83,7 @@ pub fn follow(modes: &TwoMassModes, gains: &LoopGains, forward: &Forward, ramp: 
     for i in 0..ticks {
         let (speed, acceleration) = trapezoid(ramp, ramp_s, i as f64 * tick_s);
         target_rad += speed * tick_s;
-        let counted = (drive.motor_rad / forward.count_rad).round() * forward.count_rad;
+        let counted = (moment.motor_m() / forward.count_rad).round() * forward.count_rad;
         let error = target_rad - counted;
         seen_rad_s += speed_share * ((counted - last_counted) / tick_s - seen_rad_s);
         last_counted = counted;
@@ -95,13 +98,27 @@ pub fn follow(modes: &TwoMassModes, gains: &LoopGains, forward: &Forward, ramp: 
             + forward.viscous_v_s_rad * speed
             + forward.coulomb_v * (speed / forward.full_friction_rad_s).clamp(-1.0, 1.0);
         pending.push(wanted.max(-forward.limit_v).min(forward.limit_v));
-        let volts = pending.remove(0);
-        (0..SUBSTEPS).for_each(|_| drive.step(volts, h));
-        if !drive.motor_rad.is_finite() {
-            return Tracking { error_rad: f64::INFINITY, speed_rad_s: f64::INFINITY };
+        drive.sample(&mut moment, modes.gain_rad_s2_v * pending.remove(0));
+        if !moment.motor_m().is_finite() {
+            return NOWHERE;
         }
     }
     out
+}
+
+/// Both masses in units of the motor: its mass is 1, a metre is a radian, a force an acceleration.
+fn axis(modes: &TwoMassModes, ramp: &Ramp) -> TwoMass {
+    let load_rad_s = std::f64::consts::TAU * modes.load.frequency_hz;
+    let ratio = modes.inertia_ratio;
+    TwoMass {
+        motor_mass_kg: 1.0,
+        load_mass_kg: ratio,
+        stiffness_n_m: ratio * load_rad_s * load_rad_s,
+        damping_n_s_m: ratio * 2.0 * modes.load.damping * load_rad_s,
+        load_viscous_n_s_m: ratio * modes.viscous_1_s,
+        load_coulomb_n: modes.gain_rad_s2_v * ramp.friction_v,
+        ..TwoMass::BARE
+    }
 }
 
 /// Speed and acceleration of the reference.
@@ -115,50 +132,5 @@ fn trapezoid(ramp: &Ramp, ramp_s: f64, t: f64) -> (f64, f64) {
         (ramp.speed_rad_s - ramp.acceleration_rad_s2 * (t - down_s), -ramp.acceleration_rad_s2)
     } else {
         (0.0, 0.0)
-    }
-}
-
-/// Both masses, as accelerations of the motor.
-struct TwoMasses {
-    gain: f64,
-    viscous_1_s: f64,
-    ratio: f64,
-    spring_1_s2: f64,
-    damper_1_s: f64,
-    friction_rad_s2: f64,
-    motor_rad: f64,
-    motor_rad_s: f64,
-    load_rad: f64,
-    load_rad_s: f64,
-}
-
-impl TwoMasses {
-    fn new(modes: &TwoMassModes, ramp: &Ramp) -> Self {
-        let ratio = modes.inertia_ratio;
-        let load_rad_s = std::f64::consts::TAU * modes.load.frequency_hz;
-        Self {
-            gain: modes.gain_rad_s2_v,
-            viscous_1_s: modes.viscous_1_s,
-            ratio,
-            spring_1_s2: load_rad_s * load_rad_s,
-            damper_1_s: 2.0 * modes.load.damping * load_rad_s,
-            friction_rad_s2: modes.gain_rad_s2_v * ramp.friction_v / ratio,
-            motor_rad: 0.0,
-            motor_rad_s: 0.0,
-            load_rad: 0.0,
-            load_rad_s: 0.0,
-        }
-    }
-
-    /// Half-implicit Euler; friction takes speed away and never turns it.
-    fn step(&mut self, volts: f64, h: f64) {
-        let pull = self.spring_1_s2 * (self.motor_rad - self.load_rad)
-            + self.damper_1_s * (self.motor_rad_s - self.load_rad_s);
-        self.motor_rad_s += h * (self.gain * volts - self.ratio * pull);
-        self.load_rad_s += h * (pull - self.viscous_1_s * self.load_rad_s);
-        let taken = (h * self.friction_rad_s2).min(self.load_rad_s.abs());
-        self.load_rad_s -= taken.copysign(self.load_rad_s);
-        self.motor_rad += h * self.motor_rad_s;
-        self.load_rad += h * self.load_rad_s;
     }
 }

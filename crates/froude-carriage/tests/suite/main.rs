@@ -3,6 +3,7 @@
 
 mod carriage;
 mod one_plant;
+mod rigid;
 mod scatter;
 #[path = "../scenario/mod.rs"]
 mod scenario;

@@ -2,12 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use froude_carriage::servo::simulate::Rigid;
 use froude_carriage::servo::{Chain, Friction, ServoError, ServoLog, ServoReport, identify_servo};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
+
+use crate::rigid::Rigid;
 
 const AXIS: Rigid =
     Rigid { mass_kg: 1.2, viscous_n_s_m: [0.35; 2], coulomb_n: [0.8; 2], offset_n: 0.0, force_per_volt_n_v: 6.0 };

@@ -14,6 +14,9 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;
 
+/// Without counts or ticks.
+const IDEAL: Encoder = Encoder { count_rad: 0.0, most_v: f64::INFINITY, tick_s: 0.0 };
+
 fn measured(n: usize, from_hz: f64, to_hz: f64, plant: impl Fn(Complex64) -> Complex64) -> Vec<ResponsePoint> {
     (0..n)
         .map(|i| {
@@ -71,11 +74,11 @@ fn too_much_gain_gives_a_negative_phase_margin() {
 fn shaped_gains_keep_the_demand_and_a_slower_drive_gets_less_gain() {
     let demand = Demand::default();
     let plant = measured(400, 0.1, 200.0, |s| 600.0 / (s * (s + 0.3)) * (-s * 5e-4).exp());
-    let gains = shaped_on_response(&plant, f64::INFINITY, &demand, &Encoder::IDEAL).unwrap();
+    let gains = shaped_on_response(&plant, f64::INFINITY, &demand, &IDEAL).unwrap();
     let m = margins(&plant, &gains);
     assert!(m.phase_rad.unwrap() >= demand.phase_rad && m.largest_sensitivity <= demand.sensitivity, "{m:?}");
     let slow = measured(400, 0.1, 200.0, |s| 600.0 / (s * (s + 0.3)) * (-s * 5e-3).exp());
-    let slower = shaped_on_response(&slow, f64::INFINITY, &demand, &Encoder::IDEAL).unwrap();
+    let slower = shaped_on_response(&slow, f64::INFINITY, &demand, &IDEAL).unwrap();
     // Ten times the delay: a tenth of the crossover, a hundredth of the gain (P falls with the square).
     let ratio = slower.proportional_v_rad / gains.proportional_v_rad;
     assert!((0.007..0.014).contains(&ratio), "{ratio}, {gains:?}, {slower:?}");

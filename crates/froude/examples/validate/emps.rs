@@ -4,10 +4,7 @@ use std::error::Error;
 use std::path::Path;
 
 use froude::methods::carriage::servo::held_out::halves;
-use froude::methods::carriage::servo::simulate::{Loop, Rigid, closed_loop};
-use froude::methods::carriage::servo::{
-    Chain, Friction, ServoCoefficient, ServoLog, ServoReport, identify_servo, instrument, output_error,
-};
+use froude::methods::carriage::servo::{Chain, Friction, ServoLog, ServoReport, identify_servo};
 use froude::records::table_file::read_table;
 use froude::records::units::Dimension;
 
@@ -20,9 +17,6 @@ const FORCE_PER_VOLT_N_V: f64 = 35.15065188;
 
 /// Period of the trajectory, s: its reference repeats to the last digit after 6,240 samples (the description of the data says 6.16 s).
 const PERIOD_S: f64 = 6.24;
-
-/// The loop of the record (data README).
-const LOOP: Loop = Loop::Cascade { position_1_s: 160.18, velocity_v_s_m: 243.45, limit_v: 10.0 };
 
 /// `(name, value, standard deviation)` as printed, IDIM-LS, symmetric model.
 const SYMMETRIC: [(&str, f64, f64); 4] =
@@ -56,10 +50,9 @@ pub fn all(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
         );
         honesty(claims, name, &report, printed);
         prediction(claims, name, &report, &log, &chain)?;
-        closed_loop_methods(claims, name, &report, &log, &chain)?;
         as_any_log(claims, name, &log, &chain, printed)?;
     }
-    simulation(claims, &log)
+    Ok(())
 }
 
 fn read(root: &Path) -> Result<ServoLog, Box<dyn Error>> {
@@ -70,7 +63,6 @@ fn read(root: &Path) -> Result<ServoLog, Box<dyn Error>> {
         time_s: of("time", Dimension::TIME)?,
         position_m: of("position", Dimension::LENGTH)?,
         command_v: of("command", Dimension::VOLTAGE)?,
-        reference_m: Some(of("reference_position", Dimension::LENGTH)?),
         load_n: None,
     })
 }
@@ -128,92 +120,6 @@ fn prediction(
         by_20 <= bar_percent,
     );
     Ok(())
-}
-
-/// Instruments and output error in the known loop beside least squares.
-fn closed_loop_methods(
-    claims: &mut Claims,
-    name: &str,
-    report: &ServoReport,
-    log: &ServoLog,
-    chain: &Chain,
-) -> Result<(), Box<dyn Error>> {
-    let iv = instrument::identify(log, chain, &LOOP)?;
-    // Of the same rows, least squares and instruments should differ by less than what either is known to.
-    let apart = (iv.coefficients.iter().zip(&report.coefficients))
-        .map(|(a, b)| (a.value - b.value).abs() / b.block_std)
-        .fold(0.0, f64::max);
-    let text = |c: &[ServoCoefficient]| {
-        c.iter().map(|c| format!("{} {:.3} ± {:.3}", c.name, c.value, c.block_std)).collect::<Vec<_>>().join(", ")
-    };
-    claims.holds(
-        SECTION,
-        &format!("{name}: instruments from the simulated loop (IDIM-IV) agree with least squares"),
-        "within two standard deviations of the blocks",
-        format!("{} ({} simulations): at most {apart:.2} apart", text(&iv.coefficients), iv.iterations),
-        apart <= 2.0 && iv.was_converged,
-    );
-    let refined = output_error::refine(log, chain, &LOOP)?;
-    claims.add(
-        SECTION,
-        &format!("{name}: output error of the force in the loop"),
-        "–",
-        format!(
-            "{}; force error {:.2} %, {:?} after {} steps",
-            text(&refined.report.coefficients),
-            100.0 * refined.report.relative_force_error,
-            refined.end.end,
-            refined.end.iterations
-        ),
-        Verdict::Measured,
-    );
-    Ok(())
-}
-
-/// The published parameters in the known loop: a check of plant, loop and stepping, not of the parameters.
-fn simulation(claims: &mut Claims, log: &ServoLog) -> Result<(), Box<dyn Error>> {
-    let [m, v, c, o] = SYMMETRIC.map(|(_, value, _)| value);
-    let published = Rigid {
-        mass_kg: m,
-        viscous_n_s_m: [v; 2],
-        coulomb_n: [c; 2],
-        offset_n: o,
-        force_per_volt_n_v: FORCE_PER_VOLT_N_V,
-    };
-    let rate_hz = log.rate_hz()?;
-    let velocity_m_s = Chain::new(1.0, Friction::symmetric()).motion(&log.position_m, rate_hz)?.velocity_m_s;
-    let errors = |axis: &Rigid| -> Result<[f64; 3], Box<dyn Error>> {
-        let reference = log.reference_m.as_deref().unwrap_or_default();
-        let s = closed_loop(axis, &LOOP, reference, log.position_m[0], rate_hz.recip())?;
-        Ok([
-            error_percent(&log.position_m, &s.position_m),
-            error_percent(&velocity_m_s, &s.velocity_m_s),
-            error_percent(&log.command_v, &s.command_v),
-        ])
-    };
-    // Half a unit of the data README's print.
-    let ours = errors(&published)?;
-    for (what, found, expected, half) in
-        [("position", ours[0], 0.0012, 0.00005), ("velocity", ours[1], 0.171, 0.0005), ("force", ours[2], 5.31, 0.01)]
-    {
-        let claim = format!("published parameters in the known loop: {what} error, %");
-        claims.near(SECTION, &claim, found, expected, half, "data README");
-    }
-    let heavier = errors(&Rigid { mass_kg: 1.01 * m, viscous_n_s_m: [1.05 * v; 2], ..published })?;
-    claims.add(
-        SECTION,
-        "the same with 1 % more mass and 5 % more viscous friction: the loop hides the parameters",
-        "nearly the same",
-        format!("position {:.4} %, velocity {:.3} %, force {:.2} %", heavier[0], heavier[1], heavier[2]),
-        Verdict::Measured,
-    );
-    Ok(())
-}
-
-fn error_percent(measured: &[f64], simulated: &[f64]) -> f64 {
-    let squares = |x: &mut dyn Iterator<Item = f64>| x.map(|x| x * x).sum::<f64>();
-    let apart = squares(&mut measured.iter().zip(simulated).map(|(m, s)| m - s));
-    100.0 * (apart / squares(&mut measured.iter().copied())).sqrt()
 }
 
 /// Each coefficient against the published one, in published standard deviations.
