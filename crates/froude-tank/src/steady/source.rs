@@ -1,11 +1,12 @@
 //! Steady tows as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
 use crate::names::STEADY;
-use froude_identify::method::{Found, MethodError, Need};
+use froude_identify::method::{Declares, Found, MethodError, Need};
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
 use froude_records::campaign::{Campaign, Source};
+use froude_records::campaign_keys::ROWS;
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::Role;
 use froude_records::run::marks::SegmentKind;
@@ -53,6 +54,7 @@ pub const STEADY_TOW: TankMethod = TankMethod {
     identify: |campaign, source, _, progress| identify(campaign, source, progress),
     simulate: simulate::files,
     plan: plan::prospect,
+    declares: Declares { section: STEADY, keys: section::KEYS, plan: ROWS },
     check: |source| {
         let is_of_steady = source.methods.iter().any(|method| method == STEADY);
         section::declared(source)?;

@@ -1,7 +1,7 @@
 //! The weight-driven rig as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
 use crate::names::WEIGHT_TOW;
-use froude_identify::method::{Found, MethodError, Need};
+use froude_identify::method::{Declares, Found, MethodError, Need};
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
@@ -41,6 +41,7 @@ pub const PULLED: TankMethod = TankMethod {
     identify: |campaign, source, _, progress| identify(campaign, source, progress),
     simulate: simulate::files,
     plan: plan::prospect,
+    declares: Declares { section: WEIGHT_TOW, keys: section::KEYS, plan: section::PLAN },
     check: |source| check(source, WEIGHT_TOW, section::weight_tow, section::plan),
 };
 
