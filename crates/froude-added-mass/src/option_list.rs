@@ -4,6 +4,7 @@
 
 use froude_records::RecordError;
 use froude_records::campaign::Source;
+use froude_records::declare::{IfMissing, Key, Kind, names};
 use froude_records::given_option::GivenOption;
 use froude_records::section::found;
 use toml::de::DeValue;
@@ -87,6 +88,28 @@ pub const ADDED_MASS_OPTIONS: [AddedMassOption; 17] = [
     option("export", "FORMAT,…", "Files to write beside the record: wamit, capytaine, csv"),
 ];
 
+/// The options as keys of `[source.added_mass]`.
+pub const KEYS: [Key; ADDED_MASS_OPTIONS.len()] = {
+    let mut keys = [ADDED_MASS_OPTIONS[0].key(); ADDED_MASS_OPTIONS.len()];
+    let mut i = 1;
+    while i < keys.len() {
+        keys[i] = ADDED_MASS_OPTIONS[i].key();
+        i += 1;
+    }
+    keys
+};
+
+impl AddedMassOption {
+    const fn key(self) -> Key {
+        let kind = match self {
+            Self { takes: None, .. } => Kind::Flag,
+            Self { words: [], .. } => Kind::Either(&[Kind::Text, Kind::Whole, Kind::List(&Kind::Text)]),
+            Self { words, .. } => Kind::Word(words),
+        };
+        Key::new(self.name, kind, IfMissing::Nothing(""), self.help)
+    }
+}
+
 /// The options given for a source: flags of the verb, or keys of `[source.added_mass]`. Values are texts, whole numbers, switches or lists of texts.
 ///
 /// # Errors
@@ -94,7 +117,7 @@ pub const ADDED_MASS_OPTIONS: [AddedMassOption; 17] = [
 /// A key that is not known, or a value of another kind, with its place.
 pub fn given(source: &Source) -> Result<Vec<GivenOption>, RecordError> {
     let Some(s) = source.section("added_mass")? else { return Ok(source.given.clone()) };
-    s.only(&ADDED_MASS_OPTIONS.map(|option| option.name))?;
+    s.only(&names(&KEYS))?;
     let mut out = Vec::new();
     for (name, _, value) in s.entries() {
         let takes = ADDED_MASS_OPTIONS.iter().find(|option| option.name == name).and_then(|option| option.takes);

@@ -1,7 +1,7 @@
 //! A body or a mesh as a source of a campaign.
 
 use froude_identify::answer::{Answer, Made};
-use froude_identify::method::{Found, Method, MethodError, Need};
+use froude_identify::method::{Declares, Found, Method, MethodError, Need};
 use froude_identify::source::{ReadFile, SourceResult};
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Input, Source, SourceKind};
@@ -9,7 +9,7 @@ use froude_records::estimate::Estimate;
 
 use super::body::body;
 use super::links::links;
-use super::option_list::given;
+use super::option_list::{KEYS, given};
 use super::options::Asked;
 use super::page;
 use super::several::several;
@@ -38,6 +38,10 @@ impl Method for AddedMass {
 
     fn runs(&self) -> &'static str {
         ""
+    }
+
+    fn declares(&self) -> Option<Declares> {
+        Some(Declares { section: "added_mass", keys: &KEYS, plan: &[] })
     }
 
     fn check(&self, source: &Source) -> Result<(), RecordError> {

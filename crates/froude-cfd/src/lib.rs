@@ -65,6 +65,7 @@
 mod settings {
     pub mod again;
     pub mod case;
+    pub(crate) mod keys;
     pub mod matrix;
     pub mod section;
     pub mod study;

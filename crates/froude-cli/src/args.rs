@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Command, Parser, Subcommand};
 use froude::methods::added_mass::option_list::ADDED_MASS_OPTIONS;
 use froude::records::given_option::GivenOption;
+use froude::records::schema::RESULTS;
 
 const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input; 130 stopped by Ctrl-C; re-run the same command to resume.";
 
@@ -147,13 +148,23 @@ pub enum Verb {
         #[command(subcommand)]
         job: CarriageJob,
     },
-    /// Print the JSON Schema of estimate.json, or of what a verb prints with --json.
-    #[command(after_help = "Examples:\n  froude schema > estimate.schema.json\n  froude schema plan")]
+    /// Print the JSON Schema of estimate.json, of what a verb prints with --json, or of a campaign, by which editors complete and check it.
+    #[command(
+        after_help = "Examples:\n  froude schema > estimate.schema.json\n  froude schema plan\n  froude schema campaign --out campaign.schema.json"
+    )]
     Schema {
-        /// Verb whose output to describe; hyphenate subcommands (`cfd-plan` for `froude cfd plan`).
-        #[arg(default_value = "identify", value_parser = froude::records::schema::RESULTS.map(|(verb, _)| verb))]
-        verb: String,
+        /// `campaign`, or the verb whose output to describe; hyphenate subcommands (`cfd-plan` for `froude cfd plan`).
+        #[arg(default_value = "identify", value_parser = described())]
+        of: String,
+        /// File to write [default: standard output]; an older schema is replaced.
+        #[arg(long)]
+        out: Option<PathBuf>,
     },
+}
+
+/// What has a JSON Schema.
+fn described() -> Vec<&'static str> {
+    std::iter::once("campaign").chain(RESULTS.map(|(verb, _)| verb)).collect()
 }
 
 #[derive(Debug, clap::Args)]

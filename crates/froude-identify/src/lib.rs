@@ -19,7 +19,6 @@ mod common;
 pub mod compare;
 pub mod data_files;
 pub mod dataset;
-pub mod declare;
 pub mod diagnosis;
 pub mod dissipation;
 pub mod eiv;
@@ -67,3 +66,4 @@ pub mod wild;
 mod zero;
 
 pub use error::IdentifyError;
+pub use froude_records::declare;

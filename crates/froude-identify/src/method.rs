@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use froude_records::RecordError;
 use froude_records::block::Section;
 use froude_records::campaign::{Campaign, Source};
+use froude_records::declare::Key;
 use froude_records::estimate::Estimate;
 use froude_records::finding::Finding;
 use froude_records::text::counted;
@@ -72,6 +73,11 @@ pub trait Method: Debug + Sync {
         None
     }
 
+    /// The keys of a source that are the method's own; `None` where it has none.
+    fn declares(&self) -> Option<Declares> {
+        None
+    }
+
     /// Reads the sections of a source that are the method's own ([`Source::section`]), used or not.
     ///
     /// # Errors
@@ -80,6 +86,17 @@ pub trait Method: Debug + Sync {
     fn check(&self, _: &Source) -> Result<(), RecordError> {
         Ok(())
     }
+}
+
+/// The keys of a source that are a method's own.
+#[derive(Debug, Clone, Copy)]
+pub struct Declares {
+    /// Its section, `[source.NAME]`.
+    pub section: &'static str,
+    /// The keys of the section.
+    pub keys: &'static [Key],
+    /// Those of `[[source.plan]]`, for its runs; empty where it plans none.
+    pub plan: &'static [Key],
 }
 
 /// Tables that are logs of a method.

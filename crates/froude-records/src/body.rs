@@ -2,6 +2,7 @@
 
 use froude_hydro::Link;
 
+use crate::declare::{IfMissing, Key, Kind, Range, names};
 use crate::error::RecordError;
 use crate::section::Section;
 use crate::units::Dimension;
@@ -41,6 +42,18 @@ pub fn semi_axes(s: &Section<'_>) -> Result<SemiAxes, RecordError> {
     Ok(SemiAxes { major_m: need(s, "major_semi_axis")?, minor_m: need(s, "minor_semi_axis")? })
 }
 
+const fn length(name: &'static str, doc: &'static str) -> Key {
+    let write = IfMissing::Required("write it with its unit: \"60 mm\"");
+    Key::new(name, Kind::Quantity(Dimension::LENGTH), write, doc).within(Range::Positive)
+}
+
+/// Keys of `[body.link]`.
+pub const LINK: &[Key] = &[
+    length("major_semi_axis", "half of the height of its section"),
+    length("minor_semi_axis", "half of the width of its section"),
+    length("half_length", "half of its length"),
+];
+
 /// The link of a `[body]`, of a body file and of a campaign.
 ///
 /// # Errors
@@ -48,7 +61,7 @@ pub fn semi_axes(s: &Section<'_>) -> Result<SemiAxes, RecordError> {
 /// As [`need`].
 pub fn link(s: &Section<'_>) -> Result<Option<Link>, RecordError> {
     let Some(link) = s.section("link")? else { return Ok(None) };
-    link.only(&["major_semi_axis", "minor_semi_axis", "half_length"])?;
+    link.only(&names(LINK))?;
     let half_length_m = need(&link, "half_length")?;
     let SemiAxes { major_m, minor_m } = semi_axes(&link)?;
     Ok(Some(Link { major_semi_axis_m: major_m, minor_semi_axis_m: minor_m, half_length_m }))

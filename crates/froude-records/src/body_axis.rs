@@ -14,14 +14,12 @@ pub enum BodyAxis {
 impl BodyAxis {
     /// Each of them.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+    /// Their letters.
+    pub const NAMES: [&'static str; 3] = ["x", "y", "z"];
 
     /// Its letter.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::X => "x",
-            Self::Y => "y",
-            Self::Z => "z",
-        }
+        Self::NAMES[self as usize]
     }
 }

@@ -21,10 +21,6 @@ use crate::units::{Dimension, Unit};
 pub use crate::body_axis::BodyAxis;
 pub use crate::keep::{Comparison, Keep, KeepClause, KeepValue};
 
-/// The sections and keys of a campaign.
-pub(crate) const ROOT_KEYS: [&str; 11] =
-    ["schema", "name", "cite", "fluid", "body", "tank", "source", "identify", "simulate", "rig", "carriage"];
-
 /// A whole campaign.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Campaign {
@@ -522,15 +518,6 @@ impl Campaign {
         let of = |path: &PathBuf| Source::bare(name(path), Input::Record { path: path.clone(), select: None });
         let names: Vec<String> = paths.iter().map(name).collect();
         Self { name: names.join(", "), sources: paths.iter().map(of).collect(), ..Self::default() }
-    }
-
-    /// The whole file, for sections that belong to whoever reads them: `[rig]` and `[carriage]`.
-    #[must_use]
-    pub fn root(&self) -> Option<Section<'_>> {
-        let root = self.document.as_ref()?.root();
-        // Known keys are no misspelt ones.
-        root.only(&ROOT_KEYS).ok()?;
-        Some(root)
     }
 
     /// Whether it drives a carriage.

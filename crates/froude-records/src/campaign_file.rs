@@ -9,9 +9,14 @@ use crate::body::link;
 use crate::body_axis::BodyAxis;
 use crate::campaign::{
     AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, OwnSections,
-    PlanBlock, PriorRecord, PriorSpec, ROOT_KEYS, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind,
-    StatedTruth, StatedUnit, Tank, Tare, Truth, UserModel,
+    PlanBlock, PriorRecord, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, StatedTruth,
+    StatedUnit, Tank, Tare, Truth, UserModel,
 };
+use crate::campaign_keys::{
+    BODY, CASES, COVARIANCES, FLUID, IDENTIFY, PRIOR, RANGE_BLOCK, ROOT, ROWS, SENSOR, SIMULATE, SOURCE, TANK,
+    UNCERTAINTY,
+};
+use crate::declare::{Values, names};
 use crate::document::Document;
 use crate::error::RecordError;
 use crate::estimate::ErrorKind;
@@ -23,16 +28,11 @@ use crate::plausible;
 use crate::prior_record;
 use crate::read;
 use crate::section::{Section, Value, found};
-use crate::section_values::{
-    Asks, MOST_RUNS, OF_RUNS, at_most, configurations, count, one_of, plan_of, product, series,
-};
+use crate::section_values::{Asks, MOST_RUNS, OF_RUNS, at_most, configurations, plan_of, product};
 use crate::units::{Dimension, Unit};
 
-/// Kinds of covariance that can be asked for.
-const COVARIANCES: [&str; 4] = ["classical", "HC3", "cluster", "serial"];
-
 /// Where the numbers of a source can lie.
-const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
+pub const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
 
 /// The largest campaign that is read.
 const LARGEST_BYTES: u64 = 4 << 20;
@@ -58,7 +58,7 @@ pub fn parse_campaign(path: &Path, text: &str) -> Result<Campaign, RecordError> 
     let document = Document::parse(path, text)?;
     let root = document.root();
     root.schema("campaign")?;
-    root.only(&ROOT_KEYS)?;
+    root.only(&names(ROOT))?;
     let campaign = Campaign {
         path: path.to_owned(),
         key: short_key(text.as_bytes()),
@@ -85,12 +85,12 @@ pub fn parse_campaign(path: &Path, text: &str) -> Result<Campaign, RecordError> 
 }
 
 fn fluid(s: &Section<'_>) -> Result<Fluid, RecordError> {
-    s.only(&["density", "kinematic_viscosity", "temperature", "salinity"])?;
+    let values = Values::read(s, FLUID)?;
     let out = Fluid {
-        density_kg_m3: s.positive("density", Dimension::DENSITY)?,
-        kinematic_viscosity_m2_s: s.positive("kinematic_viscosity", Dimension::KINEMATIC_VISCOSITY)?,
-        temperature_degc: s.quantity("temperature", Dimension::TEMPERATURE)?.map(|kelvin| kelvin - 273.15),
-        salinity_g_kg: s.quantity("salinity", Dimension::ONE)?.map(|fraction| fraction * 1e3),
+        density_kg_m3: values.number("density"),
+        kinematic_viscosity_m2_s: values.number("kinematic_viscosity"),
+        temperature_degc: values.number("temperature").map(|kelvin| kelvin - 273.15),
+        salinity_g_kg: values.number("salinity").map(|fraction| fraction * 1e3),
     };
     if let (Some(rho), Some(value)) = (out.density_kg_m3, s.get("density"))
         && let Some(problem) = plausible::density(rho, out.kinematic_viscosity_m2_s)
@@ -101,6 +101,7 @@ fn fluid(s: &Section<'_>) -> Result<Fluid, RecordError> {
 }
 
 fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
+    let values = Values::read(s, BODY)?;
     let mut volumes = IndexMap::new();
     if let Some(table) = s.section("volumes")? {
         for (configuration, _, value) in table.entries() {
@@ -108,41 +109,35 @@ fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
             volumes.insert(configuration.to_owned(), volume);
         }
     }
-    let out = BodySpec {
-        reference_point: s.text("reference_point")?.map(str::to_owned),
+    Ok(BodySpec {
+        reference_point: values.text("reference_point").map(str::to_owned),
         link: link(s)?,
-        head_side_area_m2: s.positive("head_side_area", Dimension::AREA)?,
-        tail_side_area_m2: s.positive("tail_side_area", Dimension::AREA)?,
-        reference_length_m: s.positive("reference_length", Dimension::LENGTH)?,
-        reference_area_m2: s.positive("reference_area", Dimension::AREA)?,
-        travel: one_of(s, "travel", &BodyAxis::ALL.map(BodyAxis::name), &BodyAxis::ALL)?,
-        volume_m3: s.positive("volume", Dimension::VOLUME)?,
+        head_side_area_m2: values.number("head_side_area"),
+        tail_side_area_m2: values.number("tail_side_area"),
+        reference_length_m: values.number("reference_length"),
+        reference_area_m2: values.number("reference_area"),
+        travel: values.word("travel", &BodyAxis::ALL),
+        volume_m3: values.number("volume"),
         volumes,
-        link_volume_m3: s.positive("link_volume", Dimension::VOLUME)?,
-    };
-    s.finish()?;
-    Ok(out)
+        link_volume_m3: values.number("link_volume"),
+    })
 }
 
 fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
-    let out = Tank {
-        width_m: s.positive("width", Dimension::LENGTH)?,
-        depth_m: s.positive("depth", Dimension::LENGTH)?,
-        submergence_m: s.positive("submergence", Dimension::LENGTH)?,
-    };
-    s.finish()?;
-    Ok(out)
+    let values = Values::read(s, TANK)?;
+    Ok(Tank {
+        width_m: values.number("width"),
+        depth_m: values.number("depth"),
+        submergence_m: values.number("submergence"),
+    })
 }
 
 /// What belongs to the rows of a table, and would be passed over elsewhere.
-const OF_TABLES: [&str; 7] = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
-
-/// The keys of a source, beside its inputs, what belongs to rows, and the section of each of its methods.
-const SOURCE_KEYS: [&str; 8] = ["name", "kind", "role", "select", "method", "added_mass", "decay", "cfd"];
+pub const OF_TABLES: [&str; 7] = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
 
 fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Source, RecordError> {
     let (methods, method_places): (Vec<String>, Vec<_>) = s.placed_texts("method")?.into_iter().unzip();
-    let known = [&SOURCE_KEYS[..], &INPUTS, &OF_TABLES].concat();
+    let known = names(SOURCE);
     s.asks(|key| methods.iter().any(|method| method == key));
     let is_section = |(key, _, value): &(&str, usize, &Value<'_>)| !known.contains(key) && value.get_ref().is_table();
     if let Some((key, _, value)) = s.others().into_iter().find(is_section) {
@@ -155,21 +150,18 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
         };
         return Err(s.wrong(key, value, problem));
     }
-    s.only(&known)?;
-    let name = s.need_text("name", "write name = \"circulation tank\", for example")?.to_owned();
+    let values = Values::read(s, SOURCE)?;
+    let text = |key: &str| values.text(key).map(str::to_owned);
+    let name = values.need("name", text("name"))?;
     let kinds = [SourceKind::Tank, SourceKind::Towing, SourceKind::Cfd, SourceKind::Potential, SourceKind::Published];
-    let kind = one_of(s, "kind", &SourceKind::NAMES, &kinds)?.ok_or_else(|| {
-        s.missing("kind", "write kind = \"tank\", \"towing\", \"cfd\", \"potential\" or \"published\"")
-    })?;
-    let path =
-        |key: &'static str| -> Result<Option<_>, RecordError> { Ok(s.text(key)?.map(|text| s.source.relative(text))) };
-    let select = s.text("select")?.map(str::to_owned);
+    let kind = values.need("kind", values.word("kind", &kinds))?;
+    let path = |key: &str| values.text(key).map(|text| s.source.relative(text));
     let given = [
-        path("table")?.map(Input::Table),
-        path("record")?.map(|path| Input::Record { path, select: select.clone() }),
-        path("runs")?.map(|path| Input::Runs { paths: vec![path], campaign: None }),
-        path("cases")?.map(Input::Cases),
-        path("mesh")?.map(Input::Mesh),
+        path("table").map(Input::Table),
+        path("record").map(|path| Input::Record { path, select: text("select") }),
+        path("runs").map(|path| Input::Runs { paths: vec![path], campaign: None }),
+        path("cases").map(Input::Cases),
+        path("mesh").map(Input::Mesh),
     ];
     let mut given: Vec<Input> = given.into_iter().flatten().collect();
     let Some(input) = given.pop().filter(|_| given.is_empty()) else {
@@ -180,21 +172,20 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
     };
     let is_record = matches!(input, Input::Record { .. });
     s.refuse("select", !is_record, "picks an estimate of a record, but the source names no record")?;
-    let is_validation = one_of(s, "role", &["fit", "validation"], &[false, true])?.unwrap_or_default();
+    let is_validation = values.word("role", &[false, true]).unwrap_or_default();
     let problem = "holds fits against the rows of a table, but the source names none: write table = \"tomorrow.csv\"";
     s.refuse("role", is_validation && !matches!(input, Input::Table(_)), problem)?;
     let keep = s
         .get("keep")
         .map(|v| parse_keep(s.as_text("keep", v)?).map_err(|e| s.wrong("keep", v, format!("cannot be read: {e}"))))
         .transpose()?;
-    let tare = s
-        .section("tare")?
-        .map(|t| -> Result<Tare, RecordError> {
-            t.only(&["record", "select", "removed"])?;
+    let tare = values
+        .table("tare")
+        .map(|tare| -> Result<Tare, RecordError> {
             Ok(Tare {
-                record: s.source.relative(t.need_text("record", "name the estimate.json of the tare")?),
-                select: t.text("select")?.map(str::to_owned),
-                is_removed: t.flag("removed")?.unwrap_or(false),
+                record: s.source.relative(tare.need("record", tare.text("record"))?),
+                select: tare.text("select").map(str::to_owned),
+                is_removed: tare.flag("removed"),
             })
         })
         .transpose()?;
@@ -217,13 +208,13 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
         name,
         kind,
         is_validation,
-        sidecar: path("sidecar")?,
+        sidecar: path("sidecar"),
         models,
         model_places,
         methods,
         method_places,
         keep,
-        group: s.text("group")?.map(str::to_owned),
+        group: text("group"),
         uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,
         tare,
         given: Vec::new(),
@@ -247,6 +238,17 @@ fn takes(s: &Section<'_>, keys: &[&str], instead: &str) -> Result<(), RecordErro
     match OF_TABLES.into_iter().filter(is_refused).find_map(|key| Some((key, s.get(key)?))) {
         Some((key, value)) => Err(s.wrong(key, value, format!("belongs to the rows of a table; {instead}"))),
         None => Ok(()),
+    }
+}
+
+impl Campaign {
+    /// The whole file, for sections that belong to whoever reads them: `[rig]` and `[carriage]`.
+    #[must_use]
+    pub fn root(&self) -> Option<Section<'_>> {
+        let root = self.document.as_ref()?.root();
+        // Known keys are no misspelt ones.
+        root.only(&names(ROOT)).ok()?;
+        Some(root)
     }
 }
 
@@ -295,9 +297,9 @@ fn rows_of(blocks: &[Section<'_>], input: &Input) -> Result<Vec<PlanBlock>, Reco
 }
 
 fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
-    s.only(&["quantity", "standard", "shared", "dof", "name", "kind"])?;
-    let quantity = s.need_text("quantity", "name the uncertain column: f_x, speed, angle, density, …")?;
-    let value = s.need("standard", "write the standard uncertainty with its unit: \"0.01 N\" or \"0.5 %\"")?;
+    let values = Values::read(s, UNCERTAINTY)?;
+    let quantity = values.need("quantity", values.text("quantity"))?;
+    let value = values.need("standard", s.get("standard"))?;
     let standard = s.quantity_like("standard", value, known_dimension(quantity).map(|d| (quantity, d)))?;
     let relative = standard.unit.text.trim() == "%";
     let dimension = standard.unit.dimension;
@@ -313,40 +315,28 @@ fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
         return Err(s.wrong("standard", value, format!("is {}; a standard uncertainty is not negative", found(value))));
     }
     let levels = [Shared::Sample, Shared::Run, Shared::Setup, Shared::Campaign];
-    let shared = one_of(s, "shared", &Shared::NAMES, &levels)?.ok_or_else(|| {
-        s.missing("shared", "state what shares the error: \"sample\", \"run\", \"setup\" or \"campaign\"")
-    })?;
     Ok(BudgetEntry {
         quantity: quantity.to_owned(),
         standard: si,
         relative,
-        shared,
-        dof: positive_number(s, "dof")?,
-        name: s.text("name")?.map(str::to_owned),
-        kind: one_of(s, "kind", &ErrorKind::NAMES, &ErrorKind::ALL)?.unwrap_or(ErrorKind::B),
+        shared: values.need("shared", values.word("shared", &levels))?,
+        dof: values.number("dof"),
+        name: values.text("name").map(str::to_owned),
+        kind: values.need("kind", values.word("kind", &ErrorKind::ALL))?,
         dimension,
         place: s.get("quantity").map_or_else(|| s.place(), |v| s.source.place(v.span().start)),
     })
 }
 
-/// A plain number larger than zero.
-fn positive_number(s: &Section<'_>, key: &'static str) -> Result<Option<f64>, RecordError> {
-    let Some(x) = s.number(key)? else { return Ok(None) };
-    s.refuse(key, x <= 0.0, format!("is {x}; it must be larger than zero"))?;
-    Ok(Some(x))
-}
-
 fn plan_block(s: &Section<'_>, input: &Input) -> Result<PlanBlock, RecordError> {
     let is_computed = matches!(input, Input::Cases(_));
-    // A computation that is repeated says nothing new.
-    s.only(&["configurations", "speed", "angle", if is_computed { "pitch" } else { "repeats" }])?;
-    let speed = s.need("speed", "write \"0.1 m/s\", a list, or { start, stop, step }")?;
+    let values = Values::read(s, if is_computed { CASES } else { ROWS })?;
     let out = PlanBlock {
         configurations: configurations(s)?,
-        speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
-        angle_rad: s.get("angle").map_or(Ok(vec![0.0]), |v| series(s, "angle", v, Dimension::ONE))?,
-        pitch_rad: s.get("pitch").map_or(Ok(vec![0.0]), |v| series(s, "pitch", v, Dimension::ONE))?,
-        repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
+        speed_m_s: values.numbers("speed"),
+        angle_rad: values.numbers("angle"),
+        pitch_rad: if is_computed { values.numbers("pitch") } else { vec![0.0] },
+        repeats: if is_computed { 1 } else { values.need("repeats", values.count("repeats"))? },
     };
     at_most(&s.place(), &numbers(&out), most_of(input).1)?;
     Ok(out)
@@ -435,6 +425,7 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
             return Err(s.wrong(key, value, *why));
         }
     }
+    let values = Values::read(s, IDENTIFY)?;
     let (mut fixed, mut stated_units) = (IndexMap::new(), Vec::new());
     if let Some(table) = s.section("fixed")? {
         for (name, _, value) in table.entries() {
@@ -444,15 +435,12 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
             stated_units.extend(unit.map(|unit| StatedUnit { coefficient: name.to_owned(), model: None, unit, place }));
         }
     }
-    let angle_offset =
-        one_of(s, "angle_offset", &["ignore", "estimate"], &[AngleOffset::Ignore, AngleOffset::Estimate])?
-            .unwrap_or_default();
     let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
-    let out = Identify {
+    Ok(Identify {
         models,
         model_places,
         bounds: bounds(s)?,
-        exclude: s.texts("exclude")?,
+        exclude: values.texts("exclude").to_vec(),
         prior: s.sections("prior")?.iter().map(|s| prior(s, &mut stated_units)).collect::<Result<_, _>>()?,
         known: known(s, &fixed, &mut stated_units)?,
         stated_units,
@@ -460,17 +448,15 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
         // It follows when the records are read.
         known_covariance: Vec::new(),
         prior_covariance: Vec::new(),
-        covariance: one_of(s, "covariance", &COVARIANCES, &COVARIANCES)?.map(str::to_owned),
-        fitted_weights: one_of(s, "weights", &["std", "fitted"], &[false, true])?.unwrap_or_default(),
-        group_offset: one_of(s, "group_offset", &["ignore", "estimate"], &[false, true])?.unwrap_or_default(),
+        covariance: values.word("covariance", &COVARIANCES).map(str::to_owned),
+        fitted_weights: values.word("weights", &[false, true]).unwrap_or_default(),
+        group_offset: values.word("group_offset", &[false, true]).unwrap_or_default(),
         cross_validation: s.sections("cross_validation")?.iter().map(range_block).collect::<Result<_, _>>()?,
-        angle_offset,
-        dissipative: s.flag("dissipative")?.unwrap_or(false),
+        angle_offset: (values.word("angle_offset", &[AngleOffset::Ignore, AngleOffset::Estimate])).unwrap_or_default(),
+        dissipative: values.flag("dissipative"),
         user_models: s.sections("model")?.iter().map(user_model).collect::<Result<_, _>>()?,
-        errors_in_variables: s.flag("errors_in_variables")?.unwrap_or(false),
-    };
-    s.finish()?;
-    Ok(out)
+        errors_in_variables: values.flag("errors_in_variables"),
+    })
 }
 
 /// Known coefficients, each held once.
@@ -501,20 +487,20 @@ fn known(
 fn prior(s: &Section<'_>, stated_units: &mut Vec<StatedUnit>) -> Result<PriorSpec, RecordError> {
     const WRITTEN: [&str; 2] = ["value", "standard_uncertainty"];
     const OF_RECORD: [&str; 4] = ["select", "entry", "volume", "model_form"];
-    s.only(&[&["coefficient", "model", "record"], &WRITTEN[..], &OF_RECORD].concat())?;
-    let coefficient = s.need_text("coefficient", "name the coefficient")?.to_owned();
-    let model = s.text("model")?.map(str::to_owned);
-    if let Some(record) = s.text("record")? {
+    let values = Values::read(s, PRIOR)?;
+    let text = |key: &str| values.text(key).map(str::to_owned);
+    let (coefficient, model) = (values.need("coefficient", text("coefficient"))?, text("model"));
+    if let Some(record) = values.text("record") {
         for key in WRITTEN {
             s.refuse(key, true, "and record are given; a value is written, or taken from a record")?;
         }
         let entry = s.need_text("entry", "name the coefficient of the record, \"A66\" say")?;
         let record = PriorRecord {
             path: s.source.relative(record),
-            select: s.text("select")?.map(str::to_owned),
+            select: text("select"),
             entry: entry.to_owned(),
-            volume_m3: s.positive("volume", Dimension::VOLUME)?,
-            model_form: s.positive("model_form", Dimension::ONE)?.unwrap_or(0.0),
+            volume_m3: values.number("volume"),
+            model_form: values.number("model_form").unwrap_or(0.0),
             place: s.place(),
         };
         // Value and uncertainty follow when the record is read.
@@ -550,8 +536,8 @@ fn prior(s: &Section<'_>, stated_units: &mut Vec<StatedUnit>) -> Result<PriorSpe
 }
 
 fn range_block(s: &Section<'_>) -> Result<RangeBlock, RecordError> {
-    s.only(&["column", "low", "high"])?;
-    let column = s.need_text("column", "name the column of the range")?.to_owned();
+    let values = Values::read(s, RANGE_BLOCK)?;
+    let column = values.need("column", values.text("column"))?.to_owned();
     let end = |key: &'static str, open: f64| -> Result<f64, RecordError> {
         s.get(key).map_or(Ok(open), |v| match known_dimension(&column) {
             Some(dimension) => s.as_written(key, v, &column, dimension).map(|q| q.value_si),
@@ -578,23 +564,23 @@ fn user_model(s: &Section<'_>) -> Result<UserModel, RecordError> {
 }
 
 fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
-    s.only(&["seed", "record", "select", "model", "coefficients", "misalignment", "sensor"])?;
-    let select = s.text("select")?.map(str::to_owned);
-    let model = s.text("model")?;
-    let record = s.text("record")?.map(|r| Truth::Record { path: s.source.relative(r), select });
+    let values = Values::read(s, SIMULATE)?;
+    let select = values.text("select").map(str::to_owned);
+    let record = values.text("record").map(|r| Truth::Record { path: s.source.relative(r), select });
     let mut stated = Vec::new();
     let written = s
         .section("coefficients")?
         .map(|table| -> Result<Truth, RecordError> {
+            let model = values.text("model");
             let model =
                 model.ok_or_else(|| s.missing("model", "name the force model that the coefficients belong to"))?;
-            let mut values = IndexMap::new();
+            let mut truths = IndexMap::new();
             for (name, start, value) in table.entries() {
                 let (truth, unit) = coefficient_value(&table, name, value)?;
-                values.insert(name.to_owned(), truth);
+                truths.insert(name.to_owned(), truth);
                 stated.push(StatedTruth { coefficient: name.to_owned(), unit, place: s.source.place(start) });
             }
-            Ok(Truth::Coefficients { model: model.to_owned(), values })
+            Ok(Truth::Coefficients { model: model.to_owned(), values: truths })
         })
         .transpose()?;
     let ((Some(truth), None) | (None, Some(truth))) = (record, written) else {
@@ -602,19 +588,17 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
         return Err(s.missing("record", problem));
     };
     Ok(Simulate {
-        seed: s
-            .integer("seed")?
-            .ok_or_else(|| s.missing("seed", "write seed = 1, for example; the same seed gives the same table"))?,
+        seed: values.need("seed", values.count("seed"))? as u64,
         truth,
         stated,
         sensors: s.sections("sensor")?.iter().map(sensor).collect::<Result<_, _>>()?,
-        misalignment_rad: s.quantity("misalignment", Dimension::ONE)?,
+        misalignment_rad: values.number("misalignment"),
     })
 }
 
 fn sensor(s: &Section<'_>) -> Result<SensorSpec, RecordError> {
-    s.only(&["quantity", "noise", "resolution", "drift", "bias", "correlation"])?;
-    let quantity = s.need_text("quantity", "name the measured column: f_x, f_y, speed, angle")?.to_owned();
+    let values = Values::read(s, SENSOR)?;
+    let quantity = values.need("quantity", values.text("quantity"))?.to_owned();
     let dimension = known_dimension(&quantity);
     let part = |key: &'static str| -> Result<Option<f64>, RecordError> {
         s.get(key)
@@ -630,7 +614,7 @@ fn sensor(s: &Section<'_>) -> Result<SensorSpec, RecordError> {
         resolution: part("resolution")?,
         drift: part("drift")?,
         bias: part("bias")?,
-        correlation_s: s.positive("correlation", Dimension::TIME)?,
+        correlation_s: values.number("correlation"),
         quantity,
     })
 }

@@ -18,6 +18,7 @@
 //! # order, repeats, waits …
 //! ```
 
+pub mod keys;
 pub mod plan;
 mod section;
 

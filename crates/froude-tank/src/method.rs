@@ -1,6 +1,6 @@
 //! A method of the tank by its parts.
 
-use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_identify::method::{Declares, Export, Found, Method, MethodError, Need, Prospect};
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
 
@@ -23,6 +23,8 @@ pub struct TankMethod {
     pub simulate: fn(&Campaign, &Source) -> Result<Vec<Export>, MethodError>,
     /// See [`Method::plan`].
     pub plan: fn(&Campaign, &Source) -> Result<Prospect, MethodError>,
+    /// See [`Method::declares`].
+    pub declares: Declares,
     /// See [`Method::check`].
     pub check: fn(&Source) -> Result<(), RecordError>,
 }
@@ -64,6 +66,10 @@ impl Method for TankMethod {
 
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         (self.plan)(campaign, source).map(Some)
+    }
+
+    fn declares(&self) -> Option<Declares> {
+        Some(self.declares)
     }
 
     fn check(&self, source: &Source) -> Result<(), RecordError> {

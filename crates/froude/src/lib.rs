@@ -31,6 +31,7 @@ pub mod methods {
     pub use froude_tank as tank;
 }
 
+pub mod campaign_schema;
 pub mod carriage;
 pub mod demo;
 mod error;

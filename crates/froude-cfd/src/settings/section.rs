@@ -29,32 +29,26 @@ use std::path::PathBuf;
 
 use froude_records::RecordError;
 use froude_records::campaign::Source;
+use froude_records::declare::Values;
 use froude_records::given_option::GivenOption;
 use froude_records::section::Section;
-use froude_records::section_values::{at_most, count, one_of, series};
-use froude_records::units::Dimension;
+use froude_records::section_values::{at_most, one_of};
+
+use super::keys::{CUBES, FINE, KEYS, O_GRID, STUDY};
 
 /// The section of a source.
 pub(crate) const CFD: &str = "cfd";
 
-/// Most cells in one direction.
-const MOST_CELLS: u64 = 2000;
-/// Most layers at a wall.
-const MOST_LAYERS: u64 = 100;
 /// Most cells of a mesh.
 const MOST_CELLS_IN_ALL: usize = 20_000_000;
 /// Most cases of one study of a configuration: it repeats some settings of a plan, not all.
 const MOST_STUDIED: usize = 1_000;
-/// Most iterations of a case.
-const MOST_ITERATIONS: u64 = 100_000;
 /// Least and most grids of a study: three have an order, and the sixth has 64 times the cells of the third.
-const GRIDS: [u64; 2] = [3, 6];
+const GRIDS: [usize; 2] = [3, 6];
 /// Grids of a study that does not say.
 const USUAL_GRIDS: usize = 4;
 /// Least refinement of a fine mesh in any direction: below it the difference of two meshes is mostly rounding of their counts.
 const LEAST_REFINEMENT: f64 = 1.2;
-/// Of how many cases one is computed on the fine mesh, where the campaign does not say.
-const USUAL_EVERY: usize = 5;
 
 /// How the flow about a body is computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -225,48 +219,25 @@ pub fn declared(source: &Source) -> Result<Option<CfdSpec>, RecordError> {
 
 /// Reads `[source.cfd]`.
 fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
-    s.only(&[
-        "body",
-        "unit",
-        "forward",
-        "up",
-        "mesh",
-        "radius",
-        "domain",
-        "tank",
-        "model",
-        "laminar_below",
-        "both_below",
-        "iterations",
-        "window",
-        "cold",
-        "fine",
-        "study",
-    ])?;
+    let values = Values::read(s, KEYS)?;
+    let number = |key: &str| values.need(key, values.number(key));
+    let count = |key: &str| values.need(key, values.count(key));
     let usual = CfdSpec::default();
-    let number = |key: &'static str, low: f64, high: f64| -> Result<Option<f64>, RecordError> {
-        match (s.number(key)?, s.get(key)) {
-            (Some(x), Some(value)) if !(low..=high).contains(&x) => {
-                Err(s.wrong(key, value, format!("is {x}; expected a number from {low} to {high}")))
-            }
-            (x, _) => Ok(x),
-        }
-    };
     let (own_mesh, mesher) = mesh(s)?.unwrap_or((usual.mesh, usual.mesher));
     let out = CfdSpec {
-        body: s.text("body")?.map(|text| s.source.relative(text)),
+        body: values.text("body").map(|text| s.source.relative(text)),
         lies: lies(s)?,
         mesh: own_mesh,
         mesher,
-        radius: number("radius", 1.0, 1000.0)?,
-        is_half: one_of(s, "domain", &["half", "full"], &[true, false])?.unwrap_or(usual.is_half),
-        tank: s.section("tank")?.as_ref().map(tank).transpose()?,
-        is_laminar: one_of(s, "model", &["sst", "laminar"], &[false, true])?.unwrap_or(usual.is_laminar),
-        laminar_below: number("laminar_below", 0.0, 1e7)?.unwrap_or(usual.laminar_below),
-        both_below: number("both_below", 0.0, 1e7)?.unwrap_or(usual.both_below),
-        iterations: count(s, "iterations", MOST_ITERATIONS)?.unwrap_or(usual.iterations),
-        window: count(s, "window", MOST_ITERATIONS)?.unwrap_or(usual.window),
-        cold: number("cold", 0.0, 1.0)?.unwrap_or(usual.cold),
+        radius: values.number("radius"),
+        is_half: values.need("domain", values.word("domain", &[true, false]))?,
+        tank: values.table("tank").map(tank).transpose()?,
+        is_laminar: values.need("model", values.word("model", &[false, true]))?,
+        laminar_below: number("laminar_below")?,
+        both_below: number("both_below")?,
+        iterations: count("iterations")?,
+        window: count("window")?,
+        cold: number("cold")?,
         fine: s.section("fine")?.map(|f| fine(&f, own_mesh)).transpose()?,
         study: s.sections("study")?.iter().map(study).collect::<Result<_, _>>()?,
     };
@@ -296,8 +267,8 @@ fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
 }
 
 fn fine(s: &Section<'_>, own: MeshSpec) -> Result<FineSpec, RecordError> {
-    s.only(&["mesh", "every"])?;
-    let (finer, mesher) = mesh(s)?.ok_or_else(|| s.missing("mesh", "write fine = { mesh = \"medium\", every = 5 }"))?;
+    let values = Values::read(s, FINE)?;
+    let (finer, mesher) = values.need("mesh", mesh(s)?)?;
     if let Some(value) = s.get("mesh").filter(|_| matches!(mesher, Mesher::Cubes(_))) {
         let problem = "asks for cubes, which are not similar to another mesh; write \"medium\", \"fine\" or an O-grid";
         return Err(s.wrong("mesh", value, problem));
@@ -311,13 +282,11 @@ fn fine(s: &Section<'_>, own: MeshSpec) -> Result<FineSpec, RecordError> {
         );
         return Err(s.wrong("mesh", value, problem));
     }
-    Ok(FineSpec { mesh: finer, every: count(s, "every", 1000)?.unwrap_or(USUAL_EVERY) })
+    Ok(FineSpec { mesh: finer, every: values.need("every", values.count("every"))? })
 }
 
 fn study(s: &Section<'_>) -> Result<StudySpec, RecordError> {
-    s.only(&["configurations", "speed", "angle", "pitch", "grids", "radius"])?;
-    let speed = s.get("speed").ok_or_else(|| s.missing("speed", "name settings of the plan: speed = \"0.3 m/s\""))?;
-    let angles = |key| s.get(key).map_or(Ok(vec![0.0]), |v| series(s, key, v, Dimension::ONE));
+    let values = Values::read(s, STUDY)?;
     let radius: Vec<f64> = s.get("radius").map_or(Ok(Vec::new()), |value| {
         let all = value.get_ref().as_array().map_or_else(|| vec![value], |list| list.iter().collect());
         all.into_iter()
@@ -327,19 +296,19 @@ fn study(s: &Section<'_>) -> Result<StudySpec, RecordError> {
             })
             .collect()
     })?;
-    let grids = match (s.integer("grids")?, s.get("grids")) {
-        (Some(n), Some(value)) if !(GRIDS[0]..=GRIDS[1]).contains(&n) => {
-            return Err(s.wrong("grids", value, format!("is {n}; expected {} to {}", GRIDS[0], GRIDS[1])));
+    let grids = match values.count("grids") {
+        Some(n) if !(GRIDS[0]..=GRIDS[1]).contains(&n) => {
+            return Err(values.wrong("grids", format!("is {n}; expected {} to {}", GRIDS[0], GRIDS[1])));
         }
-        (Some(n), _) => n as usize,
-        (None, _) if radius.is_empty() => USUAL_GRIDS,
-        (None, _) => 0,
+        Some(n) => n,
+        None if radius.is_empty() => USUAL_GRIDS,
+        None => 0,
     };
     let out = StudySpec {
-        configurations: s.texts("configurations")?,
-        speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
-        angle_rad: angles("angle")?,
-        pitch_rad: angles("pitch")?,
+        configurations: values.texts("configurations").to_vec(),
+        speed_m_s: values.numbers("speed"),
+        angle_rad: values.numbers("angle"),
+        pitch_rad: values.numbers("pitch"),
         grids,
         radius,
     };
@@ -364,21 +333,14 @@ fn lies(s: &Section<'_>) -> Result<Vec<GivenOption>, RecordError> {
     Ok(out)
 }
 
-fn tank(s: &Section<'_>) -> Result<TankSpec, RecordError> {
-    s.only(&["width", "depth", "submergence"])?;
-    let length = |key: &'static str| {
-        let advice = "a tank needs width, depth, and the submergence of the body's origin";
-        s.positive(key, Dimension::LENGTH)?.ok_or_else(|| s.missing(key, advice))
-    };
+fn tank(values: &Values) -> Result<TankSpec, RecordError> {
+    let length = |key: &str| values.need(key, values.number(key));
     let out = TankSpec { width_m: length("width")?, depth_m: length("depth")?, submergence_m: length("submergence")? };
-    match s.get("submergence") {
-        Some(value) if out.submergence_m >= out.depth_m => Err(s.wrong(
-            "submergence",
-            value,
-            format!("is {} m, and the water is {} m deep", out.submergence_m, out.depth_m),
-        )),
-        _ => Ok(out),
+    if out.submergence_m >= out.depth_m {
+        let problem = format!("is {} m, and the water is {} m deep", out.submergence_m, out.depth_m);
+        return Err(values.wrong("submergence", problem));
     }
+    Ok(out)
 }
 
 fn mesh(s: &Section<'_>) -> Result<Option<(MeshSpec, Mesher)>, RecordError> {
@@ -392,52 +354,38 @@ fn mesh(s: &Section<'_>) -> Result<Option<(MeshSpec, Mesher)>, RecordError> {
     if m.get("surface_cell").is_some() {
         return Ok(Some((MeshSpec::COARSE, Mesher::Cubes(cubes(&m)?))));
     }
-    m.only(&["stations", "layers", "azimuth", "first_layer"])?;
-    let need = |key: &'static str| {
-        m.missing(key, "an O-grid needs stations, layers, azimuth and first_layer, cubes surface_cell and first_layer")
-    };
-    let first_layer_m = m.positive("first_layer", Dimension::LENGTH)?.ok_or_else(|| need("first_layer"))?;
-    let cells = |key: &'static str| -> Result<usize, RecordError> {
-        let n = count(&m, key, MOST_CELLS)?.ok_or_else(|| need(key))?;
-        match m.get(key) {
-            Some(value) if n < 4 => Err(m.wrong(key, value, format!("is {n}; expected 4 or more"))),
-            _ => Ok(n),
-        }
+    let values = Values::read(&m, O_GRID)?;
+    let first_layer_m = values.need("first_layer", values.number("first_layer"))?;
+    let cells = |key: &str| match values.need(key, values.count(key))? {
+        n if n < 4 => Err(values.wrong(key, format!("is {n}; expected 4 or more"))),
+        n => Ok(n),
     };
     let spec =
         MeshSpec { stations: cells("stations")?, layers: cells("layers")?, azimuth: cells("azimuth")?, first_layer_m };
     if spec.cells() > MOST_CELLS_IN_ALL {
         let problem = format!("and layers and azimuth make {} cells; at most {MOST_CELLS_IN_ALL}", spec.cells());
-        return Err(m.wrong("stations", m.get("stations").unwrap_or(value), problem));
+        return Err(values.wrong("stations", problem));
     }
     Ok(Some((spec, Mesher::OGrid)))
 }
 
 fn cubes(m: &Section<'_>) -> Result<CubeSpec, RecordError> {
-    m.only(&["surface_cell", "first_layer", "layers", "growth"])?;
-    let length = |key: &'static str| {
-        m.positive(key, Dimension::LENGTH)?.ok_or_else(|| m.missing(key, "cubes need surface_cell and first_layer"))
-    };
-    let growth = m.number("growth")?.unwrap_or(CubeSpec::GROWTH);
-    if let Some(value) = m.get("growth").filter(|_| !(1.0..=2.0).contains(&growth)) {
-        return Err(m.wrong("growth", value, format!("is {growth}; expected a number from 1 to 2")));
-    }
+    let values = Values::read(m, CUBES)?;
+    let number = |key: &str| values.need(key, values.number(key));
     let spec = CubeSpec {
-        surface_cell_m: length("surface_cell")?,
-        first_layer_m: length("first_layer")?,
-        layers: count(m, "layers", MOST_LAYERS)?,
-        growth,
+        surface_cell_m: number("surface_cell")?,
+        first_layer_m: number("first_layer")?,
+        layers: values.count("layers"),
+        growth: number("growth")?,
     };
-    match m.get("first_layer") {
-        Some(value) if spec.first_layer_m > spec.surface_cell_m => {
-            let problem = format!(
-                "is {} m, higher than the cubes at the surface, {} m; expected a part of them",
-                spec.first_layer_m, spec.surface_cell_m
-            );
-            Err(m.wrong("first_layer", value, problem))
-        }
-        _ => Ok(spec),
+    if spec.first_layer_m > spec.surface_cell_m {
+        let problem = format!(
+            "is {} m, higher than the cubes at the surface, {} m; expected a part of them",
+            spec.first_layer_m, spec.surface_cell_m
+        );
+        return Err(values.wrong("first_layer", problem));
     }
+    Ok(spec)
 }
 
 #[cfg(test)]

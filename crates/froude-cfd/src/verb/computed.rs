@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use crate::collect::Collected as Row;
+use crate::keys::KEYS;
 use crate::outcome::Loads;
 use crate::section::{CFD, declared};
 use crate::wall::std_of_wall;
 use froude_fit::budget::Kind;
-use froude_identify::method::{Found, Method, MethodError, Need};
+use froude_identify::method::{Declares, Found, Method, MethodError, Need};
 use froude_identify::reduce::{Observations, reduce_table};
 use froude_identify::source::{ReadFile, identify_observations};
 use froude_identify::uncertainty::SharedError;
@@ -44,6 +45,10 @@ impl Method for Computed {
 
     fn runs(&self) -> &'static str {
         ""
+    }
+
+    fn declares(&self) -> Option<Declares> {
+        Some(Declares { section: CFD, keys: KEYS, plan: &[] })
     }
 
     fn check(&self, source: &Source) -> Result<(), RecordError> {

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use froude::identify::declare::key_table;
 
-fn root() -> PathBuf {
+pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
@@ -14,7 +14,7 @@ fn read(path: &str) -> String {
 }
 
 /// The fenced blocks of a page in one language, as a reader copies them.
-fn blocks(page: &str, language: &str) -> Vec<String> {
+pub fn blocks(page: &str, language: &str) -> Vec<String> {
     let fence = format!("```{language}");
     let mut lines = page.lines();
     let mut out = Vec::new();
@@ -38,7 +38,9 @@ fn the_files_that_the_start_page_quotes_are_those_of_the_examples() {
 
 #[test]
 fn the_key_tables_of_the_book_are_those_that_the_methods_declare() {
-    use froude::methods::tank::{accelerated_tow, excited_response, oscillation, rotation, steady, sway, weight_tow};
+    use froude::methods::tank::{
+        accelerated_tow, decay, excited_response, oscillation, rotation, steady, sway, weight_tow,
+    };
     for (page, keys) in [
         ("forced-oscillation", oscillation::KEYS),
         ("forced-oscillation", oscillation::PLAN),
@@ -52,6 +54,8 @@ fn the_key_tables_of_the_book_are_those_that_the_methods_declare() {
         ("weight-tow", weight_tow::PLAN),
         ("accelerated-tow", accelerated_tow::section::KEYS),
         ("accelerated-tow", accelerated_tow::section::PLAN),
+        ("free-decay", decay::section::KEYS),
+        ("free-decay", decay::section::PLAN),
         ("excited-response", excited_response::section::KEYS),
         ("excited-response", excited_response::section::PLAN),
     ] {

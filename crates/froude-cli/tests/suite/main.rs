@@ -35,6 +35,7 @@ mod robot;
 mod rotation;
 mod same_bytes;
 mod same_drag;
+mod schema;
 mod sidecars;
 mod small_disk;
 mod steady;

@@ -2,28 +2,17 @@
 
 use froude_records::RecordError;
 use froude_records::campaign::Campaign;
-use froude_records::run::{AMPLIFIER, Axis, AxisConstants, Declared, TORQUE_CONSTANT, positive_declared};
-use froude_records::section::{Section, Value, found};
-use froude_records::section_values::{MOST_RUNS, at_most, count, one_of, series};
+use froude_records::declare::Values;
+use froude_records::run::{Axis, AxisConstants, Declared};
+use froude_records::section::{Section, found};
+use froude_records::section_values::MOST_RUNS;
 use froude_records::units::Dimension;
 
+use super::keys::{AXIS, CARRIAGE, RIG, SETTLING};
 use super::{
     AxisSpec, Calibration, CarriageCampaign, CarriagePlan, Directions, ForceSensorSpec, FrictionSweep, GainsSpec,
     LimitsSpec, Order, PulseTrain, RigKind, RigSpec, TwinTruth, WarmUp,
 };
-
-/// V s, of the derivative gain: radians are pure numbers.
-const VOLT_SECOND: Dimension = Dimension { m: 2, kg: 1, s: -2, k: 0, a: -1 };
-/// V/s, of the integral gain.
-const VOLT_PER_SECOND: Dimension = Dimension { m: 2, kg: 1, s: -4, k: 0, a: -1 };
-/// kg m².
-const INERTIA: Dimension = Dimension::new(2, 1, 0);
-/// N m s.
-const VISCOUS: Dimension = Dimension::new(2, 1, -1);
-/// N s²/m² = kg/m.
-const DRAG: Dimension = Dimension::new(-1, 1, 0);
-/// m/s³.
-const JERK: Dimension = Dimension::new(1, 0, -3);
 
 /// What a campaign drives, by its `[rig]` and `[carriage]`; `None` where it has neither.
 ///
@@ -44,9 +33,8 @@ pub fn declared(campaign: &Campaign) -> Result<Option<CarriageCampaign>, RecordE
 }
 
 fn rig(s: &Section<'_>) -> Result<RigSpec, RecordError> {
-    s.only(&["kind", "seed", "port", "baud", "log_rate", "y", "x", "force_sensor", "twin"])?;
-    let is_twin = one_of(s, "kind", &["twin", "serial"], &[true, false])?
-        .ok_or_else(|| s.missing("kind", "write kind = \"twin\" or kind = \"serial\""))?;
+    let values = Values::read(s, RIG)?;
+    let is_twin = values.need("kind", values.word("kind", &[true, false]))?;
     let (own, foreign): (_, &[&'static str]) =
         if is_twin { ("twin", &["port", "baud"]) } else { ("serial", &["seed", "twin"]) };
     for key in foreign {
@@ -55,29 +43,32 @@ fn rig(s: &Section<'_>) -> Result<RigSpec, RecordError> {
         }
     }
     let kind = if is_twin {
-        let seed = s
-            .integer("seed")?
-            .ok_or_else(|| s.missing("seed", "write seed = 1, for example; the same seed gives the same runs"))?;
+        let seed = values
+            .count("seed")
+            .ok_or_else(|| values.missing("seed", "write seed = 1, for example; the same seed gives the same runs"))?;
         let mut truths = Vec::new();
         if let Some(twin) = s.section("twin")? {
             twin_truths(&twin, "", &mut truths)?;
         }
-        RigKind::Twin { seed, truths }
+        RigKind::Twin { seed: seed as u64, truths }
     } else {
-        let port =
-            s.text("port")?.ok_or_else(|| s.missing("port", "write port = \"/dev/ttyUSB0\", for example"))?.to_owned();
-        let baud = count(s, "baud", 100_000_000)?.map_or(3_000_000, |baud| baud as u32);
+        let port = values.text("port");
+        let port = port.ok_or_else(|| values.missing("port", "write port = \"/dev/ttyUSB0\", for example"))?.to_owned();
+        let baud = values.count("baud").map_or(3_000_000, |baud| baud as u32);
         RigKind::Serial { port, baud }
     };
-    let y = s
-        .section("y")?
-        .ok_or_else(|| s.missing("y", "describe the long axis in [rig.y]: travel, limits, drive, controller"))?;
     Ok(RigSpec {
         kind,
-        log_rate_hz: s.positive("log_rate", Dimension::ANGULAR_SPEED)?.unwrap_or(4000.0),
-        y: axis(&y)?,
+        log_rate_hz: values.need("log_rate", values.number("log_rate"))?,
+        y: axis(&values.need("y", s.section("y")?)?)?,
         x: s.section("x")?.map(|s| axis(&s)).transpose()?,
-        force_sensor: s.section("force_sensor")?.map(|s| force_sensor(&s)).transpose()?,
+        force_sensor: values.table("force_sensor").map(|sensor| ForceSensorSpec {
+            range_n: sensor.number("range"),
+            resolution_n: sensor.number("resolution"),
+            noise_n: sensor.number("noise"),
+            drift_n: sensor.number("drift"),
+            gain_standard: sensor.number("gain_standard"),
+        }),
         place: s.place(),
     })
 }
@@ -96,94 +87,45 @@ fn twin_truths(s: &Section<'_>, prefix: &str, out: &mut Vec<TwinTruth>) -> Resul
 }
 
 fn axis(s: &Section<'_>) -> Result<AxisSpec, RecordError> {
-    s.only(&[
-        "travel",
-        "speed_limit",
-        "unhomed_speed_limit",
-        "acceleration_limit",
-        "command_limit",
-        "current_limit",
-        "continuous_current_limit",
-        "thermal_time",
-        "following_error_limit",
-        "torque_constant",
-        "amplifier",
-        "gear_ratio",
-        "sprocket_radius",
-        "counts_per_revolution",
-        "efficiency",
-        "efficiency_backward",
-        "inertia",
-        "viscous_friction",
-        "coulomb_friction",
-        "controller",
-    ])?;
-    let limit = |key, dimension, advice: &str| s.positive(key, dimension)?.ok_or_else(|| s.missing(key, advice));
-    let limits = LimitsSpec {
-        speed_m_s: limit("speed_limit", Dimension::SPEED, "write the largest speed, \"0.7 m/s\", for example")?,
-        unhomed_speed_m_s: s.positive("unhomed_speed_limit", Dimension::SPEED)?,
-        acceleration_m_s2: limit("acceleration_limit", Dimension::ACCELERATION, "write \"1 m/s^2\", for example")?,
-        command_v: limit(
-            "command_limit",
-            Dimension::VOLTAGE,
-            "write the amplifier's input range, \"10 V\", for example",
-        )?,
-        current_a: limit(
-            "current_limit",
-            Dimension::CURRENT,
-            "write the motor's peak current, \"3.5 A\", for example",
-        )?,
-        continuous_current_a: s.positive("continuous_current_limit", Dimension::CURRENT)?,
-        thermal_time_s: duration(s, "thermal_time")?,
-        following_error_m: s.positive("following_error_limit", Dimension::LENGTH)?,
-    };
-    let constant = |key, dimension, advice: &str| {
-        let constant = positive_declared(s, key, dimension)?;
-        constant.ok_or_else(|| {
-            s.missing(key, &format!("write {key} = {{ value = \"{advice}\", standard = \"1 %\" }}, for example"))
-        })
-    };
-    let constants = AxisConstants {
-        torque_constant_n_m_a: constant("torque_constant", TORQUE_CONSTANT, "26.7e-3 N m/A")?,
-        amplifier_a_v: constant("amplifier", AMPLIFIER, "0.352 A/V")?,
-        gear_ratio: constant("gear_ratio", Dimension::ONE, "34.97 1")?,
-        sprocket_radius_m: constant("sprocket_radius", Dimension::LENGTH, "55 mm")?,
-        counts_per_revolution: s.number("counts_per_revolution")?.ok_or_else(|| {
-            s.missing("counts_per_revolution", "write 4000 for 1000 lines decoded fourfold, per turn of the motor")
-        })?,
-        efficiency_forward: efficiency(s, "efficiency")?,
-        efficiency_backward: efficiency(s, "efficiency_backward")?,
-        is_calibrated: false,
-    };
-    if let (true, Some(value)) = (constants.counts_per_revolution == 0.0, s.get("counts_per_revolution")) {
-        return Err(s.wrong(
-            "counts_per_revolution",
-            value,
-            "is zero; write 4000 for 1000 lines decoded fourfold, -4000 where the encoder counts backwards",
-        ));
-    }
-    let controller = s.section("controller")?;
-    let controller = controller.ok_or_else(|| {
-        s.missing("controller", "write the gains: proportional, derivative and integral, in V and rad")
-    })?;
+    let values = Values::read(s, AXIS)?;
+    let number = |key: &str| values.need(key, values.number(key));
+    let constant = |key: &str| values.need(key, values.constant(key));
     Ok(AxisSpec {
         travel_m: travel(s)?,
-        limits,
-        constants,
-        inertia_kg_m2: positive_declared(s, "inertia", INERTIA)?,
-        viscous_n_m_s_rad: positive_declared(s, "viscous_friction", VISCOUS)?,
-        coulomb_n_m: positive_declared(s, "coulomb_friction", Dimension::MOMENT)?,
-        gains: gains(&controller)?,
+        limits: LimitsSpec {
+            speed_m_s: number("speed_limit")?,
+            unhomed_speed_m_s: values.number("unhomed_speed_limit"),
+            acceleration_m_s2: number("acceleration_limit")?,
+            command_v: number("command_limit")?,
+            current_a: number("current_limit")?,
+            continuous_current_a: values.number("continuous_current_limit"),
+            thermal_time_s: duration(&values, "thermal_time")?,
+            following_error_m: values.number("following_error_limit"),
+        },
+        constants: AxisConstants {
+            torque_constant_n_m_a: constant("torque_constant")?,
+            amplifier_a_v: constant("amplifier")?,
+            gear_ratio: constant("gear_ratio")?,
+            sprocket_radius_m: constant("sprocket_radius")?,
+            counts_per_revolution: number("counts_per_revolution")?,
+            efficiency_forward: efficiency(&values, "efficiency")?,
+            efficiency_backward: efficiency(&values, "efficiency_backward")?,
+            is_calibrated: false,
+        },
+        inertia_kg_m2: values.constant("inertia"),
+        viscous_n_m_s_rad: values.constant("viscous_friction"),
+        coulomb_n_m: values.constant("coulomb_friction"),
+        gains: gains(values.need("controller", values.table("controller"))?)?,
         place: s.place(),
     })
 }
 
-fn efficiency(s: &Section<'_>, key: &'static str) -> Result<Option<Declared>, RecordError> {
-    match (positive_declared(s, key, Dimension::ONE)?, s.get(key)) {
-        (Some(efficiency), Some(value)) if efficiency.value > 1.0 => {
-            Err(s.wrong(key, value, format!("is {}; an efficiency is at most 1, or 100 %", efficiency.value)))
+fn efficiency(values: &Values, key: &str) -> Result<Option<Declared>, RecordError> {
+    match values.constant(key) {
+        Some(efficiency) if efficiency.value > 1.0 => {
+            Err(values.wrong(key, format!("is {}; an efficiency is at most 1, or 100 %", efficiency.value)))
         }
-        (efficiency, _) => Ok(efficiency),
+        efficiency => Ok(efficiency),
     }
 }
 
@@ -213,108 +155,45 @@ fn travel(s: &Section<'_>) -> Result<[f64; 2], RecordError> {
     Ok([low, high])
 }
 
-fn gains(s: &Section<'_>) -> Result<GainsSpec, RecordError> {
-    s.only(&[
-        "proportional",
-        "derivative",
-        "integral",
-        "derivative_filter",
-        "shaped_mode",
-        "shaped_damping",
-        "robust_shaper",
-    ])?;
-    let gain = |key, dimension, example: &str| {
-        let value = s.get(key).ok_or_else(|| s.missing(key, &format!("write {key} = \"{example}\", for example")))?;
-        let gain = s.as_quantity_of(key, value, dimension)?;
-        if gain < 0.0 {
-            Err(s.wrong(key, value, format!("is {}; it must not be negative", found(value))))
-        } else {
-            Ok(gain)
-        }
-    };
+fn gains(values: &Values) -> Result<GainsSpec, RecordError> {
+    let gain = |key: &str| values.need(key, values.number(key));
     Ok(GainsSpec {
-        proportional_v_rad: gain("proportional", Dimension::VOLTAGE, "2 V/rad")?,
-        derivative_v_s_rad: gain("derivative", VOLT_SECOND, "0.2 V s/rad")?,
-        integral_v_rad_s: gain("integral", VOLT_PER_SECOND, "2 V/(rad s)")?,
-        derivative_filter_hz: s.positive("derivative_filter", Dimension::ANGULAR_SPEED)?,
-        shaped_mode_hz: s.positive("shaped_mode", Dimension::ANGULAR_SPEED)?,
-        shaped_damping: s.quantity("shaped_damping", Dimension::ONE)?,
-        is_robust_shaper: s.flag("robust_shaper")?.unwrap_or(false),
-    })
-}
-
-fn force_sensor(s: &Section<'_>) -> Result<ForceSensorSpec, RecordError> {
-    s.only(&["range", "resolution", "noise", "drift", "gain_standard"])?;
-    Ok(ForceSensorSpec {
-        range_n: s.positive("range", Dimension::FORCE)?,
-        resolution_n: s.positive("resolution", Dimension::FORCE)?,
-        noise_n: s.positive("noise", Dimension::FORCE)?,
-        drift_n: s.positive("drift", Dimension::FORCE)?,
-        gain_standard: fraction(s, "gain_standard", "the standard uncertainty of its gain")?,
+        proportional_v_rad: gain("proportional")?,
+        derivative_v_s_rad: gain("derivative")?,
+        integral_v_rad_s: gain("integral")?,
+        derivative_filter_hz: values.number("derivative_filter"),
+        shaped_mode_hz: values.number("shaped_mode"),
+        shaped_damping: values.number("shaped_damping"),
+        is_robust_shaper: values.flag("robust_shaper"),
     })
 }
 
 fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
-    s.only(&[
-        "axis",
-        "speeds",
-        "repeats",
-        "order",
-        "directions",
-        "distance",
-        "start",
-        "acceleration",
-        "jerk",
-        "settling",
-        "still",
-        "warm_up",
-        "friction_sweep",
-        "calibration",
-        "excitation",
-        "ballasted",
-        "stop_when",
-        "expected_drag",
-        "strut_drag",
-    ])?;
-    let need = |key, dimension, advice: &str| s.positive(key, dimension)?.ok_or_else(|| s.missing(key, advice));
+    let values = Values::read(s, CARRIAGE)?;
+    let number = |key: &str| values.need(key, values.number(key));
     let (settling_dry_s, settling_wet_s) = settling(s)?;
-    let speed_m_s = speeds(s, "speeds")?;
-    let repeats = count(s, "repeats", 10_000)?.unwrap_or(1);
-    at_most(&s.place(), &[("speeds", speed_m_s.len()), ("repeats", repeats)], MOST_RUNS)?;
+    let FrictionSweep { speed_m_s, repeats } = sweep(&values)?;
     Ok(CarriagePlan {
-        axis: one_of(s, "axis", &Axis::NAMES, &Axis::ALL)?.unwrap_or_default(),
+        axis: values.word("axis", &Axis::ALL).unwrap_or_default(),
         speed_m_s,
         repeats,
-        order: one_of(s, "order", &Order::NAMES, &Order::ALL)?.unwrap_or_default(),
-        directions: one_of(s, "directions", &Directions::NAMES, &Directions::ALL)?.unwrap_or_default(),
-        distance_m: need(
-            "distance",
-            Dimension::LENGTH,
-            "write the travel of a run with its ramps, \"2.2 m\", for example",
-        )?,
-        start_m: s.quantity("start", Dimension::LENGTH)?,
-        acceleration_m_s2: need(
-            "acceleration",
-            Dimension::ACCELERATION,
-            "write that of the ramps, \"0.6 m/s^2\", for example",
-        )?,
-        jerk_m_s3: s.positive("jerk", JERK)?,
+        order: values.word("order", &Order::ALL).unwrap_or_default(),
+        directions: values.word("directions", &Directions::ALL).unwrap_or_default(),
+        distance_m: number("distance")?,
+        start_m: values.number("start"),
+        acceleration_m_s2: number("acceleration")?,
+        jerk_m_s3: values.number("jerk"),
         settling_dry_s,
         settling_wet_s,
-        // None is the default, and may be written.
-        still_s: if s.quantity("still", Dimension::TIME)? == Some(0.0) {
-            0.0
-        } else {
-            duration(s, "still")?.unwrap_or(0.0)
-        },
-        warm_up: s.section("warm_up")?.map(|s| warm_up(&s)).transpose()?,
-        friction: s.section("friction_sweep")?.map(|s| friction_sweep(&s)).transpose()?,
-        calibration: s.section("calibration")?.map(|s| calibration(&s)).transpose()?,
-        excitation: s.section("excitation")?.map(|s| excitation(&s)).transpose()?,
-        is_ballasted: s.flag("ballasted")?.unwrap_or(false),
-        stop_at_relative_half_width: fraction(s, "stop_when", "the relative half-width of D_d's 95 % interval")?,
-        expected_drag_n_s2_m2: s.positive("expected_drag", DRAG)?,
-        strut_drag_n_s2_m2: positive_declared(s, "strut_drag", DRAG)?,
+        still_s: duration(&values, "still")?.unwrap_or(0.0),
+        warm_up: values.table("warm_up").map(warm_up).transpose()?,
+        friction: values.table("friction_sweep").map(sweep).transpose()?,
+        calibration: values.table("calibration").map(calibration).transpose()?,
+        excitation: values.table("excitation").map(excitation).transpose()?,
+        is_ballasted: values.flag("ballasted"),
+        stop_at_relative_half_width: values.number("stop_when"),
+        expected_drag_n_s2_m2: values.number("expected_drag"),
+        strut_drag_n_s2_m2: values.constant("strut_drag"),
         place: s.place(),
     })
 }
@@ -322,113 +201,67 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
 /// Longest time that a campaign names for anything: a day.
 const LONGEST_S: f64 = 86_400.0;
 
-/// A time larger than zero.
-fn duration(s: &Section<'_>, key: &'static str) -> Result<Option<f64>, RecordError> {
-    let time_s = s.positive(key, Dimension::TIME)?;
-    match (time_s, s.get(key)) {
-        (Some(time_s), Some(value)) if time_s > LONGEST_S => {
-            Err(s.wrong(key, value, format!("is {time_s:e} s; nothing of a campaign takes longer than {LONGEST_S} s")))
-        }
-        _ => Ok(time_s),
+/// A time that no campaign exceeds.
+fn duration(values: &Values, key: &str) -> Result<Option<f64>, RecordError> {
+    match values.number(key) {
+        Some(time_s) if time_s > LONGEST_S => Err(values.wrong(key, too_long(time_s))),
+        time_s => Ok(time_s),
     }
 }
 
-/// Speeds larger than zero, increasing, none twice.
-fn speeds(s: &Section<'_>, key: &'static str) -> Result<Vec<f64>, RecordError> {
-    let value = s.get(key).ok_or_else(|| {
-        s.missing(key, &format!("write {key} = [\"0.05 m/s\", \"0.15 m/s\"], or {{ start, stop, step }}"))
-    })?;
-    let mut speeds = positive_series(s, key, value, Dimension::SPEED)?;
-    speeds.sort_by(f64::total_cmp);
-    match speeds.array_windows().find(|[a, b]| a == b) {
-        Some([twice, _]) => Err(s.wrong(key, value, format!("names {twice} m/s twice; give the number in repeats"))),
-        None => Ok(speeds),
-    }
+fn too_long(time_s: f64) -> String {
+    format!("is {time_s:e} s; nothing of a campaign takes longer than {LONGEST_S} s")
 }
 
-fn positive_series<'a>(
-    s: &Section<'a>,
-    key: &'static str,
-    value: &'a Value<'a>,
-    dimension: Dimension,
-) -> Result<Vec<f64>, RecordError> {
-    let values = series(s, key, value, dimension)?;
-    match values.iter().find(|v| **v <= 0.0) {
-        Some(v) => Err(s.wrong(key, value, format!("has {v} in it; each must be larger than zero"))),
-        None => Ok(values),
+/// Speeds in their order, none twice, and how often each is run.
+fn sweep(values: &Values) -> Result<FrictionSweep, RecordError> {
+    let mut speed_m_s = values.numbers("speeds");
+    speed_m_s.sort_by(f64::total_cmp);
+    if let Some([twice, _]) = speed_m_s.array_windows().find(|[a, b]| a == b) {
+        return Err(values.wrong("speeds", format!("names {twice} m/s twice; give the number in repeats")));
     }
-}
-
-/// A part of something: `"1 %"` or a number between 0 and 1.
-fn fraction(s: &Section<'_>, key: &'static str, what: &str) -> Result<Option<f64>, RecordError> {
-    let Some(value) = s.get(key) else { return Ok(None) };
-    let fraction = s.as_quantity_of(key, value, Dimension::ONE)?;
-    if fraction > 0.0 && fraction < 1.0 {
-        return Ok(Some(fraction));
-    }
-    Err(s.wrong(key, value, format!("is {}; {what} lies between 0 and 100 %", found(value))))
+    values.at_most(MOST_RUNS)?;
+    Ok(FrictionSweep { speed_m_s, repeats: values.need("repeats", values.count("repeats"))? })
 }
 
 /// `"60 s"` for both, or `{ dry = "5 s", wet = "120 s" }`; none when not given.
 fn settling(s: &Section<'_>) -> Result<(f64, f64), RecordError> {
     let Some(value) = s.get("settling") else { return Ok((0.0, 0.0)) };
     if value.get_ref().as_table().is_none() {
-        let both = duration(s, "settling")?.unwrap_or(0.0);
+        let both = s.positive("settling", Dimension::TIME)?.unwrap_or(0.0);
+        s.refuse("settling", both > LONGEST_S, too_long(both))?;
         return Ok((both, both));
     }
-    let table = s.as_section("settling", value)?;
-    table.only(&["dry", "wet"])?;
-    let wait = |key| Ok::<_, RecordError>(duration(&table, key)?.unwrap_or(0.0));
+    let waits = Values::read(&s.as_section("settling", value)?, SETTLING)?;
+    let wait = |key| Ok::<_, RecordError>(duration(&waits, key)?.unwrap_or(0.0));
     Ok((wait("dry")?, wait("wet")?))
 }
 
-fn warm_up(s: &Section<'_>) -> Result<WarmUp, RecordError> {
-    s.only(&["duration", "speed"])?;
+fn warm_up(values: &Values) -> Result<WarmUp, RecordError> {
     Ok(WarmUp {
-        duration_s: duration(s, "duration")?
-            .ok_or_else(|| s.missing("duration", "write how long, \"10 min\", for example"))?,
-        speed_m_s: s
-            .positive("speed", Dimension::SPEED)?
-            .ok_or_else(|| s.missing("speed", "write how fast, \"0.3 m/s\", for example"))?,
+        duration_s: values.need("duration", duration(values, "duration")?)?,
+        speed_m_s: values.need("speed", values.number("speed"))?,
     })
 }
 
-fn friction_sweep(s: &Section<'_>) -> Result<FrictionSweep, RecordError> {
-    s.only(&["speeds", "repeats"])?;
-    let (speed_m_s, repeats) = (speeds(s, "speeds")?, count(s, "repeats", 10_000)?.unwrap_or(1));
-    at_most(&s.place(), &[("speeds", speed_m_s.len()), ("repeats", repeats)], MOST_RUNS)?;
-    Ok(FrictionSweep { speed_m_s, repeats })
-}
-
-fn calibration(s: &Section<'_>) -> Result<Calibration, RecordError> {
-    s.only(&["weights", "standard", "pulley_loss", "speed", "repeats", "start", "distance", "floor"])?;
-    let value = s.get("weights");
-    let value = value
-        .ok_or_else(|| s.missing("weights", "write the weights as forces, [\"9.81 N\", \"19.62 N\"], for example"))?;
+fn calibration(values: &Values) -> Result<Calibration, RecordError> {
     Ok(Calibration {
-        weights_n: positive_series(s, "weights", value, Dimension::FORCE)?,
-        weight_standard_n: s.positive("standard", Dimension::FORCE)?.unwrap_or(0.0),
-        pulley_loss: positive_declared(s, "pulley_loss", Dimension::ONE)?,
-        speed_m_s: s
-            .positive("speed", Dimension::SPEED)?
-            .ok_or_else(|| s.missing("speed", "write how fast they are lifted, \"0.1 m/s\", for example"))?,
-        repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
-        start_m: s.quantity("start", Dimension::LENGTH)?,
-        distance_m: s.positive("distance", Dimension::LENGTH)?,
-        floor_m: s.quantity("floor", Dimension::LENGTH)?,
+        weights_n: values.numbers("weights"),
+        weight_standard_n: values.number("standard").unwrap_or(0.0),
+        pulley_loss: values.constant("pulley_loss"),
+        speed_m_s: values.need("speed", values.number("speed"))?,
+        repeats: values.need("repeats", values.count("repeats"))?,
+        start_m: values.number("start"),
+        distance_m: values.number("distance"),
+        floor_m: values.number("floor"),
     })
 }
 
-fn excitation(s: &Section<'_>) -> Result<PulseTrain, RecordError> {
-    s.only(&["amplitude", "period", "duty", "duration"])?;
-    let need = |value: Option<f64>, key, example: &str| {
-        value.ok_or_else(|| s.missing(key, &format!("write {key} = \"{example}\", for example")))
-    };
+fn excitation(values: &Values) -> Result<PulseTrain, RecordError> {
     Ok(PulseTrain {
-        amplitude_v: need(s.positive("amplitude", Dimension::VOLTAGE)?, "amplitude", "2 V")?,
-        period_s: need(duration(s, "period")?, "period", "1 s")?,
-        duty: fraction(s, "duty", "the part of a period that is on")?
-            .ok_or_else(|| s.missing("duty", "write duty = \"60 %\", for example"))?,
-        duration_s: need(duration(s, "duration")?, "duration", "20 s")?,
+        amplitude_v: values.need("amplitude", values.number("amplitude"))?,
+        period_s: values.need("period", duration(values, "period")?)?,
+        duty: values.need("duty", values.number("duty"))?,
+        duration_s: values.need("duration", duration(values, "duration")?)?,
     })
 }

@@ -1,7 +1,7 @@
 //! Accelerated tows as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
 use crate::names::ACCELERATED_TOW;
-use froude_identify::method::{Found, MethodError, Need};
+use froude_identify::method::{Declares, Found, MethodError, Need};
 use froude_identify::reduce::Observations;
 use froude_identify::regression::Scatter;
 use froude_identify::seam::Choice;
@@ -47,6 +47,7 @@ pub const ACCELERATED: TankMethod = TankMethod {
     identify: |campaign, source, _, progress| identify(campaign, source, progress),
     simulate: simulate::files,
     plan: plan::prospect,
+    declares: Declares { section: ACCELERATED_TOW, keys: section::KEYS, plan: section::PLAN },
     check: |source| check(source, ACCELERATED_TOW, section::accelerated_tow, section::plan),
 };
 

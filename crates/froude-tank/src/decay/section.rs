@@ -19,15 +19,15 @@
 use std::f64::consts::PI;
 
 use crate::decay::axis::Motion;
+use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
 use froude_records::RecordError;
 use froude_records::campaign::Source;
-use froude_records::run::positive_declared;
-use froude_records::section::{Section, found};
-use froude_records::section_values::{Asks, MOST_RUNS, at_most, count, one_of, series};
+use froude_records::section::Section;
+use froude_records::section_values::{Asks, MOST_RUNS};
 use froude_records::units::Dimension;
 
 use super::run::{DecaySetup, DecayWindow, Restoring};
-use crate::declared::{INERTIA, STIFFNESS, runs_of, uncertain};
+use crate::declared::{INERTIA, RATE, REPEATS, STIFFNESS, runs_of, uncertain};
 
 /// Most samples of a planned release.
 const MOST_SAMPLES: f64 = 1e7;
@@ -51,67 +51,123 @@ pub struct DecayPlan {
     pub rate_hz: f64,
 }
 
+const fn by_axis(along: Kind, about: Kind) -> [Kind; Motion::ALL.len()] {
+    [along, along, along, about, about, about]
+}
+
+const fn optional(name: &'static str, kind: Kind, instead: &'static str, doc: &'static str) -> Key {
+    Key::new(name, kind, IfMissing::Nothing(instead), doc)
+}
+
+/// The keys of `[source.decay]`.
+pub const KEYS: &[Key] = &[
+    Key::new(
+        "axis",
+        Kind::Word(&Motion::NAMES),
+        IfMissing::Required("state its motion: axis = \"heave\", for example"),
+        "the motion: `surge`, `sway`, `heave`, `roll`, `pitch` or `yaw`",
+    ),
+    Key::new(
+        "inertia",
+        Kind::By("axis", &by_axis(Kind::Constant(Dimension::MASS), Kind::Constant(INERTIA))),
+        IfMissing::Required(
+            "write inertia = { value = \"12 kg\", standard = \"0.5 %\" }; of a rotation \"0.4 kg m^2\", for example",
+        ),
+        "mass, or moment of inertia about the axis, of all that moves, dry; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
+    )
+    .within(Range::Positive),
+    optional(
+        "stiffness",
+        Kind::By("axis", &by_axis(Kind::Constant(STIFFNESS), Kind::Constant(Dimension::MOMENT))),
+        "required without `buoyancy`",
+        "all that restores the position: springs, and ρ g times the waterplane area",
+    )
+    .within(Range::Positive),
+    optional(
+        "buoyancy",
+        Kind::Constant(Dimension::FORCE),
+        "`stiffness` restores",
+        "of a rotation: buoyancy less weight, at `radius` from the axis",
+    )
+    .within(Range::Positive),
+    optional("radius", Kind::Constant(Dimension::LENGTH), "required with `buoyancy`", "where the buoyancy acts")
+        .within(Range::Positive),
+    optional(
+        "noise",
+        Kind::By("axis", &by_axis(Kind::Quantity(Dimension::LENGTH), Kind::Quantity(Dimension::ANGLE))),
+        "from the logs",
+        "standard deviation of a sample of the position, by which peaks are counted",
+    )
+    .within(Range::Positive),
+    optional(
+        "free_from",
+        Kind::Quantity(Dimension::TIME),
+        "the first passage through rest",
+        "when the body is free, on the clock of the logs",
+    ),
+    Key::new("skip_half_cycles", Kind::Whole, IfMissing::Is("0"), "left out after that"),
+];
+
+const fn lasting(name: &'static str, default: &'static str, doc: &'static str) -> Key {
+    Key::new(name, Kind::Quantity(Dimension::TIME), IfMissing::Is(default), doc).within(Range::Positive)
+}
+
+const AWAY: Range = Range::NotZero("a release is away from rest");
+
+/// The keys of a block of a plan.
+pub const PLAN: &[Key] = &[
+    optional("configuration", Kind::Text, "not named", "what is mounted"),
+    optional("angle", Kind::Axis(Dimension::ANGLE), "`displacement`", "what it is released from, about an axis")
+        .within(AWAY),
+    optional("displacement", Kind::Axis(Dimension::LENGTH), "`angle`", "what it is released from, along an axis")
+        .within(AWAY),
+    REPEATS,
+    lasting("held", "1 s", "time held before the release"),
+    lasting("duration", "20 s", "time free after it"),
+    RATE,
+];
+
 /// Reads `[source.decay]`.
 pub(super) fn decay(s: &Section<'_>) -> Result<DecaySetup, RecordError> {
-    s.only(&["axis", "inertia", "stiffness", "buoyancy", "radius", "noise", "free_from", "skip_half_cycles"])?;
-    let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
-        .ok_or_else(|| s.missing("axis", "state its motion: axis = \"heave\", for example"))?;
-    let (inertia, like, position) = if axis.is_rotation() {
-        (INERTIA, "0.4 kg m^2", Dimension::ANGLE)
-    } else {
-        (Dimension::MASS, "12 kg", Dimension::LENGTH)
-    };
-    let noise = s.positive("noise", position)?;
-    let missing = || s.missing("inertia", &format!("write inertia = {{ value = \"{like}\", standard = \"0.5 %\" }}"));
+    let values = Values::read(s, KEYS)?;
+    let axis = values.need("axis", values.word("axis", &Motion::ALL))?;
     Ok(DecaySetup {
         axis,
-        inertia: uncertain(positive_declared(s, "inertia", inertia)?.ok_or_else(missing)?),
-        restoring: restoring(s, axis)?,
+        inertia: values.need("inertia", values.constant("inertia")).map(uncertain)?,
+        restoring: restoring(&values, axis)?,
         window: DecayWindow {
-            noise,
-            free_from_s: s.quantity("free_from", Dimension::TIME)?,
-            skip_half_cycles: s.integer("skip_half_cycles")?.map_or(0, |n| n as usize),
+            noise: values.number("noise"),
+            free_from_s: values.number("free_from"),
+            skip_half_cycles: values.need("skip_half_cycles", values.count("skip_half_cycles"))?,
             ..DecayWindow::default()
         },
     })
 }
 
-fn restoring(s: &Section<'_>, axis: Motion) -> Result<Restoring, RecordError> {
-    let (dimension, like) = if axis.is_rotation() { (Dimension::MOMENT, "12 N m") } else { (STIFFNESS, "180 N/m") };
-    let instead =
-        if axis.is_rotation() { "; or, of a buoyancy that acts at a radius, buoyancy and radius" } else { "" };
-    let need = |key: &'static str, dimension, like: &str, more: &str| {
-        let missing = || s.missing(key, &format!("write {key} = {{ value = \"{like}\", standard = \"0.5 %\" }}{more}"));
-        positive_declared(s, key, dimension)?.map(uncertain).ok_or_else(missing)
+fn restoring(values: &Values, axis: Motion) -> Result<Restoring, RecordError> {
+    let constant = |key: &str| values.constant(key).map(uncertain);
+    let missing = |key: &str, like: &str, instead: &str| {
+        values.missing(key, &format!("write {key} = {{ value = \"{like}\", standard = \"0.5 %\" }}{instead}"))
     };
-    let Some(buoyancy) = s.get("buoyancy") else {
-        if let Some(radius) = s.get("radius") {
-            return Err(s.wrong(
-                "radius",
-                radius,
-                "is that of a buoyancy, which is not declared: write buoyancy = \"3.0 N\"",
-            ));
+    let Some(force_n) = constant("buoyancy") else {
+        if constant("radius").is_some() {
+            let problem = "is that of a buoyancy, which is not declared: write buoyancy = \"3.0 N\"";
+            return Err(values.wrong("radius", problem));
         }
-        return Ok(Restoring::Spring(need("stiffness", dimension, like, instead)?));
+        let of_rotation = ["12 N m", "; or, of a buoyancy that acts at a radius, buoyancy and radius"];
+        let [like, instead] = if axis.is_rotation() { of_rotation } else { ["180 N/m", ""] };
+        let stiffness = constant("stiffness").ok_or_else(|| missing("stiffness", like, instead))?;
+        return Ok(Restoring::Spring(stiffness));
     };
     if !axis.is_rotation() {
-        return Err(s.wrong(
-            "buoyancy",
-            buoyancy,
-            "at a radius drives a rotation back, and the axis is none: declare a stiffness",
-        ));
+        let problem = "at a radius drives a rotation back, and the axis is none: declare a stiffness";
+        return Err(values.wrong("buoyancy", problem));
     }
-    if let Some(stiffness) = s.get("stiffness") {
-        return Err(s.wrong(
-            "stiffness",
-            stiffness,
-            "stands beside buoyancy: what drives the body back is one or the other",
-        ));
+    if constant("stiffness").is_some() {
+        let problem = "stands beside buoyancy: what drives the body back is one or the other";
+        return Err(values.wrong("stiffness", problem));
     }
-    Ok(Restoring::Buoyancy {
-        force_n: need("buoyancy", Dimension::FORCE, "3.0 N", "")?,
-        radius_m: need("radius", Dimension::LENGTH, "476 mm", "")?,
-    })
+    Ok(Restoring::Buoyancy { force_n, radius_m: constant("radius").ok_or_else(|| missing("radius", "476 mm", ""))? })
 }
 
 /// The releases that a source plans.
@@ -130,46 +186,42 @@ pub fn plan(source: &Source) -> Result<Vec<DecayPlan>, RecordError> {
 
 /// Reads a `[[source.plan]]` of releases.
 fn block(s: &Section<'_>) -> Result<DecayPlan, RecordError> {
-    s.only(&["configuration", "angle", "displacement", "repeats", "held", "duration", "rate"])?;
-    let (key, value, dimension) = match (s.get("angle"), s.get("displacement")) {
-        (Some(value), None) => ("angle", value, Dimension::ANGLE),
-        (None, Some(value)) => ("displacement", value, Dimension::LENGTH),
-        (Some(_), Some(value)) => {
-            return Err(s.wrong("displacement", value, "stands beside angle: a release is from one or the other"));
+    let values = Values::read(s, PLAN)?;
+    let number = |key: &str| values.need(key, values.number(key));
+    let (angle, displacement) = (values.numbers("angle"), values.numbers("displacement"));
+    let is_angle = !angle.is_empty();
+    match (is_angle, displacement.is_empty()) {
+        (true, false) => {
+            let problem = "stands beside angle: a release is from one or the other";
+            return Err(values.wrong("displacement", problem));
         }
-        (None, None) => {
-            return Err(s.missing(
-                "angle",
-                "write what it is released from: angle = \"30 deg\" about an axis, displacement = \"0.1 m\" along one",
-            ));
+        (false, true) => {
+            let write =
+                "write what it is released from: angle = \"30 deg\" about an axis, displacement = \"0.1 m\" along one";
+            return Err(values.missing("angle", write));
         }
-    };
-    let out = DecayPlan {
-        configuration: s.text("configuration")?.unwrap_or_default().to_owned(),
-        displacement: series(s, key, value, dimension)?,
-        is_angle: key == "angle",
-        repeats: count(s, "repeats", MOST_RUNS as u64)?.unwrap_or(1),
-        held_s: s.positive("held", Dimension::TIME)?.unwrap_or(1.0),
-        free_s: s.positive("duration", Dimension::TIME)?.unwrap_or(20.0),
-        rate_hz: s.positive("rate", Dimension::ANGULAR_SPEED)?.unwrap_or(100.0),
-    };
-    let is_turned_over = |x: &f64| key == "angle" && x.abs() >= PI;
-    if out.displacement.iter().any(|x| *x == 0.0 || is_turned_over(x)) {
-        return Err(s.wrong(
-            key,
-            value,
-            format!("is {}; a release is away from rest, by less than half a turn", found(value)),
-        ));
+        _ => {}
     }
+    if let Some(turned) = angle.iter().find(|x| x.abs() >= PI) {
+        let problem = format!("is {} deg; a release is away from rest by less than half a turn", turned.to_degrees());
+        return Err(values.wrong("angle", problem));
+    }
+    let out = DecayPlan {
+        configuration: values.text("configuration").unwrap_or_default().to_owned(),
+        displacement: if is_angle { angle } else { displacement },
+        is_angle,
+        repeats: values.need("repeats", values.count("repeats"))?,
+        held_s: number("held")?,
+        free_s: number("duration")?,
+        rate_hz: number("rate")?,
+    };
     let samples = (out.held_s + out.free_s) * out.rate_hz;
     if samples > MOST_SAMPLES {
-        let at = s.get("duration").or_else(|| s.get("rate")).unwrap_or(value);
-        return Err(s.wrong(
-            "duration",
-            at,
-            format!("makes {samples:.0} samples of a release; {MOST_SAMPLES:.0} are the most"),
-        ));
+        let key = if s.get("duration").is_none() && s.get("rate").is_some() { "rate" } else { "duration" };
+        return Err(
+            values.wrong(key, format!("makes {samples:.0} samples of a release; {MOST_SAMPLES:.0} are the most"))
+        );
     }
-    at_most(&s.place(), &[(key, out.displacement.len()), ("repeats", out.repeats)], MOST_RUNS)?;
+    values.at_most(MOST_RUNS)?;
     Ok(out)
 }

@@ -16,7 +16,7 @@ use crate::logs::{self, Logs};
 use crate::long_logs::Reading;
 use crate::method::TankMethod;
 use crate::names::FREE_DECAY;
-use froude_identify::method::{Found, MethodError, Need};
+use froude_identify::method::{Declares, Found, MethodError, Need};
 use froude_identify::runs::{recorded_in, refuse_others};
 use froude_records::block::{Section, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
@@ -51,6 +51,7 @@ pub const DECAY: TankMethod = TankMethod {
         let (setup, blocks) = planning(source)?;
         plan::prospect(campaign, source, &blocks, &setup)
     },
+    declares: Declares { section: "decay", keys: section::KEYS, plan: section::PLAN },
     check: |source| check(source, "decay", section::decay, section::plan),
 };
 

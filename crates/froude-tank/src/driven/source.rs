@@ -2,7 +2,7 @@
 
 use froude_fit::budget::Uncertain;
 use froude_identify::answer::Made;
-use froude_identify::method::{Found, MethodError, Need};
+use froude_identify::method::{Declares, Found, MethodError, Need};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::significant;
@@ -45,6 +45,7 @@ pub const fn method<M: MotorDriven>(
         identify: |campaign, source, _, progress| identified::<M>(campaign, source, LENGTHS, progress),
         simulate: twin::files::<M>,
         plan: plan::prospect::<M>,
+        declares: Declares { section: name[0], keys: M::SPEC.keys, plan: M::SPEC.plan },
         check: check::<M>,
     }
 }

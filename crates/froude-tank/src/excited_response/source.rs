@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::names::EXCITED_RESPONSE;
 use froude_identify::answer::Made;
-use froude_identify::method::{Found, MethodError, Need};
+use froude_identify::method::{Declares, Found, MethodError, Need};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::run::{Channel, Role};
 use froude_records::units::Dimension;
@@ -31,6 +31,7 @@ pub const EXCITED: TankMethod = TankMethod {
     identify: |campaign, source, _, progress| identify(campaign, source, progress),
     simulate: simulate::files,
     plan: plan::prospect,
+    declares: Declares { section: EXCITED_RESPONSE, keys: section::KEYS, plan: section::PLAN },
     check: |source| check(source, EXCITED_RESPONSE, section::excited, section::plan),
 };
 

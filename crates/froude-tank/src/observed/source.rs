@@ -1,7 +1,7 @@
 //! A method of single observations as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
 use froude_identify::declare::Values;
-use froude_identify::method::{Found, MethodError, Need};
+use froude_identify::method::{Declares, Found, MethodError, Need};
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
@@ -45,6 +45,7 @@ pub const fn method<M: Observed>(
         identify: |campaign, source, _, progress| identified::<M>(campaign, source, progress),
         simulate: twin::files::<M>,
         plan: plan::prospect::<M>,
+        declares: Declares { section: name[0], keys: M::SPEC.keys, plan: M::SPEC.plan },
         check: check::<M>,
     }
 }

@@ -1,8 +1,8 @@
-//! The keys of a method's section of a campaign, declared once. Both the parser, with positions and spelling suggestions, and the book's key
-//! table come from them.
+//! The keys of a section of a campaign, declared once. The parser, with positions and spelling suggestions, the book's key table and the
+//! JSON Schema for editors come from them.
 //!
 //! ```
-//! use froude_identify::declare::{IfMissing, Key, Kind, Range, key_table};
+//! use froude_records::declare::{IfMissing, Key, Kind, Range, key_table};
 //! use froude_records::units::Dimension;
 //!
 //! const KEYS: &[Key] = &[Key::new(
@@ -18,8 +18,10 @@
 mod by_configuration;
 mod frequency;
 mod key;
+mod schema;
 mod values;
 
 pub use crate::declare::by_configuration::ByConfiguration;
-pub use crate::declare::key::{IfMissing, Key, Kind, Range, key_table};
+pub use crate::declare::key::{IfMissing, Key, Kind, Range, key_table, names};
+pub use crate::declare::schema::object_schema;
 pub use crate::declare::values::Values;

@@ -1,9 +1,9 @@
 //! One constant for all configurations, or one for each.
 
-use froude_records::RecordError;
-use froude_records::run::{Declared, declared_value};
-use froude_records::section::{Section, Value};
-use froude_records::units::Dimension;
+use crate::error::RecordError;
+use crate::run::{Declared, declared_value};
+use crate::section::{Section, Value};
+use crate::units::Dimension;
 use indexmap::IndexMap;
 
 /// One constant for all configurations, or one for each.

@@ -1,6 +1,6 @@
 //! The keys of a section.
 
-use froude_records::units::Dimension;
+use crate::units::Dimension;
 
 /// A key of a section.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +24,7 @@ impl Key {
         Self { name, kind, range: Range::Any, default, doc }
     }
 
-    /// The same with a range, which a quantity, a constant and an axis may have.
+    /// The same with a range, which a number, a quantity, a constant and an axis may have.
     ///
     /// # Panics
     ///
@@ -33,7 +33,13 @@ impl Key {
     pub const fn within(self, range: Range) -> Self {
         let has_range = matches!(
             self.kind,
-            Kind::Quantity(_) | Kind::Constant(_) | Kind::PerConfiguration(_) | Kind::Axis(_) | Kind::Frequency
+            Kind::Quantity(_)
+                | Kind::Constant(_)
+                | Kind::PerConfiguration(_)
+                | Kind::Axis(_)
+                | Kind::Frequency
+                | Kind::Number
+                | Kind::By(..)
         );
         assert!(has_range, "a key of this kind has no range");
         Self { range, ..self }
@@ -61,10 +67,41 @@ pub enum Kind {
     Number,
     /// One of these words.
     Word(&'static [&'static str]),
+    /// A text.
+    Text,
     /// A text or a list of texts; another factor of a run matrix.
     Texts,
+    /// True or false.
+    Flag,
+    /// By the word of an earlier key of the section: a kind for each.
+    By(&'static str, &'static [Kind]),
     /// A table of its own.
     Table(&'static [Key]),
+    /// A quantity of a dimension that follows from another key. This kind and those below are read by the reader of the section.
+    AnyQuantity,
+    /// A quantity, or a plain number in SI.
+    Coefficient,
+    /// A table with these keys, and others of one kind whose names the writer chooses.
+    Named(&'static [Key], &'static Kind),
+    /// A list; of tables it is written `[[name]]`.
+    List(&'static Kind),
+    /// One of these.
+    Either(&'static [Kind]),
+    /// Anything.
+    Any,
+}
+
+impl Kind {
+    /// Whether a value is written without quotes.
+    pub(super) const fn is_bare(self) -> bool {
+        matches!(self, Self::Count(_) | Self::Whole | Self::Number | Self::Flag | Self::Table(_))
+    }
+}
+
+/// The names of keys.
+#[must_use]
+pub fn names(keys: &[Key]) -> Vec<&'static str> {
+    keys.iter().map(|key| key.name).collect()
 }
 
 /// Allowed values of a quantity; for an axis, of each number. The text gives the reason.
@@ -76,8 +113,12 @@ pub enum Range {
     Positive,
     /// Zero or larger.
     NotNegative(&'static str),
+    /// From one number to another.
+    Between(f64, f64),
     /// All but zero.
     NotZero(&'static str),
+    /// A part of a whole: between zero and one. The text says which.
+    Part(&'static str),
 }
 
 /// What applies if a key is missing.

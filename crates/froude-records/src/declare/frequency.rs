@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use froude_records::RecordError;
-use froude_records::section::{Section, Value};
-use froude_records::section_values::series;
-use froude_records::units::Dimension;
+use crate::error::RecordError;
+use crate::section::{Section, Value};
+use crate::section_values::series;
+use crate::units::Dimension;
 
 /// Frequencies as angular ones: a number of Hz counts periods, any other unit of the kind counts radians.
 pub(super) fn angular<'a>(s: &Section<'a>, key: &'static str, value: &'a Value<'a>) -> Result<Vec<f64>, RecordError> {

@@ -1,14 +1,14 @@
 //! The values of a section by its declared keys.
 
-use froude_records::run::{Declared, declared_value};
-use froude_records::section::{Section, Source, Value, found, parse};
-use froude_records::section_values::{at_most, count, one_of, series};
-use froude_records::{Place, RecordError};
+use crate::error::{Place, RecordError};
+use crate::run::{Declared, declared_value};
+use crate::section::{Section, Source, Value, found, parse};
+use crate::section_values::{at_most, count, one_of, series};
 use indexmap::IndexMap;
 
 use crate::declare::by_configuration::ByConfiguration;
 use crate::declare::frequency::angular;
-use crate::declare::key::{IfMissing, Key, Kind, Range};
+use crate::declare::key::{IfMissing, Key, Kind, Range, names};
 
 /// The values of a section, in SI, each with its place.
 #[derive(Debug, Clone)]
@@ -29,8 +29,12 @@ enum Parsed {
     Numbers(Vec<f64>),
     Count(usize),
     Word(usize),
+    Text(String),
     Texts(Vec<String>),
+    Flag(bool),
     Table(Values),
+    /// What the reader of the section reads.
+    Unread,
 }
 
 impl Values {
@@ -40,13 +44,14 @@ impl Values {
     ///
     /// An unknown key with the nearest known one, a key that is missing, a value of another kind or outside of its range, with its place.
     pub fn read(s: &Section<'_>, keys: &'static [Key]) -> Result<Self, RecordError> {
-        s.only(&keys.iter().map(|key| key.name).collect::<Vec<_>>())?;
+        s.only(&names(keys))?;
         let mut out = Self { label: s.label(), place: s.place(), all: IndexMap::new(), places: IndexMap::new() };
         for key in keys {
             // A table of configurations that names none says nothing.
             let is_empty =
                 |value: &&Value<'_>| value.get_ref().as_table().is_some_and(|table| table.iter().next().is_none());
             let is_missing = |value: &&Value<'_>| matches!(key.kind, Kind::PerConfiguration(_)) && is_empty(value);
+            let key = &Key { kind: out.chosen(key.kind), ..*key };
             let parsed = match s.get(key.name).filter(|value| !is_missing(value)) {
                 Some(value) => {
                     out.places.insert(key.name, s.source.place(value.span().start));
@@ -68,6 +73,14 @@ impl Values {
         let text = Source { path: std::path::Path::new(""), text: "" };
         let document = parse(text)?;
         Self::read(&Section::new(text, section, document.get_ref(), 0), keys)
+    }
+
+    /// The kind that an earlier key chooses.
+    fn chosen(&self, kind: Kind) -> Kind {
+        match kind {
+            Kind::By(by, kinds) => self.word(by, kinds).unwrap_or(Kind::Any),
+            other => other,
+        }
     }
 
     /// The value of a declared key, as what its kind makes it; another key or kind is a mistake in the program.
@@ -115,6 +128,18 @@ impl Values {
     #[must_use]
     pub fn word<T: Copy>(&self, key: &str, meant: &[T]) -> Option<T> {
         self.of(key, |parsed| if let Parsed::Word(i) = parsed { meant.get(*i).copied() } else { None })
+    }
+
+    /// A text.
+    #[must_use]
+    pub fn text(&self, key: &str) -> Option<&str> {
+        self.of(key, |parsed| if let Parsed::Text(x) = parsed { Some(x.as_str()) } else { None })
+    }
+
+    /// True or false; false if not declared.
+    #[must_use]
+    pub fn flag(&self, key: &str) -> bool {
+        self.of(key, |parsed| if let Parsed::Flag(x) = parsed { Some(*x) } else { None }).unwrap_or_default()
     }
 
     /// Texts; empty if not declared.
@@ -178,10 +203,8 @@ fn missing(s: &Section<'_>, key: &Key) -> Result<Option<Parsed>, RecordError> {
         IfMissing::Nothing(_) => return Ok(None),
         IfMissing::Is(text) => text,
     };
-    let text = match key.kind {
-        Kind::Count(_) | Kind::Whole | Kind::Number | Kind::Table(_) => format!("{} = {default}", key.name),
-        _ => format!("{} = {default:?}", key.name),
-    };
+    let text =
+        if key.kind.is_bare() { format!("{} = {default}", key.name) } else { format!("{} = {default:?}", key.name) };
     let source = Source { path: s.source.path, text: &text };
     let document = parse(source)?;
     let written = Section::new(source, &s.name, document.get_ref(), 0);
@@ -191,11 +214,18 @@ fn missing(s: &Section<'_>, key: &Key) -> Result<Option<Parsed>, RecordError> {
 fn parsed<'a>(s: &Section<'a>, key: &Key, value: &'a Value<'a>) -> Result<Parsed, RecordError> {
     let name = key.name;
     // A number that is out of range is shown where it stands: an item of a list, a configuration of a table.
+    let shown = |at: &Value<'_>, si: f64| if at.get_ref().is_table() { format!("{si} in SI") } else { found(at) };
     let within = |at: &Value<'_>, si: f64, all: &str| match key.range {
         Range::Positive if si.is_nan() || si <= 0.0 => {
-            Err(s.wrong(name, at, format!("is {}; {all} must be larger than zero", found(at))))
+            Err(s.wrong(name, at, format!("is {}; {all} must be larger than zero", shown(at, si))))
         }
         Range::NotNegative(why) if si < 0.0 => Err(s.wrong(name, at, format!("is negative; {why}"))),
+        Range::Between(low, high) if !(low..=high).contains(&si) => {
+            Err(s.wrong(name, at, format!("is {}; expected a number from {low} to {high}", shown(at, si))))
+        }
+        Range::Part(what) if !(si > 0.0 && si < 1.0) => {
+            Err(s.wrong(name, at, format!("is {}; {what} lies between 0 and 100 %", shown(at, si))))
+        }
         Range::NotZero(why) if si == 0.0 => Err(s.wrong(name, at, format!("is zero; {why}"))),
         _ => Ok(()),
     };
@@ -209,7 +239,11 @@ fn parsed<'a>(s: &Section<'a>, key: &Key, value: &'a Value<'a>) -> Result<Parsed
         Ok::<_, RecordError>(Parsed::Numbers(of_axis))
     };
     Ok(match key.kind {
-        Kind::Number => Parsed::Number(s.as_number(name, value)?),
+        Kind::Number => {
+            let x = s.as_number(name, value)?;
+            within(value, x, "it")?;
+            Parsed::Number(x)
+        }
         Kind::Quantity(dimension) => {
             let si = s.as_quantity_of(name, value, dimension)?;
             within(value, si, "it")?;
@@ -238,7 +272,16 @@ fn parsed<'a>(s: &Section<'a>, key: &Key, value: &'a Value<'a>) -> Result<Parsed
             let indices: Vec<usize> = (0..words.len()).collect();
             Parsed::Word(one_of(s, name, words, &indices)?.unwrap_or_default())
         }
+        Kind::Text => Parsed::Text(s.as_text(name, value)?.to_owned()),
         Kind::Texts => Parsed::Texts(s.texts(name)?),
+        Kind::Flag => Parsed::Flag(s.flag(name)?.unwrap_or_default()),
         Kind::Table(keys) => Parsed::Table(Values::read(&s.as_section(name, value)?, keys)?),
+        Kind::AnyQuantity
+        | Kind::By(..)
+        | Kind::Coefficient
+        | Kind::Named(..)
+        | Kind::List(_)
+        | Kind::Either(_)
+        | Kind::Any => Parsed::Unread,
     })
 }
