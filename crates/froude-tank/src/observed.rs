@@ -1,6 +1,6 @@
 //! Methods of which each run gives one observation, a row of a table: a speed and loads of the water on the body there.
 //!
-//! A method states its keys, conditions and channels ([`method::Spec`]), how a log becomes an observation, and how its rig would log a planned run
+//! A method states its keys, conditions and channels ([`spec::Spec`]), how a log becomes an observation, and how its rig would log a planned run
 //! ([`method::Observed`]). From these follow reading and checking, the run matrix, the twin ([`mod@twin`]), what a declared constant moves
 //! ([`method::Observed::moves`]), the intervals to expect ([`mod@plan`]), and record, findings and page ([`source`]): the rows go the way of every table.
 //!
@@ -14,6 +14,10 @@ pub mod linear;
 pub mod method;
 mod page;
 pub mod plan;
+pub mod read;
+pub mod reduced;
+pub mod rig;
 pub mod settings;
 pub mod source;
+pub mod spec;
 pub mod twin;

@@ -19,6 +19,7 @@
 //!
 //! Not here: unsteady motion, waves, moments about another point than the sensor's.
 
+mod channels;
 mod findings;
 pub mod page;
 pub mod point;
@@ -43,6 +44,7 @@ use froude_records::text::counted;
 use froude_records::units::Dimension;
 use froude_rig::steady::tow;
 
+use self::channels::{LOADS, WAYS};
 use self::row::Row;
 use self::section::SteadySpec;
 use self::still::Still;
@@ -56,10 +58,11 @@ use crate::logs;
 use crate::method::TankMethod;
 use crate::names::STEADY;
 use crate::observed::linear::variance;
-use crate::observed::method::Point as Setting;
-use crate::observed::method::{ANGLE, Condition, Declared, Observed, Planned, Run as Logged, Spec, Unstated};
-use crate::observed::source::{self, Reduced};
-use crate::observed::twin::{Loads, Rig, Trace};
+use crate::observed::method::{Declared, Observed};
+use crate::observed::reduced::{Planned, Reduced};
+use crate::observed::rig::{Loads, Rig, Trace};
+use crate::observed::source;
+use crate::observed::spec::{ANGLE, Condition, Point as Setting, Run as Logged, Spec, Unstated};
 use crate::sensors::reading;
 
 pub use point::{Load, Point, Run, point, point_told};
@@ -76,36 +79,6 @@ pub const STEADY_TOW: TankMethod = source::method::<Steady>(
     ],
     &[STEADY, "models", "uncertainty", "plan", "keep", "group", "tare"],
 );
-
-const SPEED: Channel = Channel {
-    name: "speed",
-    dimension: Dimension::SPEED,
-    unit: "m/s",
-    shown: "m/s",
-    along: "the body's way through the water",
-    column: ("speed", "body", "", 7),
-    ..Channel::GENERAL
-};
-/// Of speed and position, the first that a log has.
-const WAYS: &[Channel] = &[
-    SPEED,
-    Channel { name: "position", dimension: Dimension::LENGTH, unit: "m", shown: "m", ..SPEED },
-    Channel { name: "y/position", dimension: Dimension::LENGTH, unit: "m", shown: "m", ..SPEED },
-];
-
-const fn load(name: &'static str, dimension: Dimension, unit: &'static str) -> Channel {
-    let (along, column) = ("the water on the body, along its axes", (name, "body", "", 6));
-    Channel { name, dimension, unit, shown: unit, along, column, zero: 0.2, ..Channel::GENERAL }
-}
-/// Loads that a log may have.
-const LOADS: &[Channel] = &[
-    load("f_x", Dimension::FORCE, "N"),
-    load("f_y", Dimension::FORCE, "N"),
-    load("f_z", Dimension::FORCE, "N"),
-    load("m_x", Dimension::MOMENT, "N m"),
-    load("m_y", Dimension::MOMENT, "N m"),
-    load("m_z", Dimension::MOMENT, "N m"),
-];
 
 /// How steady tows are reduced, with the still runs beside them.
 #[derive(Debug, Clone, PartialEq)]
@@ -235,11 +208,10 @@ impl Observed for Steady {
     fn corrected(
         &self,
         rows: &mut [Row],
-        others: &[Reduced<Self>],
+        others: &[Reduced<()>],
         source: &str,
     ) -> Result<(Vec<SharedError>, Vec<Finding>), TankError> {
-        let tare =
-            |run: &Reduced<Self>| Tare { angle_rad: run.point.condition("angle"), point: run.observation.clone() };
+        let tare = |run: &Reduced<()>| Tare { angle_rad: run.point.condition("angle"), point: run.observation.clone() };
         let tares: Vec<Tare> = others.iter().map(tare).collect();
         if tares.is_empty() {
             return Ok((Vec::new(), Vec::new()));
@@ -252,11 +224,11 @@ impl Observed for Steady {
         Ok((errors, vec![note("tare-subtracted", text)]))
     }
 
-    fn variance(&self, run: &Reduced<Self>, load: &str, sensors: &[SensorSpec]) -> Option<f64> {
+    fn variance(&self, run: &Reduced<()>, load: &str, sensors: &[SensorSpec]) -> Option<f64> {
         Some(variance(sensors, load, self.parts_s(&run.observation), 1.0 / self.spec.tow.rate_hz))
     }
 
-    fn step(&self, log: &TankLog, run: &Reduced<Self>) -> Step {
+    fn step(&self, log: &TankLog, run: &Reduced<()>) -> Step {
         let window = &run.observation.window;
         let named = log.declared.segments.iter().any(|segment| segment.kind == SegmentKind::Steady);
         let by = if named { "as it is named in [[segments]]" } else { "by the rule of [source.steady]" };
@@ -267,14 +239,14 @@ impl Observed for Steady {
         step.with("at_rest_after", rest(&window.after), "s").with("speed", run.observation.speed_m_s, "m/s")
     }
 
-    fn about_run(&self, log: &TankLog, run: &Logged<'_>, found: &Reduced<Self>) -> Vec<Finding> {
+    fn about_run(&self, log: &TankLog, run: &Logged<'_>, found: &Reduced<()>) -> Vec<Finding> {
         let own = Self::run(run);
         let named = findings::of_named_window(log, &own, &found.observation, &self.spec);
         findings::of_point(own.id, &found.observation).into_iter().chain(named).collect()
     }
 
-    fn columns<'r>(&self, t: &TableBuilder<'r, Planned<'r, Self>>) -> Vec<ResultColumn> {
-        let window_s = |row: &Planned<'r, Self>| self.parts_s(&row.run.observation)[0];
+    fn columns<'r>(&self, t: &TableBuilder<'r, Planned<'r, ()>>) -> Vec<ResultColumn> {
+        let window_s = |row: &Planned<'r, ()>| self.parts_s(&row.run.observation)[0];
         vec![
             t.number("duration_s", "duration [s]", |row| self.driven(&row.run.point)[1]).places(1),
             t.number("travel_m", "travel [m]", |row| self.driven(&row.run.point)[2]).places(2),
@@ -283,8 +255,8 @@ impl Observed for Steady {
         ]
     }
 
-    fn about_plan(&self, runs: &[Reduced<Self>]) -> String {
-        let steady_m = |run: &Reduced<Self>| self.parts_s(&run.observation)[0] * self.driven(&run.point)[0].abs();
+    fn about_plan(&self, runs: &[Reduced<()>]) -> String {
+        let steady_m = |run: &Reduced<()>| self.parts_s(&run.observation)[0] * self.driven(&run.point)[0].abs();
         format!(
             "waits between them and the way back not counted; {:.1} m of steady distance; the longest needs {:.2} m of travel",
             runs.iter().map(steady_m).sum::<f64>(),
@@ -292,7 +264,7 @@ impl Observed for Steady {
         )
     }
 
-    fn section(&self, _: &[Reduced<Self>], rows: &[Row], logs: &[TankLog]) -> Section {
+    fn section(&self, _: &[Reduced<()>], rows: &[Row], logs: &[TankLog]) -> Section {
         page::section(logs, rows, &self.spec)
     }
 }

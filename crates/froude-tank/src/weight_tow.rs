@@ -17,15 +17,14 @@
 //! Not here: tracking the mark in the film, distortion across the rail, two clocks (track and loads stand in one log).
 
 pub mod balance;
+mod channels;
 mod keys;
 pub mod page;
 pub mod reduce;
 pub mod rig;
 pub mod track;
 
-use froude_identify::declare::Values;
 use froude_identify::method::MethodError;
-use froude_records::RecordError;
 use froude_records::block::{Digits, ResultColumn, Section, TableBuilder};
 use froude_records::campaign::SensorSpec;
 use froude_records::finding::Finding;
@@ -34,8 +33,8 @@ use froude_records::run::Declared as Number;
 use froude_records::run::step::Step;
 use froude_records::units::Dimension;
 
+use self::channels::{LOADS, MARK, WAYS};
 use self::reduce::Found;
-use self::track::Lens;
 use crate::channel::Channel;
 use crate::declared::uncertain;
 use crate::error::TankError;
@@ -45,15 +44,15 @@ use crate::logs;
 use crate::method::TankMethod;
 use crate::names::WEIGHT_TOW;
 use crate::observed::linear::variance;
-use crate::observed::method::{
-    ANGLE, Condition, Constant, Declared, Moves, Observed, Planned, Point, Run, Spec, Unstated,
-};
-use crate::observed::source::{self, Reduced};
-use crate::observed::twin::{Loads, Rig, Trace};
+use crate::observed::method::{Declared, Observed};
+use crate::observed::reduced::{Planned, Reduced};
+use crate::observed::rig::{Loads, Rig, Trace};
+use crate::observed::source;
+use crate::observed::spec::{ANGLE, Condition, Constant, Moves, Point, Run, Spec, Unstated};
 use crate::steady::point::Point as Observation;
 use crate::steady::row::Row;
 
-pub use keys::{KEYS, PLAN};
+pub use keys::{KEYS, PLAN, WeightTow};
 
 /// The last part of the way of a wagon, each run an observation.
 pub const PULLED: TankMethod = source::method::<WeightTow>(
@@ -71,91 +70,6 @@ const MISFIT: f64 = 3.0;
 const USUAL_KG: f64 = 4.0;
 /// Size of a pixel of a twin whose campaign declares none, m.
 const USUAL_SCALE_M: f64 = 1.2e-3;
-/// Constants of the twin, by their place.
-const SCALE: usize = 0;
-const MASS: usize = 1;
-const FRICTION: usize = 2;
-
-const WAY: Channel = Channel {
-    dimension: Dimension::LENGTH,
-    unit: "m",
-    shown: "m",
-    along: "the wagon's way along the rail, either way",
-    column: ("position", "sensor", "", 6),
-    ..Channel::GENERAL
-};
-const LOAD: Channel = Channel {
-    dimension: Dimension::FORCE,
-    unit: "N",
-    shown: "N",
-    along: "the water on the body, along its axes",
-    zero: 0.2,
-    ..Channel::GENERAL
-};
-const MARK: Channel = Channel {
-    name: "mark",
-    dimension: Dimension::ONE,
-    unit: "1",
-    column: ("mark", "sensor", "   # pixels along the rail", 4),
-    ..WAY
-};
-/// Of the mark or the wagon, the first that a log has.
-const WAYS: &[Channel] = &[MARK, Channel { name: "y/position", ..WAY }, Channel { name: "position", ..WAY }];
-const LOADS: &[Channel] = &[
-    Channel { name: "f_x", column: ("f_x", "body", "", 6), ..LOAD },
-    Channel { name: "f_y", column: ("f_y", "body", "", 6), ..LOAD },
-];
-
-/// What is declared of rig and camera.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WeightTow {
-    /// Size of a pixel at the plane of the mark, m.
-    pub scale_m: Option<Number>,
-    /// The camera's lens.
-    pub lens: Option<Lens>,
-    /// All that moves with the wagon, and its water, kg.
-    pub moving_mass_kg: Option<Number>,
-    /// Of pulleys and rail, N.
-    pub friction_n: Number,
-    /// The last part of the way, m, that speed and loads are taken over.
-    pub window_m: f64,
-    /// Change of the speed over it that counts as steady, as part of the speed.
-    pub tolerance: f64,
-    /// Part of the terminal speed that a balanced run must have reached.
-    pub reached: f64,
-    /// Way of a planned run, m.
-    pub travel_m: f64,
-    /// Its time at rest before and after, s.
-    pub still_s: f64,
-    /// Its frames, and samples, a second.
-    pub rate_hz: f64,
-    /// Errors of the track, m, which take the place of those that it shows: of a run that is only planned.
-    pub noise_m: Option<f64>,
-}
-
-impl WeightTow {
-    fn of(values: &Values) -> Result<Self, RecordError> {
-        let number = |values: &Values, key: &str| values.need(key, values.number(key));
-        let lens = values.table("lens").map(|l| -> Result<Lens, RecordError> {
-            Ok(Lens { centre_px: number(l, "centre")?, radial: number(l, "radial")? })
-        });
-        let tow = values.need("tow", values.table("tow"))?;
-        Ok(Self {
-            scale_m: values.constant("scale"),
-            lens: lens.transpose()?,
-            moving_mass_kg: values.constant("moving_mass"),
-            friction_n: values.need("friction", values.constant("friction"))?,
-            window_m: number(values, "window")?,
-            tolerance: number(values, "tolerance")?,
-            reached: number(values, "reached")?,
-            travel_m: number(tow, "travel")?,
-            still_s: number(tow, "still")?,
-            rate_hz: number(tow, "rate")?,
-            noise_m: None,
-        })
-    }
-}
-
 impl Observed for WeightTow {
     const SPEC: Spec = Spec {
         name: WEIGHT_TOW,
@@ -235,7 +149,7 @@ impl Observed for WeightTow {
     }
 
     /// Of a run that accelerates only what is across the rail comes from the cell.
-    fn variance(&self, run: &Reduced<Self>, load: &str, sensors: &[SensorSpec]) -> Option<f64> {
+    fn variance(&self, run: &Reduced<Found>, load: &str, sensors: &[SensorSpec]) -> Option<f64> {
         let (found, step_s) = (&run.found, 1.0 / self.rate_hz);
         let parts_s = [found.track.window.len(), found.track.before.len()].map(|n| n as f64 * step_s);
         let own = |name: &str| variance(sensors, name, parts_s, step_s);
@@ -257,14 +171,14 @@ impl Observed for WeightTow {
         Ok(found.moves.to_vec())
     }
 
-    fn step(&self, log: &TankLog, run: &Reduced<Self>) -> Step {
+    fn step(&self, log: &TankLog, run: &Reduced<Found>) -> Step {
         let found = &run.found;
         let by = if found.balance.is_some() { "the equation of motion over all that moves" } else { "shown steady" };
         let step = logs::window_step(log, &found.track.window, &format!(", the last part of the way; {by}"));
         step.with("speed", found.track.speed_m_s, "m/s")
     }
 
-    fn about_run(&self, _: &TankLog, _: &Run<'_>, run: &Reduced<Self>) -> Vec<Finding> {
+    fn about_run(&self, _: &TankLog, _: &Run<'_>, run: &Reduced<Found>) -> Vec<Finding> {
         let (id, found) = (&run.point.id, &run.found);
         let Some(balance) = &found.balance else { return Vec::new() };
         let mut out = Vec::new();
@@ -295,7 +209,7 @@ impl Observed for WeightTow {
         out
     }
 
-    fn columns<'r>(&self, t: &TableBuilder<'r, Planned<'r, Self>>) -> Vec<ResultColumn> {
+    fn columns<'r>(&self, t: &TableBuilder<'r, Planned<'r, Found>>) -> Vec<ResultColumn> {
         vec![
             t.number("speed_m_s", "speed at the end [m/s]", |row| row.run.found.track.speed_m_s).significant(3),
             t.text("", "fraction of terminal speed", |row| {
@@ -307,7 +221,7 @@ impl Observed for WeightTow {
         ]
     }
 
-    fn about_plan(&self, runs: &[Reduced<Self>]) -> String {
+    fn about_plan(&self, runs: &[Reduced<Found>]) -> String {
         format!(
             "over {} m of way, waits between them not counted; {} of them do not become steady and are balanced",
             number::plain(self.travel_m, 3),
@@ -315,7 +229,7 @@ impl Observed for WeightTow {
         )
     }
 
-    fn section(&self, runs: &[Reduced<Self>], _: &[Row], logs: &[TankLog]) -> Section {
+    fn section(&self, runs: &[Reduced<Found>], _: &[Row], logs: &[TankLog]) -> Section {
         page::section(runs, logs, self)
     }
 }

@@ -10,9 +10,11 @@ use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::linear::{PlannedError, declared, linearised};
-use super::method::{Observed, Planned, values};
+use super::method::Observed;
+use super::read::reduced;
+use super::reduced::{Planned, Reduced};
 use super::settings::{Plan, loads_at};
-use super::source::Reduced;
+use super::spec::values;
 use super::twin::{Simulated, Twin};
 use crate::error::TankError;
 use crate::plan::{intervals, prospect as of_plan};
@@ -33,15 +35,15 @@ const REPEATS: u64 = 200;
 pub fn exact<M: Observed>(
     twin: &Twin<M>,
     sensors: &[SensorSpec],
-) -> Result<(Vec<Simulated>, Vec<Reduced<M>>), TankError> {
+) -> Result<(Vec<Simulated>, Vec<Reduced<M::Found>>), TankError> {
     let method = twin.method.planned(sensors);
     let runs = twin.exactly();
-    let reduced = runs.iter().map(|run| Reduced::of(&method, &run.view())).collect::<Result<_, _>>()?;
-    Ok((runs, reduced))
+    let found = runs.iter().map(|run| reduced(&method, &run.view())).collect::<Result<_, _>>()?;
+    Ok((runs, found))
 }
 
 /// The settings at the speeds that the runs are observed at.
-fn at_the_speeds<M: Observed>(twin: &Twin<M>, reduced: &[Reduced<M>]) -> Plan {
+fn at_the_speeds<M: Observed>(twin: &Twin<M>, reduced: &[Reduced<M::Found>]) -> Plan {
     let mut data = twin.plan.data.clone();
     data.put("speed", reduced.iter().map(|run| run.observation.speed_m_s).collect(), Dimension::SPEED);
     data.velocity_from_speed_and_angle();
@@ -56,7 +58,7 @@ fn at_the_speeds<M: Observed>(twin: &Twin<M>, reduced: &[Reduced<M>]) -> Plan {
 pub fn expected<M: Observed>(
     twin: &Twin<M>,
     source: &Source,
-    reduced: &[Reduced<M>],
+    reduced: &[Reduced<M::Found>],
     (sensors, in_variables): (&[SensorSpec], bool),
 ) -> Result<Vec<Expected>, MethodError> {
     let plan = &at_the_speeds(twin, reduced);
@@ -94,7 +96,7 @@ fn repeated<M: Observed>(
     twin: &Twin<M>,
     sensors: &[SensorSpec],
     slopes: &[Vec<f64>],
-    reduced: &[Reduced<M>],
+    reduced: &[Reduced<M::Found>],
 ) -> Vec<Vec<f64>> {
     let names = &twin.plan.law.responses;
     if names.iter().all(|name| reduced.iter().all(|run| twin.method.variance(run, name, sensors).is_some())) {
@@ -145,9 +147,9 @@ pub fn prospect<M: Observed>(campaign: &Campaign, source: &Source) -> Result<Pro
     Ok(of_plan(source, (runs.len(), duration_s), tables, vec![paragraph]))
 }
 
-fn matrix<M: Observed>(twin: &Twin<M>, runs: &[Simulated], reduced: &[Reduced<M>]) -> ResultTable {
+fn matrix<M: Observed>(twin: &Twin<M>, runs: &[Simulated], reduced: &[Reduced<M::Found>]) -> ResultTable {
     let each = runs.iter().zip(reduced).enumerate();
-    let rows: Vec<Planned<'_, M>> = each
+    let rows: Vec<Planned<'_, M::Found>> = each
         .map(|(row, (simulated, run))| Planned {
             run,
             speed_m_s: twin.speed_m_s(row),

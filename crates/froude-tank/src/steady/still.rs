@@ -5,7 +5,7 @@ use froude_records::run::Role;
 use froude_records::run::marks::SegmentKind;
 use froude_records::units::Dimension;
 
-use super::LOADS;
+use super::channels::LOADS;
 use super::point::{Run, Zero};
 use super::section::SteadySpec;
 use crate::conditioning::stretches::{in_words, longest_free, rows};

@@ -17,9 +17,12 @@
 //! angle  = { start = "3 deg", stop = "39 deg", step = "3 deg" }
 //! ```
 
-use froude_identify::declare::{IfMissing, Key, Kind, Range};
+use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
+use froude_records::RecordError;
+use froude_records::run::Declared as Number;
 use froude_records::units::Dimension;
 
+use super::track::Lens;
 use crate::declared::REPEATS;
 
 const LENS: &[Key] = &[
@@ -106,3 +109,53 @@ pub const PLAN: &[Key] = &[
     Key::new("angle", Kind::Axis(Dimension::ONE), IfMissing::Is("0 deg"), "angle of the body to the rail"),
     REPEATS,
 ];
+
+/// What is declared of rig and camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WeightTow {
+    /// Size of a pixel at the plane of the mark, m.
+    pub scale_m: Option<Number>,
+    /// The camera's lens.
+    pub lens: Option<Lens>,
+    /// All that moves with the wagon, and its water, kg.
+    pub moving_mass_kg: Option<Number>,
+    /// Of pulleys and rail, N.
+    pub friction_n: Number,
+    /// The last part of the way, m, that speed and loads are taken over.
+    pub window_m: f64,
+    /// Change of the speed over it that counts as steady, as part of the speed.
+    pub tolerance: f64,
+    /// Part of the terminal speed that a balanced run must have reached.
+    pub reached: f64,
+    /// Way of a planned run, m.
+    pub travel_m: f64,
+    /// Its time at rest before and after, s.
+    pub still_s: f64,
+    /// Its frames, and samples, a second.
+    pub rate_hz: f64,
+    /// Errors of the track, m, which take the place of those that it shows: of a run that is only planned.
+    pub noise_m: Option<f64>,
+}
+
+impl WeightTow {
+    pub(super) fn of(values: &Values) -> Result<Self, RecordError> {
+        let number = |values: &Values, key: &str| values.need(key, values.number(key));
+        let lens = values.table("lens").map(|l| -> Result<Lens, RecordError> {
+            Ok(Lens { centre_px: number(l, "centre")?, radial: number(l, "radial")? })
+        });
+        let tow = values.need("tow", values.table("tow"))?;
+        Ok(Self {
+            scale_m: values.constant("scale"),
+            lens: lens.transpose()?,
+            moving_mass_kg: values.constant("moving_mass"),
+            friction_n: values.need("friction", values.constant("friction"))?,
+            window_m: number(values, "window")?,
+            tolerance: number(values, "tolerance")?,
+            reached: number(values, "reached")?,
+            travel_m: number(tow, "travel")?,
+            still_s: number(tow, "still")?,
+            rate_hz: number(tow, "rate")?,
+            noise_m: None,
+        })
+    }
+}

@@ -4,10 +4,11 @@ use froude_records::block::{Block, ResultTable, Section, TableBuilder};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark};
 
-use super::WeightTow;
+use super::keys::WeightTow;
+use super::reduce::Found;
 use crate::drawn::{self, first_of, over_time, series};
 use crate::log::TankLog;
-use crate::observed::source::Reduced;
+use crate::observed::reduced::Reduced;
 use crate::residual_spectrum::{self, Left};
 use crate::steady::page::load_column;
 use crate::steady::point::Load;
@@ -16,11 +17,11 @@ use crate::steady::point::Load;
 const DRAWN: usize = 6;
 
 /// A run with its log.
-type Shown<'a> = (&'a Reduced<WeightTow>, &'a TankLog);
+type Shown<'a> = (&'a Reduced<Found>, &'a TankLog);
 
 /// What was done to the runs.
 #[must_use]
-pub fn section(reduced: &[Reduced<WeightTow>], logs: &[TankLog], spec: &WeightTow) -> Section {
+pub fn section(reduced: &[Reduced<Found>], logs: &[TankLog], spec: &WeightTow) -> Section {
     let log_of = |run: &str| logs.iter().find(|log| log.log.meta.id == run);
     let runs: Vec<Shown<'_>> = reduced.iter().filter_map(|run| Some((run, log_of(&run.point.id)?))).collect();
     let paragraph = format!(

@@ -7,12 +7,12 @@
 use froude_records::run::Declared;
 use froude_rig::weight_tow::G_M_S2;
 
-use super::WeightTow;
 use super::balance::{Balance, Pull, balance, no_terminal};
+use super::keys::WeightTow;
 use super::track::{Track, metres, track};
 use crate::conditioning::stretches::{in_words, touching};
 use crate::error::TankError;
-use crate::observed::method::{Moves, Run};
+use crate::observed::spec::{Moves, Run};
 use crate::steady::point::{Load, Point, Run as Parts, observed};
 use crate::steady::section::SteadySpec;
 use crate::steady::window::{Motion, Window};

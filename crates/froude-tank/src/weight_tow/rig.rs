@@ -2,11 +2,16 @@
 
 use froude_rig::weight_tow::{WeightRig, pull};
 
+use super::channels::MARK;
+use super::keys::WeightTow;
 use super::track::Lens;
-use super::{FRICTION, MARK, MASS, SCALE, WeightTow};
-use crate::observed::method::Point;
-use crate::observed::twin::{Loads, Rig, Trace};
+use crate::observed::rig::{Loads, Rig, Trace};
+use crate::observed::spec::Point;
 
+/// Constants of the twin, by their place.
+const SCALE: usize = 0;
+const MASS: usize = 1;
+const FRICTION: usize = 2;
 /// Part of the moving mass that hangs below the load cell: body and water.
 const BELOW_CELL: f64 = 0.75;
 /// Where no pull moves the wagon, the balance is looked for up to this speed, m/s.

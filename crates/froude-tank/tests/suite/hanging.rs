@@ -8,9 +8,10 @@ use froude_tank::TankError;
 use froude_tank::channel::Channel;
 use froude_tank::declared::{REPEATS, uncertain};
 use froude_tank::method::TankMethod;
-use froude_tank::observed::method::{Condition, Constant, Declared, Observed, Point, Run, Spec, Unstated};
+use froude_tank::observed::method::{Declared, Observed};
+use froude_tank::observed::rig::{Loads, Rig, Trace};
 use froude_tank::observed::source::{NEEDS, method};
-use froude_tank::observed::twin::{Loads, Rig, Trace};
+use froude_tank::observed::spec::{Condition, Constant, Point, Run, Spec, Unstated};
 use froude_tank::steady::point::{Load, Point as Observation};
 
 /// A body of submerged weight W hangs on a thin wire in a stream of speed U, which tilts the wire by θ: f_x = −W tan θ.

@@ -3,8 +3,8 @@
 use froude_records::campaign_file::read_campaign;
 use froude_records::run::{Declared, Role};
 use froude_rig::weight_tow::{WeightRig, pull};
-use froude_tank::observed::method::{Point, Run};
 use froude_tank::observed::plan::exact;
+use froude_tank::observed::spec::{Point, Run};
 use froude_tank::observed::twin::Twin;
 use froude_tank::steady::window::Told;
 use froude_tank::weight_tow::WeightTow;

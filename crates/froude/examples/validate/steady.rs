@@ -7,8 +7,8 @@ use froude::fit::coverage::Count;
 use froude::identify::reduce::reduce_table;
 use froude::identify::source::identify_observations;
 use froude::methods::tank::observed::plan::{Expected, exact, expected};
+use froude::methods::tank::observed::read::reduced;
 use froude::methods::tank::observed::settings::Plan;
-use froude::methods::tank::observed::source::Reduced;
 use froude::methods::tank::observed::twin::Twin;
 use froude::methods::tank::steady::Steady;
 use froude::methods::tank::steady::row::{Row, table};
@@ -70,8 +70,8 @@ fn one(
     seed: u64,
 ) -> Result<(Fitted, Codes), Box<dyn Error + Send + Sync>> {
     let logged = twin.simulated(sensors, &source.uncertainty, 1 + seed);
-    let reduced = logged.iter().map(|run| Reduced::of(&twin.method, &run.view())).collect::<Result<Vec<_>, _>>()?;
-    let rows: Vec<Row> = reduced.into_iter().map(Row::from).collect();
+    let found = logged.iter().map(|run| reduced(&twin.method, &run.view())).collect::<Result<Vec<_>, _>>()?;
+    let rows: Vec<Row> = found.into_iter().map(Row::from).collect();
     let observations = reduce_table(campaign, source, &table(source.input.path(), &rows), Vec::new())?;
     let mut result = identify_observations(campaign, source, observations, "steady", &|_| {})?;
     Ok((result.estimates.remove(0).coefficients, of_scatter(&result.findings)))

@@ -13,8 +13,9 @@ use froude::identify::law::ForceLaw;
 use froude::identify::reduce::reduce_table;
 use froude::identify::source::identify_observations;
 use froude::methods::tank::observed::plan::{Expected, exact, expected};
+use froude::methods::tank::observed::read::reduced;
 use froude::methods::tank::observed::settings::{Plan, loads_at};
-use froude::methods::tank::observed::source::{Reduced, shared, with_speeds};
+use froude::methods::tank::observed::source::{shared, with_speeds};
 use froude::methods::tank::observed::twin::Twin;
 use froude::methods::tank::steady::row::{Row, table};
 use froude::methods::tank::weight_tow::WeightTow;
@@ -57,11 +58,11 @@ impl Case {
         seed: u64,
     ) -> Result<(Fitted, Codes), Box<dyn Error + Send + Sync>> {
         let logged = twin.simulated(sensors, &self.source.uncertainty, 1 + seed);
-        let reduced = logged.iter().map(|run| Reduced::of(&twin.method, &run.view())).collect::<Result<Vec<_>, _>>()?;
-        let rows: Vec<Row> = reduced.iter().cloned().map(Row::from).collect();
-        let own = with_speeds(&self.source, &twin.method, &reduced);
+        let found = logged.iter().map(|run| reduced(&twin.method, &run.view())).collect::<Result<Vec<_>, _>>()?;
+        let rows: Vec<Row> = found.iter().cloned().map(Row::from).collect();
+        let own = with_speeds(&self.source, &twin.method, &found);
         let mut observations = reduce_table(&self.campaign, &own, &table(own.input.path(), &rows), Vec::new())?;
-        observations.shared_errors.extend(shared(&twin.method, &reduced, &observations.data.loads()));
+        observations.shared_errors.extend(shared(&twin.method, &found, &observations.data.loads()));
         let mut result = identify_observations(&self.campaign, &own, observations, "weight_tow", &|_| {})?;
         Ok((result.estimates.remove(0).coefficients, of_scatter(&result.findings)))
     }
