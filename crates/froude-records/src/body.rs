@@ -2,7 +2,7 @@
 
 use froude_hydro::Link;
 
-use crate::declare::{IfMissing, Key, Kind, Range, names};
+use crate::declare::{Key, Kind, Range, names, required};
 use crate::error::RecordError;
 use crate::section::Section;
 use crate::units::Dimension;
@@ -43,8 +43,7 @@ pub fn semi_axes(s: &Section<'_>) -> Result<SemiAxes, RecordError> {
 }
 
 const fn length(name: &'static str, doc: &'static str) -> Key {
-    let write = IfMissing::Required("write it with its unit: \"60 mm\"");
-    Key::new(name, Kind::Quantity(Dimension::LENGTH), write, doc).within(Range::Positive)
+    required(name, Kind::Quantity(Dimension::LENGTH), "write it with its unit: \"60 mm\"", doc).within(Range::Positive)
 }
 
 /// Keys of `[body.link]`.

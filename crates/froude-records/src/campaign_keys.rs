@@ -3,21 +3,9 @@
 use crate::body::LINK;
 use crate::body_axis::BodyAxis;
 use crate::campaign::{Shared, SourceKind};
-use crate::declare::{IfMissing, Key, Kind, Range};
+use crate::declare::{Key, Kind, Range, optional, required, usual};
 use crate::estimate::ErrorKind;
 use crate::units::Dimension;
-
-const fn optional(name: &'static str, kind: Kind, instead: &'static str, doc: &'static str) -> Key {
-    Key::new(name, kind, IfMissing::Nothing(instead), doc)
-}
-
-const fn needed(name: &'static str, kind: Kind, write: &'static str, doc: &'static str) -> Key {
-    Key::new(name, kind, IfMissing::Required(write), doc)
-}
-
-const fn usual(name: &'static str, kind: Kind, value: &'static str, doc: &'static str) -> Key {
-    Key::new(name, kind, IfMissing::Is(value), doc)
-}
 
 const fn positive(name: &'static str, dimension: Dimension, doc: &'static str) -> Key {
     optional(name, Kind::Quantity(dimension), "not declared", doc).within(Range::Positive)
@@ -25,8 +13,8 @@ const fn positive(name: &'static str, dimension: Dimension, doc: &'static str) -
 
 /// Keys of the file.
 pub const ROOT: &[Key] = &[
-    needed("schema", Kind::Count(1), "write schema = 1", "version of the format"),
-    needed("name", Kind::Text, "write name = \"what this campaign is\"", "title"),
+    required("schema", Kind::Count(1), "write schema = 1", "version of the format"),
+    required("name", Kind::Text, "write name = \"what this campaign is\"", "title"),
     optional("cite", Kind::Texts, "none", "works that a report on it has to cite"),
     optional("fluid", Kind::Table(FLUID), "from columns of the table", "the water"),
     optional("body", Kind::Table(BODY), "not declared", "the body: lengths, areas, volumes"),
@@ -96,8 +84,8 @@ pub const TANK: &[Key] = &[
 
 /// Keys of `[[source]]`, but for the sections of its methods.
 pub const SOURCE: &[Key] = &[
-    needed("name", Kind::Text, "write name = \"circulation tank\", for example", "its name, unique in the campaign"),
-    needed(
+    required("name", Kind::Text, "write name = \"circulation tank\", for example", "its name, unique in the campaign"),
+    required(
         "kind",
         Kind::Word(&SourceKind::NAMES),
         "write kind = \"tank\", \"towing\", \"cfd\", \"potential\" or \"published\"",
@@ -140,19 +128,19 @@ pub const SOURCE: &[Key] = &[
 
 /// Keys of `[[source.uncertainty]]`.
 pub const UNCERTAINTY: &[Key] = &[
-    needed(
+    required(
         "quantity",
         Kind::Text,
         "name the uncertain column: f_x, speed, angle, density, …",
         "what is uncertain: a load, speed, angle, density, …",
     ),
-    needed(
+    required(
         "standard",
         Kind::AnyQuantity,
         "write the standard uncertainty with its unit: \"0.01 N\" or \"0.5 %\"",
         "standard uncertainty (not an expanded one), in the unit of the quantity or in per cent of it",
     ),
-    needed(
+    required(
         "shared",
         Kind::Word(&Shared::NAMES),
         "state what shares the error: \"sample\", \"run\", \"setup\" or \"campaign\"",
@@ -170,7 +158,7 @@ pub const UNCERTAINTY: &[Key] = &[
 
 /// Keys of `[source.tare]`.
 pub const TARE: &[Key] = &[
-    needed("record", Kind::Text, "name the estimate.json of the tare", "the estimate.json of the tare"),
+    required("record", Kind::Text, "name the estimate.json of the tare", "the estimate.json of the tare"),
     optional("select", Kind::Text, "the recommended estimate", "source/model in it"),
     usual(
         "removed",
@@ -185,7 +173,7 @@ const MOST_REPEATS: u64 = 10_000;
 
 const CONFIGURATIONS: Key = optional("configurations", Kind::Texts, "one unnamed body", "names of the configurations");
 const SPEED: Key =
-    needed("speed", Kind::Axis(Dimension::SPEED), "write \"0.1 m/s\", a list, or { start, stop, step }", "speed");
+    required("speed", Kind::Axis(Dimension::SPEED), "write \"0.1 m/s\", a list, or { start, stop, step }", "speed");
 const ANGLE: Key = usual("angle", Kind::Axis(Dimension::ANGLE), "0 deg", "angle of the velocity");
 
 /// Keys of `[[source.plan]]` of a table, and of runs each of which is a row.
@@ -286,7 +274,7 @@ pub(crate) const COVARIANCES: [&str; 4] = ["classical", "HC3", "cluster", "seria
 
 /// Keys of `[[identify.prior]]` and `[[identify.known]]`: value and uncertainty, or an entry of a record.
 pub const PRIOR: &[Key] = &[
-    needed("coefficient", Kind::Text, "name the coefficient", "the coefficient"),
+    required("coefficient", Kind::Text, "name the coefficient", "the coefficient"),
     optional("model", Kind::Text, "all that have the coefficient", "the model"),
     optional("value", Kind::Coefficient, "that of a record", "its value"),
     optional(
@@ -313,17 +301,17 @@ pub const PRIOR: &[Key] = &[
 
 /// Keys of `[[identify.cross_validation]]`.
 pub const RANGE_BLOCK: &[Key] = &[
-    needed("column", Kind::Text, "name the column of the range", "the column"),
+    required("column", Kind::Text, "name the column of the range", "the column"),
     optional("low", Kind::AnyQuantity, "open", "smallest value fitted to"),
     optional("high", Kind::AnyQuantity, "open", "largest value fitted to"),
 ];
 
 /// Keys of `[[identify.model]]`, beside its formulas.
-pub const MODEL: &[Key] = &[needed("name", Kind::Text, "write name = \"sway\", for example", "its name")];
+pub const MODEL: &[Key] = &[required("name", Kind::Text, "write name = \"sway\", for example", "its name")];
 
 /// Keys of `[simulate]`: the truth is an estimate of a record, or a model with coefficients.
 pub const SIMULATE: &[Key] = &[
-    needed(
+    required(
         "seed",
         Kind::Whole,
         "write seed = 1, for example; the same seed gives the same table",
@@ -339,7 +327,7 @@ pub const SIMULATE: &[Key] = &[
 
 /// Keys of `[[simulate.sensor]]`.
 pub const SENSOR: &[Key] = &[
-    needed("quantity", Kind::Text, "name the measured column: f_x, f_y, speed, angle", "the column that it makes"),
+    required("quantity", Kind::Text, "name the measured column: f_x, f_y, speed, angle", "the column that it makes"),
     optional("noise", Kind::AnyQuantity, "none", "standard deviation of its noise"),
     optional("resolution", Kind::AnyQuantity, "none", "step of its reading"),
     optional("drift", Kind::AnyQuantity, "none", "standard deviation of a linear drift over one setup"),

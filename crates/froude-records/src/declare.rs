@@ -22,6 +22,6 @@ mod schema;
 mod values;
 
 pub use crate::declare::by_configuration::ByConfiguration;
-pub use crate::declare::key::{IfMissing, Key, Kind, Range, key_table, names};
+pub use crate::declare::key::{IfMissing, Key, Kind, Range, key_table, names, optional, required, usual};
 pub use crate::declare::schema::object_schema;
 pub use crate::declare::values::Values;

@@ -58,7 +58,7 @@ mod sync;
 pub use crate::run::doubt::{Doubt, DoubtKind};
 pub use channel::{BOARD, Frame, LOG, Meaning};
 pub use declarations::{Declarations, Stated, Told};
-pub use declared::{Declared, declared, declared_value, positive_declared};
+pub use declared::{Declared, declared, declared_value};
 pub use import::{
     EVEN, GAP, ImportedRun, TimeSteps, channel_name, gap, import_run, is_servo_log, not_increasing, run_of,
     run_of_table, time_column, times,

@@ -30,15 +30,15 @@ pub fn campaign_schema() -> Value {
     source["oneOf"] = INPUTS.map(has).to_vec().into();
 
     let mut rules = Vec::new();
-    for (method, input) in [(&AddedMass as &dyn Method, "mesh"), (&Computed, "cases")] {
+    let of_runs = METHODS.into_iter().map(|method| (method, None));
+    let of_others: [(&dyn Method, _); 2] = [(&AddedMass, Some("mesh")), (&Computed, Some("cases"))];
+    for (method, input) in of_runs.chain(of_others) {
         let Some(own) = method.declares() else { continue };
-        describe(source, own.section, own.keys, "");
-        rules.push(rule(has(own.section), json!({ "anyOf": [has(input), is_of(&takers(own.section))] })));
-    }
-    for method in METHODS {
-        let Some(own) = method.declares() else { continue };
-        describe(source, own.section, own.keys, method.words(method.names()[0]));
-        rules.push(rule(has(own.section), is_of(&takers(own.section))));
+        source["properties"][own.section] = object_schema(own.keys);
+        source["properties"][own.section]["description"] = method.words(method.names()[0]).into();
+        let mut sources: Vec<Value> = input.map(has).into_iter().collect();
+        sources.push(is_of(&takers(own.section)));
+        rules.push(rule(has(own.section), json!({ "anyOf": sources })));
         if !own.plan.is_empty() {
             forms.extend([form(own.section, own.plan)]);
             rules.push(rule(json!({ "allOf": [has("runs"), is_of(method.names())] }), plan_of(own.section)));
@@ -64,19 +64,15 @@ pub fn campaign_schema() -> Value {
     schema
 }
 
-/// Adds a section of a source.
-fn describe(source: &mut Value, section: &str, keys: &[Key], words: &str) {
-    let mut table = object_schema(keys);
-    table["description"] = words.into();
-    source["properties"][section] = table;
-}
-
 fn has(key: &str) -> Value {
     json!({ "required": [key] })
 }
 
 /// A source with one of these methods.
 fn is_of(methods: &[&str]) -> Value {
+    if methods.is_empty() {
+        return json!(false);
+    }
     let is_one = json!([{ "enum": methods }, { "type": "array", "contains": { "enum": methods } }]);
     json!({ "required": ["method"], "properties": { "method": { "anyOf": is_one } } })
 }

@@ -1,6 +1,6 @@
 //! The keys of `[source.cfd]`.
 
-use froude_records::declare::{IfMissing, Key, Kind, Range};
+use froude_records::declare::{Key, Kind, Range, optional, required, usual};
 use froude_records::units::Dimension;
 
 /// Most cells in one direction.
@@ -10,20 +10,12 @@ const MOST_LAYERS: u64 = 100;
 /// Most iterations of a case.
 const MOST_ITERATIONS: u64 = 100_000;
 
-const fn optional(name: &'static str, kind: Kind, instead: &'static str, doc: &'static str) -> Key {
-    Key::new(name, kind, IfMissing::Nothing(instead), doc)
-}
-
-const fn usual(name: &'static str, kind: Kind, value: &'static str, doc: &'static str) -> Key {
-    Key::new(name, kind, IfMissing::Is(value), doc)
-}
-
 const fn length(name: &'static str, write: &'static str, doc: &'static str) -> Key {
-    Key::new(name, Kind::Quantity(Dimension::LENGTH), IfMissing::Required(write), doc).within(Range::Positive)
+    required(name, Kind::Quantity(Dimension::LENGTH), write, doc).within(Range::Positive)
 }
 
 const fn cells(name: &'static str, doc: &'static str) -> Key {
-    Key::new(name, Kind::Count(MOST_CELLS), IfMissing::Required(OF_O_GRID), doc)
+    required(name, Kind::Count(MOST_CELLS), OF_O_GRID, doc)
 }
 
 const OF_O_GRID: &str = "an O-grid needs stations, layers, azimuth and first_layer, cubes surface_cell and first_layer";
@@ -101,19 +93,14 @@ pub(super) const TANK: &[Key] = &[
 
 /// Keys of `fine`.
 pub(super) const FINE: &[Key] = &[
-    Key::new("mesh", MESH, IfMissing::Required("write fine = { mesh = \"medium\", every = 5 }"), "the finer mesh"),
+    required("mesh", MESH, "write fine = { mesh = \"medium\", every = 5 }", "the finer mesh"),
     usual("every", Kind::Count(1000), "5", "every so many of the cases of a configuration"),
 ];
 
 /// Keys of `[[source.cfd.study]]`.
 pub(super) const STUDY: &[Key] = &[
     optional("configurations", Kind::Texts, "all of the plan", "names of the configurations"),
-    Key::new(
-        "speed",
-        Kind::Axis(Dimension::SPEED),
-        IfMissing::Required("name settings of the plan: speed = \"0.3 m/s\""),
-        "speed",
-    ),
+    required("speed", Kind::Axis(Dimension::SPEED), "name settings of the plan: speed = \"0.3 m/s\"", "speed"),
     usual("angle", Kind::Axis(Dimension::ANGLE), "0 deg", "angle of the velocity"),
     usual("pitch", Kind::Axis(Dimension::ANGLE), "0 deg", "angle of the velocity out of the plane"),
     optional("grids", Kind::Whole, "4, or none where radius is given", "grids of a family by √2, 3 to 6"),

@@ -46,6 +46,24 @@ impl Key {
     }
 }
 
+/// A key that may be left out; `instead` is what then holds.
+#[must_use]
+pub const fn optional(name: &'static str, kind: Kind, instead: &'static str, doc: &'static str) -> Key {
+    Key::new(name, kind, IfMissing::Nothing(instead), doc)
+}
+
+/// A key that must be there; `write` is the advice where it is not.
+#[must_use]
+pub const fn required(name: &'static str, kind: Kind, write: &'static str, doc: &'static str) -> Key {
+    Key::new(name, kind, IfMissing::Required(write), doc)
+}
+
+/// A key with a default, as it would be written.
+#[must_use]
+pub const fn usual(name: &'static str, kind: Kind, value: &'static str, doc: &'static str) -> Key {
+    Key::new(name, kind, IfMissing::Is(value), doc)
+}
+
 /// What the value of a key is.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {

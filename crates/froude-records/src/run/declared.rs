@@ -36,21 +36,6 @@ pub fn declared(s: &Section<'_>, key: &'static str, dimension: Dimension) -> Res
     s.get(key).map(|value| declared_value(s, key, value, dimension)).transpose()
 }
 
-/// The same, larger than zero.
-///
-/// # Errors
-///
-/// [`RecordError::Value`] with its place where it is something else.
-pub fn positive_declared(
-    s: &Section<'_>,
-    key: &'static str,
-    dimension: Dimension,
-) -> Result<Option<Declared>, RecordError> {
-    let Some(constant) = declared(s, key, dimension)? else { return Ok(None) };
-    s.refuse(key, constant.value <= 0.0, format!("is {} in SI; it must be larger than zero", constant.value))?;
-    Ok(Some(constant))
-}
-
 /// The same as [`declared`] of a key that a person chose.
 ///
 /// # Errors

@@ -373,7 +373,7 @@ fn mounted(s: &Section<'_>) -> Result<Mounted, RecordError> {
         body: one_of(s, "body", &BodyState::NAMES, &BodyState::ALL)?.unwrap_or_default(),
         is_ballasted: s.flag("ballasted")?.unwrap_or(false),
         hung_weight_n: s.quantity("hung_weight", Dimension::FORCE)?,
-        travel: one_of(s, "travel", &BodyAxis::ALL.map(BodyAxis::name), &BodyAxis::ALL)?,
+        travel: one_of(s, "travel", &BodyAxis::NAMES, &BodyAxis::ALL)?,
     })
 }
 

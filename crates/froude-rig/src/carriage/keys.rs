@@ -1,6 +1,6 @@
 //! The keys of `[rig]` and `[carriage]`.
 
-use froude_records::declare::{IfMissing, Key, Kind, Range};
+use froude_records::declare::{IfMissing, Key, Kind, Range, optional, required, usual};
 use froude_records::run::{AMPLIFIER, Axis, TORQUE_CONSTANT};
 use froude_records::units::Dimension;
 
@@ -19,18 +19,6 @@ const DRAG: Dimension = Dimension::new(-1, 1, 0);
 /// m/s³.
 const JERK: Dimension = Dimension::new(1, 0, -3);
 
-const fn optional(name: &'static str, kind: Kind, instead: &'static str, doc: &'static str) -> Key {
-    Key::new(name, kind, IfMissing::Nothing(instead), doc)
-}
-
-const fn needed(name: &'static str, kind: Kind, write: &'static str, doc: &'static str) -> Key {
-    Key::new(name, kind, IfMissing::Required(write), doc)
-}
-
-const fn usual(name: &'static str, kind: Kind, value: &'static str, doc: &'static str) -> Key {
-    Key::new(name, kind, IfMissing::Is(value), doc)
-}
-
 /// A quantity larger than zero.
 const fn positive(name: &'static str, dimension: Dimension, instead: &'static str, doc: &'static str) -> Key {
     optional(name, Kind::Quantity(dimension), instead, doc).within(Range::Positive)
@@ -38,7 +26,7 @@ const fn positive(name: &'static str, dimension: Dimension, instead: &'static st
 
 /// The same, which must be there.
 const fn limit(name: &'static str, dimension: Dimension, write: &'static str, doc: &'static str) -> Key {
-    needed(name, Kind::Quantity(dimension), write, doc).within(Range::Positive)
+    required(name, Kind::Quantity(dimension), write, doc).within(Range::Positive)
 }
 
 /// A declared constant.
@@ -47,8 +35,8 @@ const fn constant(name: &'static str, dimension: Dimension, instead: &'static st
 }
 
 /// The same, which must be there.
-const fn needed_constant(name: &'static str, dimension: Dimension, write: &'static str, doc: &'static str) -> Key {
-    needed(name, Kind::Constant(dimension), write, doc).within(Range::Positive)
+const fn required_constant(name: &'static str, dimension: Dimension, write: &'static str, doc: &'static str) -> Key {
+    required(name, Kind::Constant(dimension), write, doc).within(Range::Positive)
 }
 
 const fn part(name: &'static str, instead: IfMissing, what: &'static str) -> Key {
@@ -56,12 +44,12 @@ const fn part(name: &'static str, instead: IfMissing, what: &'static str) -> Key
 }
 
 const fn gain(name: &'static str, dimension: Dimension, write: &'static str, doc: &'static str) -> Key {
-    needed(name, Kind::Quantity(dimension), write, doc).within(Range::NotNegative("a gain is not"))
+    required(name, Kind::Quantity(dimension), write, doc).within(Range::NotNegative("a gain is not"))
 }
 
 /// Keys of `[rig]`.
 pub const RIG: &[Key] = &[
-    needed(
+    required(
         "kind",
         Kind::Word(&["twin", "serial"]),
         "write kind = \"twin\" or kind = \"serial\"",
@@ -72,7 +60,7 @@ pub const RIG: &[Key] = &[
     optional("baud", Kind::Count(100_000_000), "3_000_000", "baud rate of the port"),
     usual("log_rate", Kind::Quantity(Dimension::ANGULAR_SPEED), "4 kHz", "samples a second in the files")
         .within(Range::Positive),
-    needed(
+    required(
         "y",
         Kind::Table(AXIS),
         "describe the long axis in [rig.y]: travel, limits, drive, controller",
@@ -90,7 +78,7 @@ pub const RIG: &[Key] = &[
 
 /// Keys of `[rig.y]` and `[rig.x]`.
 pub const AXIS: &[Key] = &[
-    needed(
+    required(
         "travel",
         Kind::List(&Kind::Quantity(Dimension::LENGTH)),
         "write the hard stops, travel = [\"0 m\", \"5 m\"]",
@@ -119,31 +107,31 @@ pub const AXIS: &[Key] = &[
     positive("continuous_current_limit", Dimension::CURRENT, "half the peak", "continuous current of the motor"),
     positive("thermal_time", Dimension::TIME, "20 s", "thermal time constant of the winding"),
     positive("following_error_limit", Dimension::LENGTH, "10 mm", "following error"),
-    needed_constant(
+    required_constant(
         "torque_constant",
         TORQUE_CONSTANT,
         "write torque_constant = { value = \"26.7e-3 N m/A\", standard = \"1 %\" }, for example",
         "torque of the motor for a current",
     ),
-    needed_constant(
+    required_constant(
         "amplifier",
         AMPLIFIER,
         "write amplifier = { value = \"0.352 A/V\", standard = \"1 %\" }, for example",
         "current of the amplifier for a command",
     ),
-    needed_constant(
+    required_constant(
         "gear_ratio",
         Dimension::ONE,
         "write gear_ratio = { value = \"34.97 1\", standard = \"1 %\" }, for example",
         "turns of the motor for one of the sprocket",
     ),
-    needed_constant(
+    required_constant(
         "sprocket_radius",
         Dimension::LENGTH,
         "write sprocket_radius = { value = \"55 mm\", standard = \"1 %\" }, for example",
         "radius of the sprocket",
     ),
-    needed(
+    required(
         "counts_per_revolution",
         Kind::Number,
         "write 4000 for 1000 lines decoded fourfold, per turn of the motor",
@@ -155,7 +143,7 @@ pub const AXIS: &[Key] = &[
     constant("inertia", INERTIA, "not identified yet", "J_eff, at the motor's shaft"),
     constant("viscous_friction", VISCOUS, "0", "B_eff, at the motor's shaft"),
     constant("coulomb_friction", Dimension::MOMENT, "not identified yet", "C_eff, at the motor's shaft"),
-    needed(
+    required(
         "controller",
         Kind::Table(CONTROLLER),
         "write the gains: proportional, derivative and integral, in V and rad",
@@ -186,7 +174,7 @@ pub const FORCE_SENSOR: &[Key] = &[
 /// Most repeats of a run.
 const REPEATS: Key = usual("repeats", Kind::Count(10_000), "1", "how often each is run");
 
-const SPEEDS: Key = needed(
+const SPEEDS: Key = required(
     "speeds",
     Kind::Axis(Dimension::SPEED),
     "write speeds = [\"0.05 m/s\", \"0.15 m/s\"], or { start, stop, step }",
@@ -255,7 +243,7 @@ const WARM_UP: &[Key] = &[
 ];
 
 const CALIBRATION: &[Key] = &[
-    needed(
+    required(
         "weights",
         Kind::Axis(Dimension::FORCE),
         "write the weights as forces, [\"9.81 N\", \"19.62 N\"], for example",

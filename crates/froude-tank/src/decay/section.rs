@@ -19,7 +19,7 @@
 use std::f64::consts::PI;
 
 use crate::decay::axis::Motion;
-use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
+use froude_identify::declare::{Key, Kind, Range, Values, optional, required, usual};
 use froude_records::RecordError;
 use froude_records::campaign::Source;
 use froude_records::section::Section;
@@ -55,24 +55,18 @@ const fn by_axis(along: Kind, about: Kind) -> [Kind; Motion::ALL.len()] {
     [along, along, along, about, about, about]
 }
 
-const fn optional(name: &'static str, kind: Kind, instead: &'static str, doc: &'static str) -> Key {
-    Key::new(name, kind, IfMissing::Nothing(instead), doc)
-}
-
 /// The keys of `[source.decay]`.
 pub const KEYS: &[Key] = &[
-    Key::new(
+    required(
         "axis",
         Kind::Word(&Motion::NAMES),
-        IfMissing::Required("state its motion: axis = \"heave\", for example"),
+        "state its motion: axis = \"heave\", for example",
         "the motion: `surge`, `sway`, `heave`, `roll`, `pitch` or `yaw`",
     ),
-    Key::new(
+    required(
         "inertia",
         Kind::By("axis", &by_axis(Kind::Constant(Dimension::MASS), Kind::Constant(INERTIA))),
-        IfMissing::Required(
-            "write inertia = { value = \"12 kg\", standard = \"0.5 %\" }; of a rotation \"0.4 kg m^2\", for example",
-        ),
+        "write inertia = { value = \"12 kg\", standard = \"0.5 %\" }; of a rotation \"0.4 kg m^2\", for example",
         "mass, or moment of inertia about the axis, of all that moves, dry; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
     )
     .within(Range::Positive),
@@ -105,11 +99,11 @@ pub const KEYS: &[Key] = &[
         "the first passage through rest",
         "when the body is free, on the clock of the logs",
     ),
-    Key::new("skip_half_cycles", Kind::Whole, IfMissing::Is("0"), "left out after that"),
+    usual("skip_half_cycles", Kind::Whole, "0", "left out after that"),
 ];
 
 const fn lasting(name: &'static str, default: &'static str, doc: &'static str) -> Key {
-    Key::new(name, Kind::Quantity(Dimension::TIME), IfMissing::Is(default), doc).within(Range::Positive)
+    usual(name, Kind::Quantity(Dimension::TIME), default, doc).within(Range::Positive)
 }
 
 const AWAY: Range = Range::NotZero("a release is away from rest");
