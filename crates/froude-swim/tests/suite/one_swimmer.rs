@@ -209,3 +209,19 @@ fn servos_and_recordings_in_space_close_their_energy() {
         near(of(Energy::Work), taken, 1e-6, "recording");
     }
 }
+
+/// A gait that is unstable in the plane: in three dimensions too the figures are of the circle that it settles into, with the straight motion beside them.
+#[test]
+fn an_unstable_gait_settles_into_the_circle_of_the_plane() {
+    let mut file = flat();
+    file.drag.path = example().with_file_name("../mamba/published/cfd.json");
+    file.drag.select = Some("cfd/f6".to_owned());
+    file.modules.iter_mut().for_each(|module| module.centre_of_mass_m = [0.0, 0.0, 0.004]);
+    let gait = Gait { amplitude: 20_f64.to_radians(), phase: 60_f64.to_radians(), ..lateral() };
+    let (plane, space) = both(&file);
+    let a = plane.swim(&gait, &Drives::free(9), None).unwrap();
+    let b = space.swim(&gait, &Drives::free(9), None).unwrap();
+    // The head rolls by hundredths of a degree on the circle.
+    near(a.periodic.means.net_w, b.periodic.means.net_w, 1e-3, "circle");
+    near(a.unstable.unwrap().means.speed_m_s, b.unstable.unwrap().means.speed_m_s, 1e-5, "straight");
+}
