@@ -74,6 +74,7 @@ fn moves(args: &SwimArgs) -> Result<Moves, Failure> {
         phase: need(given.phase_rad, "--phase", "40 deg")?,
         turn: given.turn_rad.unwrap_or(0.0),
         envelope,
+        pitching: None,
     }))
 }
 

@@ -10,6 +10,8 @@ use std::io::{Read, Write};
 
 use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_swim::drive::{Following, Motor, Servo};
+use froude_swim::driven::Driven;
+use froude_swim::dynamics::Dynamics;
 use froude_swim::engine::{Given, Joints};
 use froude_swim::gait::{Envelope, Gait};
 use froude_swim::spatial::attitude::{LEVEL, world_from_body};
@@ -17,10 +19,6 @@ use froude_swim::spatial::chain::{Chain, Link};
 use froude_swim::spatial::drag::LinkDrag;
 use froude_swim::spatial::engine::{Head, Workspace};
 use froude_swim::spatial::vector::{Axis, Inertia};
-use spatial_driven::Driven;
-
-#[path = "../tests/spatial_driven/mod.rs"]
-mod spatial_driven;
 
 fn main() {
     let mut bytes = Vec::new();
@@ -94,8 +92,7 @@ fn path(chain: &Chain, x: &[f64]) -> Vec<f64> {
     let mut out = Vec::new();
     for i in 0..=steps {
         if i % every == 0 {
-            let pose = Driven::<Servo<'_>>::pose(&state);
-            out.extend(chain.centre_m(pose, &state[7..]));
+            out.extend(Dynamics::centre_m(chain, &std::array::from_fn(|k| state[k]), &state[7..]));
         }
         driven.step(i as f64 * h, h, &mut state).unwrap();
     }

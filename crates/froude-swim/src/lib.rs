@@ -10,6 +10,8 @@
 //! | [`draws`]         | coefficients drawn from their covariance                             |
 //! | [`sensitivity`]   | what speed and cost owe to each coefficient                          |
 //! | [`engine`]      | accelerations and joint torques in O(n)                              |
+//! | [`dynamics`]      | what one swimmer asks of a chain, in the plane or in space           |
+//! | [`state`]         | its state, and what its joints and the water have taken              |
 //! | [`driven`]        | a swimmer with torques at its joints over time                       |
 //! | [`drive`]         | servos, motors and friction of the joints                            |
 //! | [`joints`]          | what joints allow, and what drives them                              |
@@ -17,17 +19,16 @@
 //! | [`front`]         | gaits that no other beats in both of two objectives                  |
 //! | [`gait`]        | joint angles over time                                               |
 //! | [`course`]        | joint angles that were recorded, or grow from straight               |
-//! | [`head`]          | the head's motion over a period of a gait, four at a time            |
+//! | [`head`]          | the head's motion over a period of a gait in the plane, four at a time |
 //! | [`path`]          | a swimmer with a gait over time, its work and loss                   |
 //! | [`period`]        | the motion that repeats, its speed, powers and stability             |
-//! | [`driven_period`]   | the same where servos drive the joints                               |
 //! | [`moving`]          | a swimmer under way, step by step                                    |
 //! | [`robot`]         | a chain from a robot file and the records that it names              |
 //! | [`robot_file`]    | a robot file (TOML) or a URDF with its sidecar, as it is written     |
 //! | [`gait_file`], [`motor_file`] | a gait and a motor (TOML), as they are written               |
 //! | [`swim`]          | what a gait comes to                                                 |
 //! | [`sweep`]         | many gaits, a row of numbers each                                    |
-//! | [`spatial`]       | the same in three dimensions, with weight and buoyancy               |
+//! | [`spatial`]       | a chain in three dimensions, with weight and buoyancy                |
 //! | [`means`]           | speed, powers and needs of a motion over a time                      |
 //! | [`trajectory`]      | the way of a swimmer, moment by moment                               |
 //! | [`track`]           | what a recording of joint angles comes to                            |
@@ -59,17 +60,21 @@ mod body {
 mod motion {
     pub mod course;
     pub mod driven;
-    pub mod driven_period;
+    pub mod dynamics;
     pub mod engine;
     pub mod gait;
     pub mod gait_file;
     pub mod head;
+    mod in_plane;
     pub mod moving;
+    pub(crate) mod newton;
     pub mod path;
     pub mod period;
     pub(crate) mod settled;
     pub(crate) mod sine;
     pub mod stability;
+    pub mod state;
+    pub(crate) mod stepped;
     pub mod trajectory;
 }
 

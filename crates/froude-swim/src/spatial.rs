@@ -1,4 +1,4 @@
-//! The swimmer in three dimensions: six motions a link, joints that yaw or pitch, weight and buoyancy.
+//! A chain in three dimensions: six motions a link, joints that yaw or pitch, weight and buoyancy. What swims is the one swimmer of both spaces ([`crate::dynamics`]).
 //!
 //! | module        | content                                                            |
 //! |---------------|--------------------------------------------------------------------|
@@ -7,11 +7,6 @@
 //! | [`drag`]      | drag of a link by strips, across it in two directions              |
 //! | [`chain`]     | links with inertia, weight and buoyancy, and the joints between them |
 //! | [`engine`]    | accelerations and joint torques in O(n)                            |
-//! | [`path`]        | a swimmer with a gait over time, its work and loss                 |
-//! | [`gait`]        | a wave of the joints that yaw and one of those that pitch          |
-//! | [`period`]      | the motion that repeats, its speed, powers, attitude and stability |
-//! | [`robot`]       | a chain from a robot file and the records that it names            |
-//! | [`swim`]        | what a gait comes to                                               |
 //!
 //! **Frame.** Tank: x and y level, z down. Link axes at the link's centre: x forward along it, y to starboard, z down where it lies level.
 //! **Units.** SI.
@@ -25,9 +20,5 @@ pub mod attitude;
 pub mod chain;
 pub mod drag;
 pub mod engine;
-pub mod gait;
-pub mod path;
-pub mod period;
-pub mod robot;
-pub mod swim;
+mod in_space;
 pub mod vector;

@@ -2,21 +2,20 @@
 
 mod animation;
 mod answer;
+mod balance;
 mod columns;
 mod figures;
 mod leaves;
 mod look;
 mod moves;
 mod optimise;
-mod plane;
 mod reads;
-mod space;
-mod space_figures;
 mod sweep;
 mod told;
 pub mod typed;
 mod uncertain;
 mod water;
+mod way;
 
 use std::path::{Path, PathBuf};
 
@@ -25,11 +24,14 @@ use froude_records::block::{Block, Section};
 use froude_records::outcome::{Content, Head, Outcome, OutputFile};
 use froude_records::table::Table;
 
+use crate::chain::Chain;
 use crate::draws::DrawError;
+use crate::dynamics::Dynamics;
 pub use crate::gait_file::PitchFile as Pitching;
 use crate::joints::Drives;
 use crate::robot::RobotError;
 use crate::robot_file::{RobotFile, read_robot};
+use crate::spatial;
 use crate::swim::SwimError;
 use crate::trajectory::Cut;
 use answer::Figures;
@@ -112,26 +114,10 @@ const MOMENTS: usize = 100;
 pub fn swim(job: &Job, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Outcome, VerbError> {
     let file = read_robot(&job.robot)?;
     if file.model.is_3d {
-        if job.draws.is_some() || job.is_sensitive {
-            planar(&job.robot)?;
-        }
-        return space::swim(&file, job);
+        way::swim::<spatial::chain::Chain>(&file, job, tell)
+    } else {
+        way::swim::<Chain>(&file, job, tell)
     }
-    if job.pitching != Pitching::default() {
-        let problem = "is a planar model; the pitch options need space = \"3d\" in [model]";
-        return Err(VerbError::input(&job.robot, problem));
-    }
-    plane::swim(&file, job, tell)
-}
-
-/// The robot file of a swimmer in a plane.
-fn planar(path: &Path) -> Result<RobotFile, VerbError> {
-    let file = read_robot(path)?;
-    if file.model.is_3d {
-        let problem = "is a 3-D model; sweeps, draws and sensitivities need space = \"planar\" in [model]";
-        return Err(VerbError::input(path, problem));
-    }
-    Ok(file)
 }
 
 /// What its joints allow and what drives them, with the motor of a file.
@@ -163,9 +149,9 @@ impl Job {
     }
 
     /// The answer, with its files where a folder is named: warnings, figures, sentences, and what pages show beside them.
-    fn outcome(
+    fn outcome<C: Dynamics>(
         &self,
-        f: &Figures<'_>,
+        f: &Figures<'_, C>,
         [warnings, sentences]: [Vec<String>; 2],
         drawn: Vec<Block>,
         details: Vec<(&str, Vec<Block>)>,

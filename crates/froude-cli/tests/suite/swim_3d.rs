@@ -61,6 +61,51 @@ fn the_same_file_in_the_plane_has_the_same_figures() {
     assert!(space["remarks"].to_string().contains("nothing rights it"), "{space}");
 }
 
+const SERVO: (&str, &str) = ("limit = \"90 deg\"", "limit = \"90 deg\"\nkp = \"8 N m/rad\"\nkd = \"0.3 N m s/rad\"");
+
+/// With servos, by a recording, and swept with servos: the figures of the plane there too.
+#[test]
+fn servos_recordings_and_sweeps_of_the_same_file_have_the_figures_of_the_plane() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("track.csv");
+    let mut rows = String::from("time [s]");
+    (1..=9).for_each(|i| rows.push_str(&format!(",phi_{i} [deg]")));
+    for k in 0..=100 {
+        let t = 0.09 * f64::from(k);
+        rows.push_str(&format!("\n{t}"));
+        (0..9).for_each(|i| rows.push_str(&format!(",{}", 25.0 * (1.4 * t - 0.7 * f64::from(i)).sin())));
+    }
+    std::fs::write(&table, rows).unwrap();
+    let both = |more: &[&str]| {
+        ["\"3d\"", "\"planar\""].map(|space| {
+            let robot = changed(folder.path(), &[PITCH, LOW, EXACT, SERVO, ("\"3d\"", space)]);
+            let output = froude(&[&["swim", text(&robot)], more, &["--json"]].concat());
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            serde_json::from_slice::<Value>(&output.stdout).unwrap()
+        })
+    };
+    let near = |[a, b]: [f64; 2], what: &str| assert!((a / b - 1.0).abs() < 1e-6, "{what}: {a} {b}");
+    let driven = both(&GAIT);
+    for key in ["speed_m_s", "power_net_w", "torque_peak_n_m"] {
+        near([0, 1].map(|k| number(&driven[k], key)), key);
+    }
+    near([0, 1].map(|k| number(&driven[k]["servo"], "away_from_gait_rad")), "distance from the gait");
+    let out = folder.path().join("out");
+    let tracked = both(&["--track", text(&table), "--out", text(&out)]);
+    for key in ["speed_m_s", "power_net_w", "energy_gained_j", "length_s"] {
+        near([0, 1].map(|k| number(&tracked[k], key)), key);
+    }
+    assert!(number(&tracked[0], "sinking_m").abs() < 1e-9, "{}", tracked[0]);
+    let sweep = ["--sweep", "amplitude=20..30 deg:2", "--frequency", "80 deg/s", "--phase", "40 deg"];
+    let swept = both(&[&sweep[..], &["--out", text(&folder.path().join("map"))]].concat());
+    let best = swept.map(|found| number(&found["best"][0], "speed_m_s"));
+    near(best, "fastest");
+    assert!((best[0] / number(&driven[0], "speed_m_s") - 1.0).abs() < 1e-6, "{best:?}");
+    let front =
+        both(&[&sweep[..], &["--optimise", "speed,power", "--out", text(&folder.path().join("front"))]].concat());
+    near(front.map(|found| number(&found["gaits"][0], "speed_m_s")), "fastest of the front");
+}
+
 /// A module with numbers of its own does not hear those of all.
 #[test]
 fn a_module_s_own_added_mass_stands_before_that_of_all() {
@@ -192,8 +237,6 @@ fn what_three_dimensions_do_not_have_is_refused_and_what_is_odd_is_said() {
     let pitch = ["--pitch-amplitude", "10 deg"];
     assert!(refused(&flat, &pitch).contains("is a planar model"));
     assert!(refused(&changed(folder.path(), &[PITCH]), &pitch).contains("no joint that pitches"));
-    let servo = ("limit = \"90 deg\"", "limit = \"90 deg\"\nkp = \"40 N m/rad\"\nkd = \"1 N m s/rad\"");
-    assert!(refused(&changed(folder.path(), &[servo]), &[]).contains("follow their gait exactly"));
     let gait = folder.path().join("gait.toml");
     let waves = "schema = 1\nkind = \"lateral\"\npitch = { amplitude = \"10 deg\" }\n";
     std::fs::write(&gait, waves).unwrap();

@@ -5,6 +5,8 @@
 //! **Laws that there are not.** Still water must take power from the straight robot. A draw that gains some becomes the nearest law that gains none, in the metric of the covariance, and how many these are is said. To refuse them would cut off the values next to a bound, where the truth may
 //! lie. Bounds of the fit itself are not kept: the printed value is that of the fit within its bounds, and may lie beside the middle of its interval or, rarely, outside. Intervals of draws that were brought back to a boundary are those of a boundary: too narrow where most were.
 //!
+//! In three dimensions too the robot is that of the plane here: what drag does up and down goes with that across, and no record knows it.
+//!
 //! **Nearest law.** Power is linear in the coefficients, so that the laws that take it are a convex cone. Its faces are found one by one: the velocity at which the robot gains the most, then the nearest point behind all faces so far (least distance).
 //!
 //! **Source.** JCGM 101:2008 (propagation of distributions by draws); Lawson & Hanson (1974), 23.4 (least distance by non-negative least squares).
@@ -17,6 +19,7 @@ use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
 use crate::blueprint::{Blueprint, drives_the_whole};
+use crate::chain::Chain;
 
 /// Of draws that are asked for, most that are tried.
 const MOST_TRIES: usize = 100;
@@ -149,7 +152,7 @@ impl Blueprint {
     fn nearest(&self, drawn: &[f64], root: &[Vec<f64>]) -> Option<(Vec<f64>, usize)> {
         let (mut values, mut faces) = (drawn.to_vec(), Vec::new());
         loop {
-            let robot = self.robot(&values);
+            let robot = self.robot::<Chain>(&values);
             if self.of_no_added_mass(&robot).is_some() || faces.len() == MOST_FACES {
                 return None;
             }

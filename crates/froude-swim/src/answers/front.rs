@@ -146,7 +146,7 @@ impl<'a> Search<'a> {
             let fine = Axis { n: (axes[k].n - 1) * self.parts + 1, ..axes[k] };
             fine.at(place[k])
         };
-        Gait { amplitude: at(0), frequency: at(1), phase: at(2), turn: at(3), envelope: self.grid.envelope.clone() }
+        self.grid.with([0, 1, 2, 3].map(at))
     }
 }
 

@@ -22,15 +22,11 @@ pub struct Means {
     pub loss_w: f64,
     /// Mean of what friction of the joints takes, W.
     pub friction_w: f64,
+    /// Mean of what weight and buoyancy take by the change of depth, W; zero in the plane.
+    pub lifting_w: f64,
 }
 
 impl Means {
-    /// Of a level way of the centre of mass, m, a turn, and the integrals of the five powers in their order, J, over a time, s.
-    pub(crate) fn of(time_s: f64, [x, y]: [f64; 2], turn: f64, energies_j: [f64; 5]) -> Self {
-        let [net_w, positive_w, absolute_w, loss_w, friction_w] = energies_j.map(|energy| energy / time_s);
-        Self { speed_m_s: x.hypot(y) / time_s, turn, net_w, positive_w, absolute_w, loss_w, friction_w }
-    }
-
     /// Net power over speed, J/m.
     #[must_use]
     pub fn cost_j_m(&self) -> f64 {

@@ -2,14 +2,11 @@
 //!
 //! **Units.** SI.
 
+use crate::dynamics::Dynamics;
 use crate::gait::{Course, Shape};
 use crate::joints::Drives;
 use crate::losses::{Loss, Losses};
-use crate::means::{Effort, Means};
 use crate::moving::Instant;
-use crate::planar::dot;
-use crate::robot::Robot;
-use crate::stability::Stiffness;
 
 /// A torque within this part of what a motor gives is at its limit.
 const AT_LIMIT: f64 = 1e-9;
@@ -37,7 +34,7 @@ pub struct Needs {
 
 impl Needs {
     /// A moment of a joint, counted from 0.
-    pub(crate) fn see(&mut self, drives: &Drives, joint: usize, torque_n_m: f64, rate: f64) {
+    fn see(&mut self, drives: &Drives, joint: usize, torque_n_m: f64, rate: f64) {
         self.torque_n_m = self.torque_n_m.max(torque_n_m.abs());
         self.rate_rad_s = self.rate_rad_s.max(rate.abs());
         self.share = self.share.max(drives.motor.share(torque_n_m, rate));
@@ -54,35 +51,25 @@ impl Needs {
 
 /// All of it.
 #[derive(Debug)]
-pub(crate) struct Seen<'a> {
-    robot: &'a Robot,
+pub(crate) struct Seen<'a, C> {
+    chain: &'a C,
     drives: &'a Drives,
     course: &'a dyn Course,
-    losses: Losses,
+    pub(crate) losses: Losses,
     needs: Needs,
     moments: usize,
     wanted: Shape,
 }
 
-impl<'a> Seen<'a> {
-    pub(crate) fn new(robot: &'a Robot, drives: &'a Drives, course: &'a dyn Course) -> Self {
-        let wanted = Shape::straight(robot.chain.joints());
-        Self { robot, drives, course, losses: Losses::default(), needs: Needs::default(), moments: 0, wanted }
+impl<'a, C: Dynamics> Seen<'a, C> {
+    pub(crate) fn new(chain: &'a C, drives: &'a Drives, course: &'a dyn Course) -> Self {
+        let wanted = Shape::straight(chain.joints());
+        Self { chain, drives, course, losses: Losses::default(), needs: Needs::default(), moments: 0, wanted }
     }
 
-    pub(crate) fn see(&mut self, now: &Instant<'_>) {
-        for (link, motion) in self.robot.chain.links.iter().zip(now.motions) {
-            let [_, u, v] = *motion;
-            let load = link.drag.load(link.half_length_m, *motion);
-            self.losses.0.push(Loss {
-                speed_m_s: u.hypot(v),
-                // Fore and aft, and port and starboard, are alike.
-                angle_rad: v.abs().atan2(u.abs()),
-                // A link that gains is told apart.
-                power_w: (-dot(load, *motion)).max(0.0),
-                along_w: -load[1] * u,
-            });
-        }
+    pub(crate) fn see(&mut self, now: &Instant<'_, C::Motion>) {
+        let each = now.motions.iter().enumerate();
+        self.losses.0.extend(each.map(|(i, motion)| Loss::of(&self.chain.dragged(i, *motion))));
         self.course.at(now.time_s, &mut self.wanted);
         self.moments += 1;
         let motor = &self.drives.motor;
@@ -104,18 +91,9 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// What was needed, in so many steps.
-    pub(crate) fn effort(&self, means: &Means, steps: usize, stiffness: Option<Stiffness>, least_w: f64) -> Effort {
-        let (losses, all) = (&self.losses, (self.moments * self.robot.chain.joints()) as f64);
-        Effort {
-            electric_w: self.drives.motor.electric_w(means.positive_w, means.absolute_w - means.positive_w),
-            needs: Needs { at_limit: self.needs.at_limit / all.max(1.0), ..self.needs },
-            steps,
-            stiffness,
-            extrapolated: losses.extrapolated(self.robot.speed_m_s, self.robot.angle_rad),
-            along: losses.along(),
-            median_angle_rad: losses.median_angle_rad(),
-            gain_w: self.robot.gain(losses.fastest_m_s(), least_w),
-        }
+    /// What was needed.
+    pub(crate) fn needs(&self) -> Needs {
+        let all = (self.moments * self.chain.joints()) as f64;
+        Needs { at_limit: self.needs.at_limit / all.max(1.0), ..self.needs }
     }
 }

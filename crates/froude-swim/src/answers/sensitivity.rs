@@ -11,6 +11,7 @@
 //! **Source.** JCGM 100:2008, 5.1 and 5.2; the conditional variance of a normal vector.
 
 use crate::blueprint::{Blueprint, Number};
+use crate::dynamics::Dynamics;
 use crate::robot::Robot;
 
 /// Of a coefficient, or of its standard uncertainty where it is zero.
@@ -47,7 +48,7 @@ pub struct Sensitivities {
 
 impl Blueprint {
     /// Of a gait whose speed and cost of transport `swim` tells; `None` where it has no answer beside the estimate.
-    pub fn sensitivities(&self, swim: impl Fn(&Robot) -> Option<[f64; 2]>) -> Option<Sensitivities> {
+    pub fn sensitivities<C: Dynamics>(&self, swim: impl Fn(&Robot<C>) -> Option<[f64; 2]>) -> Option<Sensitivities> {
         let values = self.values();
         let found = swim(&self.robot(&values))?;
         let mut all = Vec::with_capacity(values.len());

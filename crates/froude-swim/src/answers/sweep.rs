@@ -4,7 +4,8 @@
 //!
 //! **Units.** SI, angles in rad; each column's stands in [`COLUMNS`].
 
-use crate::gait::{Course, Envelope, Gait};
+use crate::dynamics::Dynamics;
+use crate::gait::{Course, Gait};
 use crate::joints::Drives;
 use crate::robot::Robot;
 use crate::swim::{Swim, SwimError};
@@ -50,8 +51,8 @@ pub struct Grid {
     pub phase: Axis,
     /// γ, rad.
     pub turn: Axis,
-    /// g.
-    pub envelope: Envelope,
+    /// What all of them have.
+    pub base: Gait,
 }
 
 impl Grid {
@@ -63,7 +64,7 @@ impl Grid {
             frequency: Axis::one(gait.frequency),
             phase: Axis::one(gait.phase),
             turn: Axis::one(gait.turn),
-            envelope: gait.envelope.clone(),
+            base: gait.clone(),
         }
     }
 
@@ -87,8 +88,13 @@ impl Grid {
             *value = axis.at(i % axis.n);
             i /= axis.n;
         }
-        let [amplitude, frequency, phase, turn] = at;
-        Gait { amplitude, frequency, phase, turn, envelope: self.envelope.clone() }
+        self.with(at)
+    }
+
+    /// A gait with other numbers, in the order of the axes.
+    #[must_use]
+    pub fn with(&self, [amplitude, frequency, phase, turn]: [f64; 4]) -> Gait {
+        Gait { amplitude, frequency, phase, turn, ..self.base.clone() }
     }
 }
 
@@ -183,7 +189,7 @@ pub struct Row {
 impl Row {
     /// A robot with a gait; `draw` is the number of its coefficients, 0 of those that are estimated.
     #[must_use]
-    pub fn of(robot: &Robot, drives: &Drives, step_s: Option<f64>, gait: &Gait, draw: usize) -> Self {
+    pub fn of<C: Dynamics>(robot: &Robot<C>, drives: &Drives, step_s: Option<f64>, gait: &Gait, draw: usize) -> Self {
         let found = robot.swim(gait, drives, step_s);
         let asked = [gait.amplitude, gait.frequency, gait.phase, gait.turn, draw as f64];
         let mut numbers = [f64::NAN; COLUMNS.len()];
@@ -204,7 +210,7 @@ impl Row {
     }
 }
 
-fn answer(swim: &Swim, gait: &Gait) -> [f64; COLUMNS.len() - 5] {
+fn answer<C: Dynamics>(swim: &Swim<C>, gait: &Gait) -> [f64; COLUMNS.len() - 5] {
     let (p, m) = (&swim.periodic, &swim.periodic.means);
     let unstable =
         swim.unstable.as_ref().map_or([f64::NAN; 3], |u| [u.means.speed_m_s, u.means.net_w, u.multipliers[0]]);
@@ -237,6 +243,7 @@ fn answer(swim: &Swim, gait: &Gait) -> [f64; COLUMNS.len() - 5] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gait::Envelope;
 
     #[test]
     fn a_grid_has_every_combination_once_and_meets_its_ends() {

@@ -12,15 +12,18 @@
 //!
 //! **Units.** SI.
 
-use crate::drive::Servo;
-use crate::driven::Driven;
 use froude_hydro::similarity::GRAVITY_M_S2;
 
+use crate::chain::Chain;
+use crate::drive::Servo;
+use crate::driven::Driven;
+use crate::dynamics::{Balance, Dynamics};
 use crate::gait::{Course, Gait};
 use crate::head::COARSE;
 use crate::joints::Drives;
-use crate::means::Effort;
-use crate::path::{State, Swimmer};
+use crate::means::{Effort, Means};
+use crate::moving::Instant;
+use crate::path::Swimmer;
 use crate::period::Periodic;
 use crate::robot::Robot;
 use crate::seen::Seen;
@@ -34,13 +37,13 @@ const SHORTER: f64 = 0.5;
 /// Most links times steps of a period.
 const MOST_LINK_STEPS: f64 = 4e6;
 /// Of powers, between which a period is one that repeats.
-pub(crate) const BALANCED: f64 = 1e-4;
+const BALANCED: f64 = 1e-4;
 /// Doublings and halvings of a frequency.
 const MOST_DOUBLINGS: usize = 20;
 /// Of the highest frequency.
 const FOUND: f64 = 1e-3;
 /// A gait that moves a swimmer by less than this part of its length in a period does not swim.
-pub(crate) const STILL: f64 = 1e-9;
+const STILL: f64 = 1e-9;
 /// A gain of less than this part of the net power is none.
 pub(crate) const NO_GAIN: f64 = 1e-3;
 
@@ -138,45 +141,46 @@ pub enum SwimError {
 
 /// What a gait comes to.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Swim<P = Periodic> {
+pub struct Swim<C: Dynamics = Chain> {
     /// The motion that repeats; of a gait whose motion is unstable, the one that it settles into, where there is one. All figures are of this motion.
-    pub periodic: P,
+    pub periodic: Periodic<C>,
     /// The unstable motion that `periodic` takes the place of.
-    pub unstable: Option<Box<P>>,
+    pub unstable: Option<Box<Periodic<C>>>,
     /// Net power over m g U.
     pub cost: f64,
     /// What it needs and loses.
     pub effort: Effort,
 }
 
-impl Robot {
+impl<C: Dynamics> Robot<C> {
     /// Swims a gait to the motion that repeats, in steps of `step_s` at most where it is given.
     ///
     /// # Errors
     ///
     /// [`SwimError`]: joints beyond their limits, no motion that repeats, an inertia that is not positive, a step that is not stable.
-    pub fn swim(&self, gait: &dyn Course, drives: &Drives, step_s: Option<f64>) -> Result<Swim, SwimError> {
+    pub fn swim(&self, gait: &dyn Course, drives: &Drives, step_s: Option<f64>) -> Result<Swim<C>, SwimError> {
         within(gait, drives)?;
         let mut swimmer = Swimmer::new(&self.chain, gait);
-        if swimmer.rates(0.0, &State::default()).is_none() {
+        if swimmer.rates(0.0, &C::REST).is_none() {
             return Err(SwimError::Inertia);
         }
         let (steps, stiffness) = self.steps(gait, drives, step_s)?;
         let driven = || Driven::new(&self.chain, Servo::new(gait, &drives.following, &drives.motor));
-        let mut seen = Seen::new(self, drives, gait);
-        let mut see = |now: &crate::moving::Instant<'_>| seen.see(now);
+        let mut seen = Seen::new(&self.chain, drives, gait);
+        let mut see = |now: &Instant<'_, C::Motion>| seen.see(now);
         let found = if drives.following.is_empty() {
             swimmer.periodic_seen(steps, &mut see)
         } else {
             // Where joints follow exactly is where the search begins.
-            let head = swimmer.periodic(STEPS).map_or([0.0; 3], |exact| exact.head);
-            driven().periodic_seen(head, steps, &mut see)
+            let head = swimmer.periodic(STEPS).map_or(C::REST, |exact| exact.start);
+            driven().periodic_seen(&head, steps, &mut see)
         };
-        let mut periodic = found.ok_or(SwimError::NotPeriodic)?;
+        let mut periodic = found.ok_or_else(|| self.not_periodic())?;
         let mut unstable = None;
-        if periodic.multipliers[0] > 1.0 {
-            let mut again = Seen::new(self, drives, gait);
-            let mut see = |now: &crate::moving::Instant<'_>| again.see(now);
+        // What nothing rights comes to no rest in roll and pitch.
+        if periodic.is_unstable() && self.chain.is_righted() {
+            let mut again = Seen::new(&self.chain, drives, gait);
+            let mut see = |now: &Instant<'_, C::Motion>| again.see(now);
             let settled = if drives.following.is_empty() {
                 swimmer.settled_seen(&periodic, steps, &mut see)
             } else {
@@ -188,25 +192,52 @@ impl Robot {
             }
         }
         let means = periodic.means;
-        let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
-        if means.speed_m_s * gait.period_s() < STILL * length {
+        if means.speed_m_s * gait.period_s() < STILL * self.chain.flat().length_m() {
             return Err(SwimError::Still { speed_m_s: means.speed_m_s });
         }
+        let given = means.loss_w + means.friction_w + means.lifting_w;
         // What is no number is not balanced either.
-        let is_balanced = ((means.loss_w + means.friction_w) / means.net_w - 1.0).abs() <= BALANCED;
+        let is_balanced = (given - means.net_w).abs() <= BALANCED * means.net_w.abs().max(means.loss_w);
         if !is_balanced {
-            return Err(SwimError::NotPeriodic);
+            return Err(self.not_periodic());
         }
         Ok(Swim {
             cost: means.net_w / (self.mass_kg * GRAVITY_M_S2 * means.speed_m_s),
-            effort: seen.effort(&means, steps, stiffness, NO_GAIN * means.net_w),
+            effort: self.effort(&seen, drives, &means, (steps, stiffness), NO_GAIN * means.net_w),
             periodic,
             unstable,
         })
     }
 
+    fn not_periodic(&self) -> SwimError {
+        let restless = |balance: Balance| SwimError::Restless { righting_mm: 1e3 * balance.righting_m };
+        self.chain.balance().map_or(SwimError::NotPeriodic, restless)
+    }
+
+    /// What a motion needed and lost, in so many steps; a module that gains less than `least_w` gains nothing.
+    pub(crate) fn effort(
+        &self,
+        seen: &Seen<'_, C>,
+        drives: &Drives,
+        means: &Means,
+        (steps, stiffness): (usize, Option<Stiffness>),
+        least_w: f64,
+    ) -> Effort {
+        let losses = &seen.losses;
+        Effort {
+            electric_w: drives.motor.electric_w(means.positive_w, means.absolute_w - means.positive_w),
+            needs: seen.needs(),
+            steps,
+            stiffness,
+            extrapolated: losses.extrapolated(self.speed_m_s, self.angle_rad),
+            along: losses.along(),
+            median_angle_rad: losses.median_angle_rad(),
+            gain_w: self.gain(losses.fastest_m_s(), least_w),
+        }
+    }
+
     /// The module that gains the most power from still water at speeds up to one, counted from 1, where it is above `least_w`.
-    pub(crate) fn gain(&self, fastest_m_s: f64, least_w: f64) -> Option<(usize, f64)> {
+    fn gain(&self, fastest_m_s: f64, least_w: f64) -> Option<(usize, f64)> {
         // Modules alike follow each other, and what one gains the next one does.
         let mut last = None;
         let gain = |(i, link): (usize, &crate::chain::Link)| {
@@ -217,7 +248,7 @@ impl Robot {
             let (power, _) = own?;
             (power > least_w).then_some((i + 1, power))
         };
-        self.chain.links.iter().enumerate().filter_map(gain).max_by(|a, b| a.1.total_cmp(&b.1))
+        self.chain.flat().links.iter().enumerate().filter_map(gain).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Steps of a course's time: enough for its waves, the drag and the servos.
@@ -233,7 +264,7 @@ impl Robot {
             following => Some(stiffness(&self.chain, course, following).ok_or(SwimError::Inertia)?),
         };
         // The search for the motion that repeats begins with longer steps.
-        let settled_s = REAL_LIMIT / (COARSE as f64 * self.chain.settles_per_s());
+        let settled_s = REAL_LIMIT / (COARSE as f64 * self.chain.flat().settles_per_s());
         let (longest_s, why) = match stiffness {
             Some(s) if s.longest_step_s < settled_s => (s.longest_step_s, "servos"),
             _ => (settled_s, "linear drag settles it many times within a period"),
@@ -249,7 +280,7 @@ impl Robot {
         }
         let step_s = step_s.unwrap_or((period_s / STEPS as f64).min(SHORTER * longest_s));
         let steps = (period_s / step_s).ceil();
-        let most = MOST_LINK_STEPS / self.chain.links.len() as f64;
+        let most = MOST_LINK_STEPS / (self.chain.joints() + 1) as f64;
         if steps > most {
             return Err(SwimError::TooSlow { period_s, step_s, why, most });
         }

@@ -1,18 +1,19 @@
 //! What a recording of joint angles comes to: means over its time, which no motion has to repeat.
 //!
-//! Speed is the way of the centre of mass through the water over the time. What the joints gave, less what drag and friction took, is kinetic energy at the end less that at the beginning.
+//! Speed is the way of the centre of mass through the water over the time. What the joints gave, less what drag and friction took, is kinetic and potential energy at the end less that at the beginning.
 //!
 //! **Units.** SI.
 
 use crate::course::Recorded;
+use crate::dynamics::{Dynamics, StateOf};
 use crate::gait::Course;
 use crate::joints::Drives;
 use crate::means::{Effort, Means};
-use crate::moving::go;
+use crate::moving::{Passage, go};
 use crate::robot::Robot;
 use crate::seen::Seen;
 use crate::swim::{NO_GAIN, STEPS, SwimError, within};
-use crate::trajectory::{Begin, under_way};
+use crate::trajectory::under_way;
 
 /// Means over a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,8 +22,8 @@ pub struct Tracked {
     pub length_s: f64,
     /// Its means.
     pub means: Means,
-    /// Kinetic energy at the end less that at the beginning, J.
-    pub gained_j: f64,
+    /// Its way, how the head lay, and what kinetic and potential energy it gained.
+    pub passage: Passage,
     /// What it needs and loses.
     pub effort: Effort,
 }
@@ -30,7 +31,7 @@ pub struct Tracked {
 /// Steps between two rows of a recording, at least: a cubic between them is well followed by one.
 const STEPS_PER_ROW: usize = 2;
 
-impl Robot {
+impl<C: Dynamics> Robot<C> {
     /// Follows a recording from a beginning, in steps of `step_s` at most where it is given.
     ///
     /// # Errors
@@ -40,7 +41,7 @@ impl Robot {
         &self,
         track: &Recorded,
         drives: &Drives,
-        begin: &Begin,
+        begin: &StateOf<C>,
         step_s: Option<f64>,
     ) -> Result<Tracked, SwimError> {
         within(track, drives)?;
@@ -49,15 +50,15 @@ impl Robot {
         if step_s.is_none() {
             steps = steps.max(STEPS_PER_ROW * track.rows()).max(STEPS);
         }
-        let mut seen = Seen::new(self, drives, track);
-        let mut moving = under_way(self, track, drives, [0.0; 2], begin, &[]);
+        let mut seen = Seen::new(&self.chain, drives, track);
+        let mut moving = under_way(&self.chain, track, drives, [0.0; 3], begin, &[]);
         let passage =
             go(moving.as_mut(), length_s / steps as f64, steps, &mut |now| seen.see(now)).ok_or(SwimError::Inertia)?;
-        let means = passage.means(length_s, passage.end.heading - begin.heading);
+        let means = passage.means(length_s);
         if !means.net_w.is_finite() {
             return Err(SwimError::Diverged { step_s: length_s / steps as f64 });
         }
-        let effort = seen.effort(&means, steps, stiffness, NO_GAIN * means.net_w.abs());
-        Ok(Tracked { length_s, means, gained_j: passage.gained_j, effort })
+        let effort = self.effort(&seen, drives, &means, (steps, stiffness), NO_GAIN * means.net_w.abs());
+        Ok(Tracked { length_s, means, passage, effort })
     }
 }

@@ -6,13 +6,12 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_hydro::{DragModel, Link as Section, Setting};
+use froude_hydro::{DragModel, Setting};
 use froude_records::estimate::{Covariance, Estimate, OWN, Range, Status, beside};
 
 use crate::added::{Added, added_masses, c_a_of};
-use crate::chain::{AddedMass, Chain, Link};
 use crate::drag::{Cross, LinkDrag, Turning};
-use crate::planar::Inertia;
+use crate::dynamics::Dynamics;
 use crate::robot::{Robot, RobotError, law, selected, setting};
 use crate::robot_file::{AddedFile, FromRecord, RobotFile};
 use crate::shares::{Distribution, Torque, gains, shares};
@@ -25,13 +24,10 @@ const ROUNDING: f64 = 1e-12;
 /// A robot without its coefficients.
 #[derive(Debug, Clone)]
 pub struct Blueprint {
-    masses: Vec<Inertia>,
-    half_lengths_m: Vec<f64>,
+    file: RobotFile,
     model: DragModel,
     setting: Setting,
-    forms: (Distribution, Torque),
     added: Vec<Added>,
-    added_mass: AddedMass,
     added_ids: Vec<String>,
     /// Which C_A a module's added mass goes with.
     by_link: Vec<Option<usize>>,
@@ -154,6 +150,16 @@ impl Blueprint {
         Ok((all, left_out))
     }
 
+    /// Itself, where it has all that a chain of this space needs.
+    ///
+    /// # Errors
+    ///
+    /// [`RobotError::SwayAlone`].
+    pub fn fitting<C: Dynamics>(self) -> Result<Self, RobotError> {
+        let id = (C::TILTS && self.by_link.iter().any(Option::is_some)).then(|| self.added_ids.join(", "));
+        id.map_or(Ok(self), |id| Err(RobotError::SwayAlone { id }))
+    }
+
     fn by(file: &RobotFile, drag: Fitted) -> Result<Self, RobotError> {
         let setting = setting(file, &drag.estimate)?;
         let (model, values) = law(&file.drag, &drag.estimate)?;
@@ -187,15 +193,11 @@ impl Blueprint {
         }
         let mass_kg = file.modules.iter().map(|m| m.mass_kg).sum();
         let displaced: Option<f64> = file.modules.iter().map(|m| Some(m.volume_m3? * file.density_kg_m3)).sum();
-        let masses = file.modules.iter().map(|m| Inertia::rigid(m.mass_kg, m.inertia_kg_m2[2], m.centre_of_mass_m[0]));
         Ok(Self {
-            masses: masses.collect(),
-            half_lengths_m: file.modules.iter().map(|m| m.link.half_length_m).collect(),
+            file: file.clone(),
             model,
             setting,
-            forms: (file.model.distribution, file.model.torque),
             added,
-            added_mass: file.model.added_mass,
             added_ids,
             by_link,
             mass_kg,
@@ -241,29 +243,22 @@ impl Blueprint {
         Some(all.clone().map(row).collect())
     }
 
-    /// The robot with other numbers, in the order of [`Self::numbers`].
+    /// The robot with other numbers, in the order of [`Self::numbers`]; in the plane what that sees of it.
     #[must_use]
-    pub fn robot(&self, values: &[f64]) -> Robot {
+    pub fn robot<C: Dynamics>(&self, values: &[f64]) -> Robot<C> {
         let n = self.model.coefficients().len();
-        let drags = shares(self.model, &self.setting, &values[..n], self.forms);
-        let links = drags.into_iter().enumerate().map(|(i, drag)| {
-            let a = &self.added[i].matrix;
-            // All of it goes with C_A.
-            let part = self.by_link[i].map_or(1.0, |k| values[n + k] / self.coefficients[n + k].value);
-            let [turn, turn_x, turn_y, x, xy, y] =
-                [a[5][5], a[0][5], a[1][5], a[0][0], a[0][1], a[1][1]].map(|entry| part * entry);
-            Link {
-                half_length_m: self.half_lengths_m[i],
-                rigid: self.masses[i],
-                added: Inertia { turn, turn_x, turn_y, x, xy, y },
-                drag,
-            }
+        // All of it goes with C_A.
+        let part = |by_link: &Option<usize>| by_link.map_or(1.0, |k| values[n + k] / self.coefficients[n + k].value);
+        let added = self.added.iter().zip(&self.by_link).map(|(added, by_link)| {
+            let part = part(by_link);
+            added.matrix.map(|row| row.map(|entry| part * entry))
         });
+        let drags = shares(self.model, &self.setting, &values[..n], self.forms());
         Robot {
-            chain: Chain { links: links.collect(), added_mass: self.added_mass },
+            chain: C::built(&self.file, &drags, &added.collect::<Vec<_>>()),
             estimates: (self.drag.estimate.id.clone(), (!self.added_ids.is_empty()).then(|| self.added_ids.join(", "))),
             is_by_link: self.by_link.iter().any(Option::is_some),
-            refers_to: self.section(),
+            refers_to: self.setting.body.link,
             speed_m_s: self.range("speed"),
             angle_rad: self.range("angle"),
             mass_kg: self.mass_kg,
@@ -273,12 +268,12 @@ impl Blueprint {
 
     /// The robot with the numbers that were estimated.
     #[must_use]
-    pub fn estimated(&self) -> Robot {
+    pub fn estimated<C: Dynamics>(&self) -> Robot<C> {
         self.robot(&self.values())
     }
 
-    fn section(&self) -> Section {
-        self.setting.body.link
+    fn forms(&self) -> (Distribution, Torque) {
+        (self.file.model.distribution, self.file.model.torque)
     }
 
     fn range(&self, key: &str) -> Option<[f64; 2]> {
@@ -308,9 +303,20 @@ impl Blueprint {
         let of = |j: usize| {
             let mut one = vec![0.0; n];
             one[j] = 1.0;
-            shares(self.model, &self.setting, &one, self.forms).iter().map(|drag| drag.power_w(velocity_m_s)).sum()
+            shares(self.model, &self.setting, &one, self.forms()).iter().map(|drag| drag.power_w(velocity_m_s)).sum()
         };
         (0..self.coefficients.len()).map(|j| if j < n { of(j) } else { 0.0 }).collect()
+    }
+}
+
+impl<C: Dynamics> Robot<C> {
+    /// The robot of a file.
+    ///
+    /// # Errors
+    ///
+    /// [`RobotError`]: records that cannot be read, estimates that are none of a robot, numbers without what they refer to, in three dimensions an added mass of sway alone.
+    pub fn of(file: &RobotFile) -> Result<Self, RobotError> {
+        Ok(Blueprint::of(file)?.fitting::<C>()?.estimated())
     }
 }
 

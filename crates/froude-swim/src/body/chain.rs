@@ -54,6 +54,20 @@ impl Chain {
         self.links.len().saturating_sub(1)
     }
 
+    /// Its length, m.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.links.iter().map(|link| 2.0 * link.half_length_m).sum()
+    }
+
+    /// A link length in a period, by which motions are measured: as a turn rate, rad/s, of the chain's length, and as a speed, m/s.
+    #[must_use]
+    pub fn per_period(&self, period_s: f64) -> [f64; 2] {
+        let length = self.length_m();
+        let speed = length / self.links.len() as f64 / period_s;
+        [speed / length, speed]
+    }
+
     /// Centres and headings of the links, of a head at a place, m, with a heading, rad, and joints at these angles.
     pub fn places(&self, place_m: [f64; 2], heading: f64, angle: &[f64]) -> impl Iterator<Item = ([f64; 2], f64)> {
         let (mut place, mut heading, mut before) = (place_m, heading, 0.0);

@@ -2,6 +2,8 @@
 //!
 //! **Units.** SI.
 
+use crate::dynamics::Dragged;
+
 /// A link at a moment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Loss {
@@ -11,6 +13,21 @@ pub(crate) struct Loss {
     pub(crate) power_w: f64,
     /// Of it by the force along the link.
     pub(crate) along_w: f64,
+}
+
+impl Loss {
+    pub(crate) fn of(drag: &Dragged) -> Self {
+        let ([u, v, w], [x, ..]) = (drag.velocity_m_s, drag.force_n);
+        let across = v.hypot(w);
+        Self {
+            speed_m_s: u.hypot(across),
+            // Fore and aft, and to all sides, are alike.
+            angle_rad: across.atan2(u.abs()),
+            // A link that gains is told apart.
+            power_w: drag.power_w.max(0.0),
+            along_w: -x * u,
+        }
+    }
 }
 
 /// Of all links at all moments.

@@ -13,7 +13,6 @@ use froude_records::RecordError;
 use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::json::read_estimates;
 
-use crate::blueprint::Blueprint;
 use crate::chain::Chain;
 use crate::robot_file::{FromRecord, RobotFile};
 
@@ -84,11 +83,6 @@ pub enum RobotError {
         /// The estimate.
         id: String,
     },
-    /// A robot of three dimensions.
-    #[error(
-        "the robot is a 3-D model (space = \"3d\" in [model]), and this needs a planar one: write space = \"planar\""
-    )]
-    Space,
     /// An added mass of sway for three dimensions.
     #[error(
         "{id} has C_A, which is of sway alone, and three dimensions need the added mass of all six motions: write them in numbers, or name the record of froude added-mass of one module"
@@ -123,9 +117,9 @@ pub enum RobotError {
 
 /// A robot that can swim.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Robot {
+pub struct Robot<C = Chain> {
     /// Its links.
-    pub chain: Chain,
+    pub chain: C,
     /// Ids of the estimates of drag and, where it comes from one, of added mass.
     pub estimates: (String, Option<String>),
     /// Whether its added mass is that of a link by C_A.
@@ -140,25 +134,6 @@ pub struct Robot {
     pub mass_kg: f64,
     /// Mass less that of the water displaced, kg; `None` where a module does not say its volume.
     pub heavy_kg: Option<f64>,
-}
-
-impl Robot {
-    /// The robot of a file.
-    ///
-    /// # Errors
-    ///
-    /// [`RobotError`]: records that cannot be read, estimates that are none of a robot, numbers without what they refer to.
-    pub fn of(file: &RobotFile) -> Result<Self, RobotError> {
-        if file.model.is_3d {
-            return Err(RobotError::Space);
-        }
-        Self::in_plane(file)
-    }
-
-    /// The same of a file of three dimensions too: what the plane sees of it.
-    pub(crate) fn in_plane(file: &RobotFile) -> Result<Self, RobotError> {
-        Ok(Blueprint::of(file)?.estimated())
-    }
 }
 
 /// The record that is named, and which of its estimates.

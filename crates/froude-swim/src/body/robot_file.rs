@@ -170,6 +170,14 @@ pub struct ModelFile {
     pub roll_drag: [f64; 2],
 }
 
+impl RobotFile {
+    /// Drag up and down over that across, of a module in three dimensions.
+    #[must_use]
+    pub fn heave_drag(&self, module: &ModuleFile) -> f64 {
+        self.model.heave_drag.unwrap_or(module.link.minor_semi_axis_m / module.link.major_semi_axis_m)
+    }
+}
+
 /// Reads a robot file.
 ///
 /// # Errors

@@ -1,43 +1,26 @@
 //! A swimmer whose joints are driven by torques, over time.
 //!
-//! **State**, one number after the other: place and heading of the head (3), φ (n − 1), motion of the head through the water in its own axes (3), φ̇ (n − 1), and the integrals of the powers
-//! ([`Energy`]).
+//! **State**, one number after the other: pose of the head, φ (n − 1), motion of the head through the water in its own axes, φ̇ (n − 1), and the integrals of the powers ([`Energy`]).
 //!
 //! **Units.** SI.
 
 use crate::chain::Chain;
 use crate::drive::Drive;
-use crate::engine::{Given, Joints, Workspace};
-
-/// Integrals of a state, in their order, J: Σ τφ̇ of the motors, what drag takes, Σ max(τφ̇, 0), Σ |τφ̇|, and what friction of the joints takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Energy {
-    /// Σ τφ̇.
-    Work,
-    /// Of drag.
-    Loss,
-    /// Σ max(τφ̇, 0).
-    Positive,
-    /// Σ |τφ̇|.
-    Absolute,
-    /// Of the joints.
-    Friction,
-}
-
-/// Number of integrals.
-const ENERGIES: usize = 5;
+use crate::dynamics::{Dynamics, StateOf};
+use crate::engine::{Given, Joints};
+use crate::state::{ENERGIES, Energy, Numbers, State, add};
 
 /// A chain with its drive.
 #[derive(Debug, Clone)]
-pub struct Driven<'a, D> {
+pub struct Driven<'a, D, C: Dynamics = Chain> {
     /// Its links.
-    pub chain: &'a Chain,
+    pub chain: &'a C,
     /// What drives its joints.
     pub drive: D,
     /// Speed of the water over the ground, m/s.
-    pub current_m_s: [f64; 2],
+    pub current_m_s: [f64; 3],
     /// Memory of the engine.
-    pub work: Workspace,
+    pub work: C::Work,
     /// Torques of the motors at the last evaluation, N m.
     pub torque: Vec<f64>,
     /// The same less friction.
@@ -45,25 +28,50 @@ pub struct Driven<'a, D> {
     stages: [Vec<f64>; 3],
 }
 
-impl<'a, D: Drive> Driven<'a, D> {
+impl<'a, D: Drive, C: Dynamics> Driven<'a, D, C> {
     /// In still water.
     #[must_use]
-    pub fn new(chain: &'a Chain, drive: D) -> Self {
-        let (work, torque) = (Workspace::new(chain), vec![0.0; chain.joints()]);
-        let stages = [(); 3].map(|()| vec![0.0; 2 * chain.joints() + 6 + ENERGIES]);
-        Self { chain, drive, current_m_s: [0.0; 2], work, net: torque.clone(), torque, stages }
+    pub fn new(chain: &'a C, drive: D) -> Self {
+        let (work, torque) = (chain.work(), vec![0.0; chain.joints()]);
+        let stages = [(); 3].map(|()| vec![0.0; Self::RATES + 2 * chain.joints() + ENERGIES]);
+        Self { chain, drive, current_m_s: [0.0; 3], work, net: torque.clone(), torque, stages }
     }
+
+    /// Where the angles stand in a state.
+    pub const ANGLES: usize = C::Pose::LEN;
+    /// Where the motion of the head stands, less the number of joints …
+    pub const HEAD: usize = Self::ANGLES;
+    /// … and the rates of the joints.
+    pub const RATES: usize = Self::HEAD + C::Motion::LEN;
 
     /// Length of a state.
     #[must_use]
     pub fn size(&self) -> usize {
-        2 * self.chain.joints() + 6 + ENERGIES
+        self.stages[0].len()
     }
 
     /// Where an integral stands in a state.
     #[must_use]
     pub fn at(&self, energy: Energy) -> usize {
-        2 * self.chain.joints() + 6 + energy as usize
+        Self::RATES + 2 * self.chain.joints() + energy as usize
+    }
+
+    /// A state of a head with nothing given or taken yet, and φ and φ̇ of the joints.
+    #[must_use]
+    pub fn state(&self, head: &StateOf<C>, angle: &[f64], rate: &[f64]) -> Vec<f64> {
+        [head.pose.as_ref(), angle, head.head.as_ref(), rate, &[0.0; ENERGIES]].concat()
+    }
+
+    /// The head of a state.
+    #[must_use]
+    #[inline(always)]
+    pub fn head_of(&self, state: &[f64]) -> StateOf<C> {
+        let j = self.chain.joints();
+        State {
+            pose: C::Pose::first_of(state),
+            head: C::Motion::first_of(&state[Self::HEAD + j..]),
+            energy_j: <[f64; ENERGIES]>::first_of(&state[Self::RATES + 2 * j..]),
+        }
     }
 
     /// Rates of a state; `None` where an inertia is not positive.
@@ -73,9 +81,9 @@ impl<'a, D: Drive> Driven<'a, D> {
 
     #[inline(always)]
     fn rates_here(&mut self, time_s: f64, state: &[f64], rates: &mut [f64]) -> Option<()> {
-        let j = self.chain.joints();
-        let (angle, rate) = (&state[3..3 + j], &state[6 + j..6 + 2 * j]);
-        let head = [state[3 + j], state[4 + j], state[5 + j]];
+        let (j, State { pose, head, .. }) = (self.chain.joints(), self.head_of(state));
+        let (head_at, rates_at) = (Self::HEAD + j, Self::RATES + j);
+        let (angle, rate) = (&state[Self::ANGLES..head_at], &state[rates_at..rates_at + j]);
         self.drive.torque(time_s, angle, rate, &mut self.torque);
         let mut energy = [0.0; ENERGIES];
         for i in 0..j {
@@ -88,17 +96,15 @@ impl<'a, D: Drive> Driven<'a, D> {
             energy[Energy::Absolute as usize] += power.abs();
             energy[Energy::Friction as usize] += friction * rate;
         }
-        let turned = self.work.recursion(head, Joints { angle, rate }, Given::Torque(&self.net))?;
-        energy[Energy::Loss as usize] = self.work.loss_w;
-        let (s, c) = state[2].sin_cos();
-        let [w, u, v] = head;
-        rates[0] = c * u - s * v + self.current_m_s[0];
-        rates[1] = s * u + c * v + self.current_m_s[1];
-        rates[2] = w;
-        rates[3..3 + j].copy_from_slice(rate);
-        rates[3 + j..6 + j].copy_from_slice(&turned);
-        rates[6 + j..6 + 2 * j].copy_from_slice(&self.work.answer);
-        rates[6 + 2 * j..].copy_from_slice(&energy);
+        let joints = Joints { angle, rate };
+        let turned = self.chain.recursion(&mut self.work, (&pose, head), joints, Given::Torque(&self.net))?;
+        let found = C::evaluated(&self.work);
+        energy[Energy::Loss as usize] = found.loss_w;
+        rates[..Self::ANGLES].copy_from_slice(C::pose_rate(&pose, head, self.current_m_s).as_ref());
+        rates[Self::ANGLES..head_at].copy_from_slice(rate);
+        rates[head_at..rates_at].copy_from_slice(turned.as_ref());
+        rates[rates_at..rates_at + j].copy_from_slice(found.answer);
+        rates[rates_at + j..].copy_from_slice(&energy);
         Some(())
     }
 
@@ -148,19 +154,20 @@ impl<'a, D: Drive> Driven<'a, D> {
             add(mean, weight / 6.0, rate);
         }
         add(state, h, mean);
+        C::settle(&mut state[..Self::ANGLES]);
         Some(())
     }
 }
 
 /// Rates, compiled for what the processor has.
-struct Rates<'k, 'a, D> {
-    driven: &'k mut Driven<'a, D>,
+struct Rates<'k, 'a, D, C: Dynamics> {
+    driven: &'k mut Driven<'a, D, C>,
     time_s: f64,
     state: &'k [f64],
     out: &'k mut [f64],
 }
 
-impl<D: Drive> froude_lanes::Kernel for Rates<'_, '_, D> {
+impl<D: Drive, C: Dynamics> froude_lanes::Kernel for Rates<'_, '_, D, C> {
     type Output = Option<()>;
 
     #[inline(always)]
@@ -170,27 +177,19 @@ impl<D: Drive> froude_lanes::Kernel for Rates<'_, '_, D> {
 }
 
 /// The rest of a step, compiled for what the processor has.
-struct Rest<'k, 'a, D> {
-    driven: &'k mut Driven<'a, D>,
+struct Rest<'k, 'a, D, C: Dynamics> {
+    driven: &'k mut Driven<'a, D, C>,
     time_s: f64,
     h: f64,
     state: &'k mut [f64],
     stages: &'k mut [Vec<f64>; 3],
 }
 
-impl<D: Drive> froude_lanes::Kernel for Rest<'_, '_, D> {
+impl<D: Drive, C: Dynamics> froude_lanes::Kernel for Rest<'_, '_, D, C> {
     type Output = Option<()>;
 
     #[inline(always)]
     fn run<V: froude_lanes::Vectors>(self, _: V) -> Option<()> {
         self.driven.rest_here(self.time_s, self.h, self.state, self.stages)
-    }
-}
-
-/// to += by · of.
-#[inline(always)]
-fn add(to: &mut [f64], by: f64, of: &[f64]) {
-    for (to, of) in to.iter_mut().zip(of) {
-        *to += by * of;
     }
 }

@@ -11,9 +11,12 @@
 //!
 //! **Source.** Kirchhoff's equations of the whole, Lamb (1932), §124; our derivation.
 
+use faer::Mat;
+
 use crate::chain::{AddedMass, Chain};
 use crate::drag_lanes::{DragLanes, LANES, Three};
 use crate::gait::{Course, Shape};
+use crate::newton::{Form, Map, STEP};
 use crate::planar::{Inertia, Load, Motion, turned};
 
 /// Motions side by side.
@@ -53,6 +56,8 @@ pub struct HeadMap {
     nodes: Vec<Node>,
     posed: Vec<Posed>,
     step_s: f64,
+    form: Form,
+    periods: usize,
 }
 
 impl HeadMap {
@@ -77,6 +82,11 @@ impl HeadMap {
             nodes,
             posed,
             step_s,
+            form: {
+                let [turn, speed] = chain.per_period(period_s);
+                Form { size: vec![turn, speed, speed], tilt: None, has_corners: false }
+            },
+            periods: 0,
         })
     }
 
@@ -84,6 +94,33 @@ impl HeadMap {
     #[must_use]
     pub fn over(&self, heads: &[Motion; SIDE_BY_SIDE], one_of: usize) -> [Motion; SIDE_BY_SIDE] {
         froude_lanes::run(Over { map: self, heads, one_of })
+    }
+}
+
+impl Map for HeadMap {
+    fn form(&self) -> &Form {
+        &self.form
+    }
+
+    fn over(&mut self, from: &[f64], one_of: usize) -> Option<Vec<f64>> {
+        let [end, ..] = HeadMap::over(self, &[[from[0], from[1], from[2]]; SIDE_BY_SIDE], one_of);
+        Some(end.to_vec())
+    }
+
+    fn periods(&self) -> usize {
+        self.periods
+    }
+
+    /// One motion and its three neighbours.
+    fn differentiated(&mut self, from: &[f64], _: Option<Vec<f64>>, one_of: usize) -> Option<(Vec<f64>, Mat<f64>)> {
+        self.periods += 1;
+        let (size, mut starts) = (&self.form.size, [[from[0], from[1], from[2]]; SIDE_BY_SIDE]);
+        for j in 0..3 {
+            starts[j + 1][j] += STEP * size[j];
+        }
+        let [end, moved @ ..] = HeadMap::over(self, &starts, one_of);
+        let is_finite = end.iter().all(|x| x.is_finite());
+        is_finite.then(|| (end.to_vec(), Mat::from_fn(3, 3, |i, j| (moved[j][i] - end[i]) / (STEP * size[j]))))
     }
 }
 
@@ -274,8 +311,9 @@ mod tests {
     use super::*;
     use crate::chain::Link;
     use crate::drag::{Cross, LinkDrag, Turning};
+    use crate::dynamics::{Dynamics, StateOf};
     use crate::gait::{Envelope, Gait};
-    use crate::path::{State, Swimmer};
+    use crate::path::Swimmer;
 
     /// Both forms of the added mass and of the drag: the end of a period by momenta is that by accelerations. Two integrations of fourth order in 800 steps differ by some 1e-9 of the speed.
     #[test]
@@ -298,7 +336,7 @@ mod tests {
             for (head, found) in heads.iter().zip(found) {
                 let h = gait.period_s() / 800.0;
                 let mut swimmer = Swimmer::new(&chain, &gait);
-                let start = State { head: *head, ..State::default() };
+                let start = StateOf::<Chain> { head: *head, ..Chain::REST };
                 let end = (0..800).fold(start, |s, i| swimmer.step(h * f64::from(i), h, &s).unwrap());
                 for (a, b) in found.iter().zip(end.head) {
                     assert!((a - b).abs() < 1e-8, "{found:?} {:?}", end.head);

@@ -12,7 +12,8 @@ use faer::c64;
 use crate::chain::{Chain, Link};
 use crate::drag::Turning;
 use crate::drive::Following;
-use crate::engine::{Given, Joints, Workspace};
+use crate::dynamics::Dynamics;
+use crate::engine::{Given, Joints};
 use crate::gait::{Course, Shape};
 
 /// Where |R| = 1 on the negative real axis.
@@ -32,22 +33,27 @@ pub struct Stiffness {
     pub longest_step_s: f64,
 }
 
-/// The stiffest of a course's shapes; `None` where an inertia is not positive or there is no joint.
+/// The stiffest of a course's shapes; `None` where an inertia is not positive or there is no joint. Weight and buoyancy, which answer too, are left out.
 #[must_use]
-pub fn stiffness(chain: &Chain, course: &dyn Course, following: &[Following]) -> Option<Stiffness> {
+pub fn stiffness<C: Dynamics>(chain: &C, course: &dyn Course, following: &[Following]) -> Option<Stiffness> {
     let n = chain.joints();
-    let mut work = Workspace::new(chain);
+    let mut work = chain.work();
     let mut shape = Shape::straight(n);
     let still = vec![0.0; n];
     let mut out: Option<Stiffness> = None;
     for k in 0..SHAPES {
         course.at(course.period_s() * k as f64 / SHAPES as f64, &mut shape);
+        let mut answer = |torque: &[f64]| {
+            let joints = Joints { angle: &shape.angle, rate: &still };
+            chain.evaluate(&mut work, (&C::REST.pose, C::REST.head), joints, Given::Torque(torque))?;
+            Some(C::evaluated(&work).answer.to_vec())
+        };
+        let by_weight = answer(&still)?;
         let mut inverse = Mat::<f64>::zeros(n, n);
         for j in 0..n {
             let torque: Vec<f64> = (0..n).map(|i| f64::from(u8::from(i == j))).collect();
-            let joints = Joints { angle: &shape.angle, rate: &still };
-            work.evaluate([0.0; 3], joints, Given::Torque(&torque))?;
-            (0..n).for_each(|i| inverse[(i, j)] = work.answer[i]);
+            let found = answer(&torque)?;
+            (0..n).for_each(|i| inverse[(i, j)] = found[i] - by_weight[i]);
         }
         let here = of(&inverse, following)?;
         out = Some(out.map_or(here, |worst| Stiffness {

@@ -130,4 +130,25 @@ impl Chain {
         }
         sum.map(|x| x / all)
     }
+
+    /// How far the mass lies ahead of and below the buoyancy of the straight, level chain, by weight, m.
+    #[must_use]
+    pub fn apart_m(&self) -> [f64; 2] {
+        // Of weight and of buoyancy: their sum, with their moments along x and z.
+        let mut sums = [[0.0; 3]; 2];
+        let mut centre = 0.0;
+        for (i, link) in self.links.iter().enumerate() {
+            if i > 0 {
+                centre -= self.links[i - 1].half_length_m + link.half_length_m;
+            }
+            let both = [(link.weight_n, link.centre_of_mass_m), (link.buoyancy_n, link.centre_of_buoyancy_m)];
+            for (sum, (force, at)) in sums.iter_mut().zip(both) {
+                sum[0] += force;
+                sum[1] += force * (centre + at[0]);
+                sum[2] += force * at[2];
+            }
+        }
+        let [mass, water] = sums;
+        [1, 2].map(|k| mass[k] / mass[0] - water[k] / water[0])
+    }
 }

@@ -8,6 +8,7 @@ use froude_records::text::visible;
 use serde::Serialize;
 
 use super::water;
+use crate::dynamics::Dynamics;
 use crate::robot::Robot;
 use crate::robot_file::RobotFile;
 use crate::trajectory::Moment;
@@ -43,12 +44,13 @@ struct Data {
 }
 
 /// The animation as one self-contained HTML file.
-pub(super) fn html(file: &RobotFile, robot: &Robot, moments: &[Moment]) -> String {
-    let chain = &robot.chain;
+pub(super) fn html<C: Dynamics>(file: &RobotFile, robot: &Robot<C>, moments: &[Moment<C>]) -> String {
+    let chain = &robot.chain.flat();
     let n = chain.links.len();
     let shown = &moments[..moments.len().min(MOST_NUMBERS / (5 * n + 4))];
     let length_m: f64 = chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
-    let links: Vec<Vec<water::LinkInWater>> = shown.iter().map(|m| water::links(chain, m).collect()).collect();
+    let links: Vec<Vec<water::LinkInWater>> =
+        shown.iter().map(|m| water::links((&robot.chain, chain), m).collect()).collect();
     let place = |at: [f64; 2]| at.map(|x| (x * FINE / length_m).round() as i64);
     let (force_unit_n, force) = counted(links.iter().flatten().flat_map(|link| link.drag_n));
     let (speed_unit_m_s, speed) = counted(shown.iter().map(|m| water::speed_m_s(chain, m)));
@@ -66,7 +68,7 @@ pub(super) fn html(file: &RobotFile, robot: &Robot, moments: &[Moment]) -> Strin
         place: links.iter().map(|all| all.iter().flat_map(|l| place(l.place_m)).collect()).collect(),
         heading_mrad: links.iter().map(|all| all.iter().map(|l| (1e3 * l.heading).round() as i64).collect()).collect(),
         force: force.chunks(2 * n).map(<[i64]>::to_vec).collect(),
-        centre: shown.iter().map(|m| place(m.centre_m)).collect(),
+        centre: shown.iter().map(|m| place([m.centre_m[0], m.centre_m[1]])).collect(),
         speed,
         power,
     };

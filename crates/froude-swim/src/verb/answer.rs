@@ -6,16 +6,15 @@ use froude_records::number::{count, degrees, percent};
 
 pub(super) use super::leaves::Repeats;
 use super::moves::Asked;
+use crate::dynamics::{Balance, Dynamics};
 use crate::means::{Effort, Means};
 use crate::robot::Robot;
-use crate::spatial::period::Periodic;
-use crate::spatial::robot::SpatialRobot;
 
 /// What a swim comes to.
 #[derive(Debug)]
-pub(super) struct Figures<'a> {
+pub(super) struct Figures<'a, C> {
     pub name: &'a str,
-    pub robot: &'a Robot,
+    pub robot: &'a Robot<C>,
     /// The files that were read.
     pub data: &'a [DataFile],
     pub asked: &'a Asked,
@@ -30,22 +29,31 @@ pub(super) struct Figures<'a> {
     /// Of a recording: its length, s, and the kinetic energy gained, J.
     pub track: Option<[f64; 2]>,
     /// In three dimensions.
-    pub space: Option<Space<'a>>,
+    pub space: Option<Space>,
 }
 
 /// What only three dimensions have.
 #[derive(Debug)]
-pub(super) struct Space<'a> {
-    pub robot: &'a SpatialRobot,
-    pub periodic: &'a Periodic,
-    pub period_s: f64,
+pub(super) struct Space {
+    pub balance: Balance,
+    /// Least and largest roll and pitch, rad.
+    pub tilt: [[f64; 2]; 2],
+    /// Way of the centre of mass, m, and its time, s.
+    pub way_m: [f64; 3],
+    pub time_s: f64,
 }
 
-impl Figures<'_> {
+impl Space {
+    pub(super) fn sinking_m_s(&self) -> f64 {
+        self.way_m[2] / self.time_s
+    }
+}
+
+impl<C: Dynamics> Figures<'_, C> {
     /// Who swims, with what, in a line.
     pub(super) fn subtitle(&self) -> String {
         let space = if self.space.is_some() { " in three dimensions" } else { "" };
-        format!("{} modules{space}, drag of {}", count(self.robot.chain.links.len()), self.robot.estimates.0)
+        format!("{} modules{space}, drag of {}", count(self.robot.chain.joints() + 1), self.robot.estimates.0)
     }
 
     /// All of them.
@@ -58,7 +66,7 @@ impl Figures<'_> {
         let mut columns = vec![
             f.text("robot", "", |f| f.name.to_owned()),
             f.text("space", "", |f| if f.space.is_some() { "3d" } else { "planar" }.to_owned()),
-            f.count("modules", "", |f| f.robot.chain.links.len()),
+            f.count("modules", "", |f| f.robot.chain.joints() + 1),
             f.text("drag", "", |f| f.robot.estimates.0.clone()),
             f.text("added_mass", "", |f| f.robot.estimates.1.clone()),
         ];
@@ -103,7 +111,7 @@ impl Figures<'_> {
             f.number("power_friction_w", "friction of the joints [W]", |f| {
                 Some(f.means.friction_w).filter(|watts| *watts > 0.0)
             }),
-            f.number("power_lifting_w", "", |f| f.space.as_ref().map(|s| s.periodic.lifting_w)),
+            f.number("power_lifting_w", "", |f| f.space.as_ref().map(|_| f.means.lifting_w)),
             f.number("power_electric_w", "power from the battery [W]", |f| f.effort.electric_w),
             f.number("cost_of_transport_electric_j_m", "energy per distance from the battery [J/m]", |f| {
                 f.effort.electric_w.map(|electric| electric / f.means.speed_m_s)
@@ -139,19 +147,18 @@ impl Figures<'_> {
         let turn = f.number(turn_key, turn, |f| f.means.turn).places(2);
         let mut out = Vec::new();
         if self.space.is_some() {
+            let space = |f: &'a Self| f.space.as_ref();
+            let [per_period, sinks] =
+                if self.track.is_some() { ["", ""] } else { ["_per_period", "sinks per period [mm]"] };
             out.extend([
-                f.interval("roll_rad", "roll of the head [deg]", |f| f.space.as_ref().map(|s| s.periodic.roll)).range(),
-                f.interval("pitch_rad", "pitch of the head [deg]", |f| f.space.as_ref().map(|s| s.periodic.pitch))
-                    .range(),
+                f.interval("roll_rad", "roll of the head [deg]", move |f| space(f).map(|s| s.tilt[0])).range(),
+                f.interval("pitch_rad", "pitch of the head [deg]", move |f| space(f).map(|s| s.tilt[1])).range(),
                 turn,
-                f.number("sinking_per_period_m", "sinks per period [mm]", |f| {
-                    f.space.as_ref().map(|s| s.periodic.way_m[2])
-                })
-                .places(2),
-                f.number("sinking_m_s", "", |f| f.space.as_ref().map(|s| s.periodic.way_m[2] / s.period_s)),
-                f.numbers("way_per_period_m", "", |f| f.space.as_ref().map(|s| s.periodic.way_m.to_vec())),
-                f.number("righting_m", "", |f| f.space.as_ref().map(|s| s.robot.righting_m)),
-                f.number("trim_m", "", |f| f.space.as_ref().map(|s| s.robot.trim_m)),
+                f.number(&format!("sinking{per_period}_m"), sinks, move |f| space(f).map(|s| s.way_m[2])).places(2),
+                f.number("sinking_m_s", "", move |f| space(f).map(Space::sinking_m_s)),
+                f.numbers(&format!("way{per_period}_m"), "", move |f| space(f).map(|s| s.way_m.to_vec())),
+                f.number("righting_m", "", move |f| space(f).map(|s| s.balance.righting_m)),
+                f.number("trim_m", "", move |f| space(f).map(|s| s.balance.trim_m)),
             ]);
         } else {
             out.push(turn);

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use crate::dynamics::Dynamics;
+use crate::state::Energy;
 use crate::trajectory::Moment;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit, parse_unit};
@@ -15,31 +17,53 @@ pub(super) fn column(name: &str, unit: &str, si: Vec<f64>) -> Column {
 }
 
 /// Columns with their units, a row per moment.
-pub(super) fn table(moments: &[Moment], is_driven: bool, path: &Path) -> Table {
+pub(super) fn table<C: Dynamics>(moments: &[Moment<C>], is_driven: bool, path: &Path) -> Table {
     let mut columns = Vec::new();
-    let mut put = |name: &str, unit: &str, of: &dyn Fn(&Moment) -> f64| {
+    let mut put = |name: &str, unit: &str, of: &dyn Fn(&Moment<C>) -> f64| {
         columns.push(column(name, unit, moments.iter().map(of).collect()));
     };
-    let energy = moments.first().map_or(0.0, |m| m.energy_j);
+    // What the plane has of three dimensions.
+    let level = |names: [&'static str; 3], plane: usize| {
+        let all = names.into_iter().enumerate();
+        all.filter(move |(k, _)| C::TILTS || if plane == 1 { *k == 2 } else { *k < plane })
+    };
     put("time", "s", &|m| m.time_s);
-    put("x", "m", &|m| m.centre_m[0]);
-    put("y", "m", &|m| m.centre_m[1]);
-    put("heading", "rad", &|m| m.state.heading);
-    put("v_x", "m/s", &|m| m.state.head[1]);
-    put("v_y", "m/s", &|m| m.state.head[2]);
-    put("w_z", "rad/s", &|m| m.state.head[0]);
+    for (k, name) in level(["x", "y", "z"], 2) {
+        put(name, "m", &|m| m.centre_m[k]);
+    }
+    for (k, name) in level(["roll", "pitch", "heading"], 1) {
+        put(name, "rad", &|m| C::angles(&m.state.pose)[k]);
+    }
+    if C::TILTS {
+        for (k, name) in ["q_w", "q_x", "q_y", "q_z"].into_iter().enumerate() {
+            put(name, "1", &|m| m.state.pose.as_ref()[3 + k]);
+        }
+    }
+    for (k, name) in level(["v_x", "v_y", "v_z"], 2) {
+        put(name, "m/s", &|m| C::six(&m.state.head)[3 + k]);
+    }
+    for (k, name) in level(["w_x", "w_y", "w_z"], 1) {
+        put(name, "rad/s", &|m| C::six(&m.state.head)[k]);
+    }
     for i in 0..moments.first().map_or(0, |m| m.torque_n_m.len()) {
         put(&format!("phi_{}", i + 1), "rad", &|m| m.shape.angle[i]);
         put(&format!("phi_dot_{}", i + 1), "rad/s", &|m| m.shape.rate[i]);
         put(&format!("tau_{}", i + 1), "N m", &|m| m.torque_n_m[i]);
     }
-    put("power_net", "W", &|m| m.power_w[0]);
-    put("power_pos", "W", &|m| m.power_w[1]);
-    put("power_loss", "W", &|m| m.power_w[2]);
-    if is_driven {
-        put("power_friction", "W", &|m| m.power_w[3]);
+    let powers = ["power_net", "power_pos", "power_loss", "power_friction"].into_iter().enumerate();
+    for (k, name) in powers.take(if is_driven { 4 } else { 3 }) {
+        put(name, "W", &|m| m.power_w[k]);
     }
-    put("energy_kinetic", "J", &|m| m.energy_j);
-    put("energy_residual", "J", &|m| m.state.work_j - m.state.loss_j - m.friction_j - (m.energy_j - energy));
+    let all = |m: &Moment<C>| m.energy_j[0] + m.energy_j[1];
+    let (first, lowest) = moments.first().map_or((0.0, 0.0), |m| (all(m), m.energy_j[1]));
+    put("energy_kinetic", "J", &|m| m.energy_j[0]);
+    if C::TILTS {
+        put("energy_potential", "J", &|m| m.energy_j[1] - lowest);
+    }
+    let given = |m: &Moment<C>| {
+        let [work, loss, friction] = [Energy::Work, Energy::Loss, Energy::Friction].map(|of| m.state.energy(of));
+        work - loss - friction
+    };
+    put("energy_residual", "J", &|m| given(m) - (all(m) - first));
     Table::of(path.to_owned(), columns, (1..=moments.len()).collect())
 }

@@ -1,10 +1,11 @@
-//! The way of a swimmer in the plane, in figures.
+//! The way of a swimmer in figures.
 
 use froude_records::block::Block;
 use froude_records::number::{degrees, significant};
 use froude_records::page::{Chart, ChartPanel, Mark, Series};
 
-use crate::planar::dot;
+use crate::dynamics::Dynamics;
+use crate::losses::Loss;
 use crate::robot::Robot;
 use crate::trajectory::Moment;
 
@@ -13,117 +14,140 @@ const MOST_LINES: usize = 5;
 /// Points of a distribution.
 const POINTS: usize = 90;
 
-fn column(moments: &[Moment], of: impl Fn(&Moment) -> f64) -> Vec<f64> {
+fn column<C: Dynamics>(moments: &[Moment<C>], of: impl Fn(&Moment<C>) -> f64) -> Vec<f64> {
     moments.iter().map(of).collect()
 }
 
-pub(super) fn line(name: &str, x: &[f64], y: Vec<f64>) -> Series {
+fn line(name: &str, x: &[f64], y: Vec<f64>) -> Series {
     Series { name: name.to_owned(), x: x.to_vec(), y, ..Series::default() }
 }
 
-pub(super) fn panel(y_label: &str, series: Vec<Series>) -> ChartPanel {
+fn panel(y_label: &str, series: Vec<Series>) -> ChartPanel {
     ChartPanel { y_label: y_label.to_owned(), series, ..ChartPanel::default() }
 }
 
-pub(super) fn chart(name: &str, title: &str, caption: &str, x_label: &str, panels: Vec<ChartPanel>) -> Block {
+fn chart(name: &str, title: &str, caption: &str, x_label: &str, panels: Vec<ChartPanel>) -> Block {
     let [name, title, caption, x_label] = [name, title, caption, x_label].map(str::to_owned);
     Block::Chart(Chart { name, title, caption, x_label, panels, ..Chart::default() })
 }
 
-pub(super) fn path(moments: &[Moment]) -> Block {
-    let centre = line("centre of mass", &column(moments, |m| m.centre_m[0]), column(moments, |m| m.centre_m[1]));
-    let head = line("head", &column(moments, |m| m.state.place_m[0]), column(moments, |m| m.state.place_m[1]));
-    chart(
-        "path",
-        "Path in the tank",
-        "Path of the head's centre and of the centre of mass over the ground; x and y have scales of their own.",
-        "x [m]",
-        vec![panel("y [m]", vec![head, centre])],
-    )
-}
-
-pub(super) fn motion(moments: &[Moment]) -> Block {
+/// The path and what the head does on it.
+pub(super) fn way<C: Dynamics>(moments: &[Moment<C>]) -> Vec<Block> {
+    let x = column(moments, |m| m.centre_m[0]);
+    let centre = |k: usize| line("centre of mass", &x, column(moments, |m| m.centre_m[k]));
     let time = column(moments, |m| m.time_s);
-    let turning = column(moments, |m| m.state.head[0].to_degrees());
-    chart(
-        "motion",
-        "Motion of the head",
-        "Speed of the head through the water along and across its own axis, and its turn rate.",
-        "time [s]",
-        vec![
-            panel(
-                "speed [m/s]",
+    let moves =
+        |name: &str, k: usize, scale: f64| line(name, &time, column(moments, |m| scale * C::six(&m.state.head)[k]));
+    let (path, of_path, motion, of_motion) = ("path", "Path in the tank", "motion", "Motion of the head");
+    let degrees = 1_f64.to_degrees();
+    if !C::TILTS {
+        let place = |k: usize| column(moments, |m| C::place_m(&m.state.pose)[k]);
+        return vec![
+            chart(
+                path,
+                of_path,
+                "Path of the head's centre and of the centre of mass over the ground; x and y have scales of their own.",
+                "x [m]",
+                vec![panel("y [m]", vec![line("head", &place(0), place(1)), centre(1)])],
+            ),
+            chart(
+                motion,
+                of_motion,
+                "Speed of the head through the water along and across its own axis, and its turn rate.",
+                "time [s]",
                 vec![
-                    line("along", &time, column(moments, |m| m.state.head[1])),
-                    line("across", &time, column(moments, |m| m.state.head[2])),
+                    panel("speed [m/s]", vec![moves("along", 3, 1.0), moves("across", 4, 1.0)]),
+                    panel("turn rate [deg/s]", vec![moves("turn rate", 2, degrees)]),
                 ],
             ),
-            panel("turn rate [deg/s]", vec![line("turn rate", &time, turning)]),
-        ],
-    )
+        ];
+    }
+    let lies = |name: &str, k: usize| line(name, &time, column(moments, |m| C::angles(&m.state.pose)[k].to_degrees()));
+    vec![
+        chart(
+            path,
+            of_path,
+            "Path of the centre of mass over the ground, from above and as depth (z is down); each axis has its scale.",
+            "x [m]",
+            vec![panel("y [m]", vec![centre(1)]), panel("z [m]", vec![centre(2)])],
+        ),
+        chart(
+            "attitude",
+            "How the head lies",
+            "Roll (starboard down), pitch (bow up) and heading of the head.",
+            "time [s]",
+            vec![
+                panel("angle [deg]", vec![lies("roll", 0), lies("pitch", 1)]),
+                panel("heading [deg]", vec![lies("heading", 2)]),
+            ],
+        ),
+        chart(
+            motion,
+            of_motion,
+            "Motion of the head through the water in its own axes: forward, to starboard, down.",
+            "time [s]",
+            vec![
+                panel("speed [m/s]", vec![moves("surge", 3, 1.0), moves("sway", 4, 1.0), moves("heave", 5, 1.0)]),
+                panel(
+                    "turn rate [deg/s]",
+                    vec![moves("roll", 0, degrees), moves("pitch", 1, degrees), moves("yaw", 2, degrees)],
+                ),
+            ],
+        ),
+    ]
 }
 
-pub(super) fn joints(moments: &[Moment]) -> Block {
-    let n = moments.first().map_or(0, |m| m.torque_n_m.len());
-    joint_chart(&column(moments, |m| m.time_s), n, &|i| column(moments, |m| m.shape.angle[i].to_degrees()), &|i| {
-        column(moments, |m| m.torque_n_m[i])
-    })
-}
-
-/// Angles, deg, and torques, N m, of n joints over time.
-pub(super) fn joint_chart(
-    time_s: &[f64],
-    n: usize,
-    angle_deg: &dyn Fn(usize) -> Vec<f64>,
-    torque_n_m: &dyn Fn(usize) -> Vec<f64>,
-) -> Block {
+pub(super) fn joints<C: Dynamics>(moments: &[Moment<C>]) -> Block {
+    let (time, n) = (column(moments, |m| m.time_s), moments.first().map_or(0, |m| m.torque_n_m.len()));
     // Of many joints those that are evenly spaced from the head to the tail.
     let shown: Vec<usize> = if n <= MOST_LINES {
         (0..n).collect()
     } else {
         (0..MOST_LINES).map(|i| i * (n - 1) / (MOST_LINES - 1)).collect()
     };
-    let lines = |of: &dyn Fn(usize) -> Vec<f64>| -> Vec<Series> {
-        shown.iter().map(|i| line(&format!("joint {}", i + 1), time_s, of(*i))).collect()
+    let lines = |of: &dyn Fn(&Moment<C>, usize) -> f64| -> Vec<Series> {
+        shown.iter().map(|i| line(&format!("joint {}", i + 1), &time, column(moments, |m| of(m, *i)))).collect()
     };
     chart(
         "joints",
         "Joints",
         &format!("Angles of {} joints of {n} from the head, and the torques of their motors.", shown.len()),
         "time [s]",
-        vec![panel("angle [deg]", lines(angle_deg)), panel("torque [N m]", lines(torque_n_m))],
+        vec![
+            panel("angle [deg]", lines(&|m, i| m.shape.angle[i].to_degrees())),
+            panel("torque [N m]", lines(&|m, i| m.torque_n_m[i])),
+        ],
     )
 }
 
-pub(super) fn powers(moments: &[Moment]) -> Block {
+pub(super) fn powers<C: Dynamics>(moments: &[Moment<C>]) -> Block {
     let time = column(moments, |m| m.time_s);
-    let mut series = vec![
-        line("net, of the motors", &time, column(moments, |m| m.power_w[0])),
-        line("positive", &time, column(moments, |m| m.power_w[1])),
-        line("drag", &time, column(moments, |m| m.power_w[2])),
-    ];
-    if moments.iter().any(|m| m.power_w[3] > 0.0) {
-        series.push(line("friction of the joints", &time, column(moments, |m| m.power_w[3])));
-    }
+    let has_friction = moments.iter().any(|m| m.power_w[3] > 0.0);
+    let names = ["net, of the motors", "positive", "drag", "friction of the joints"].into_iter().enumerate();
+    let series = names.take(if has_friction { 4 } else { 3 });
+    let height = if C::TILTS { " and what weight and buoyancy do" } else { "" };
+    let lie = if C::TILTS { "lie the" } else { "lies" };
     chart(
         "powers",
         "Powers",
-        "What the motors give, its positive part, and what drag takes; between net power and drag lies kinetic energy of body and water.",
+        &format!(
+            "What the motors give, its positive part, and what drag takes; between net power and drag {lie} kinetic energy of body and water{height}."
+        ),
         "time [s]",
-        vec![panel("power [W]", series)],
+        vec![panel(
+            "power [W]",
+            series.map(|(k, name)| line(name, &time, column(moments, |m| m.power_w[k]))).collect(),
+        )],
     )
 }
 
 /// Shares of the loss by angle to the flow and by speed, with what the drag was fitted at.
-pub(super) fn losses(robot: &Robot, moments: &[Moment]) -> Vec<Block> {
+pub(super) fn losses<C: Dynamics>(robot: &Robot<C>, moments: &[Moment<C>]) -> Vec<Block> {
     // Angle, speed, power of each link at each moment.
     let mut all: Vec<[f64; 3]> = Vec::new();
     for moment in moments {
-        for (link, motion) in robot.chain.links.iter().zip(&moment.motions) {
-            let [_, u, v] = *motion;
-            let power = -dot(link.drag.load(link.half_length_m, *motion), *motion);
-            all.push([v.abs().atan2(u.abs()).to_degrees(), u.hypot(v), power.max(0.0)]);
-        }
+        let each = moment.motions.iter().enumerate().map(|(i, motion)| Loss::of(&robot.chain.dragged(i, *motion)));
+        all.extend(each.map(|loss| [loss.angle_rad.to_degrees(), loss.speed_m_s, loss.power_w]));
     }
     let sum: f64 = all.iter().map(|l| l[2]).sum();
     let below = |k: usize, most: f64| {

@@ -2,9 +2,10 @@
 
 use froude_records::number::significant;
 
+use crate::dynamics::Dynamics;
 use crate::means::Means;
+use crate::period::Periodic;
 use crate::swim::Swim;
-use crate::{period, spatial};
 
 /// A motion that turns by more in a period, rad, is a circle.
 const CIRCLES: f64 = 1e-6;
@@ -17,17 +18,12 @@ pub(super) struct Repeating {
     /// Sizes of the Floquet multipliers, the largest first.
     pub multipliers: Vec<f64>,
     pub residual: f64,
+    pub is_unstable: bool,
 }
 
-impl From<&period::Periodic> for Repeating {
-    fn from(p: &period::Periodic) -> Self {
-        Self { means: p.means, multipliers: p.multipliers.to_vec(), residual: p.residual }
-    }
-}
-
-impl From<&spatial::period::Periodic> for Repeating {
-    fn from(p: &spatial::period::Periodic) -> Self {
-        Self { means: p.means, multipliers: p.multipliers.to_vec(), residual: p.residual }
+impl<C: Dynamics> From<&Periodic<C>> for Repeating {
+    fn from(p: &Periodic<C>) -> Self {
+        Self { means: p.means, multipliers: p.multipliers.clone(), residual: p.residual, is_unstable: p.is_unstable() }
     }
 }
 
@@ -81,19 +77,16 @@ pub(super) struct Repeats {
 }
 
 impl Repeats {
-    pub(super) fn of<P>(swim: &Swim<P>) -> Self
-    where
-        Repeating: for<'p> From<&'p P>,
-    {
+    pub(super) fn of<C: Dynamics>(swim: &Swim<C>) -> Self {
         let (own, unstable) = (Repeating::from(&swim.periodic), swim.unstable.as_deref().map(Repeating::from));
         Self { cost: swim.cost, own, unstable }
     }
 
-    /// Of a motion that is left, or whose largest multiplier lies above `most`.
-    pub(super) fn warning(&self, most: f64, was_followed: bool, period_s: f64) -> Option<String> {
+    /// Of a motion that is left, or that stays unstable.
+    pub(super) fn warning(&self, was_followed: bool, period_s: f64) -> Option<String> {
         match &self.unstable {
             Some(left) => Some(left.leaves(&self.own, period_s)),
-            None => (self.own.multipliers[0] > most).then(|| self.own.stays(was_followed)),
+            None => self.own.is_unstable.then(|| self.own.stays(was_followed)),
         }
     }
 }

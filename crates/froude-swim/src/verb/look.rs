@@ -14,9 +14,9 @@ use super::VerbError;
 use super::told::NEUTRAL;
 use crate::blueprint::Blueprint;
 use crate::chain::Link;
+use crate::dynamics::RIGHTS_ITSELF_M;
 use crate::robot::Robot;
 use crate::robot_file::{ModuleFile, RobotFile, read_robot};
-use crate::spatial::robot::RIGHTS_ITSELF_M;
 
 /// Speed at which the force of the whole robot is stated, m/s.
 const SPEED_M_S: f64 = 0.3;
@@ -75,7 +75,7 @@ struct Look {
 pub fn look(path: &Path) -> Result<Outcome, VerbError> {
     let file = read_robot(path)?;
     let blueprint = Blueprint::of(&file)?;
-    let robot = blueprint.estimated();
+    let robot: Robot = blueprint.estimated();
     let mut kinds: Vec<Kind> = Vec::new();
     for (i, (module, link)) in file.modules.iter().zip(&robot.chain.links).enumerate() {
         match kinds.last_mut().filter(|kind| kind.file == *module && kind.link == *link) {

@@ -1,5 +1,6 @@
 //! What the joints of a swimmer do: a gait from its file and what was typed, or a recording.
 
+use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
 use froude_records::RecordError;
@@ -11,10 +12,12 @@ use froude_records::units::Dimension;
 use super::VerbError;
 use crate::course::Recorded;
 use crate::drive::Motor;
-use crate::gait::{Course, Envelope, Gait};
+use crate::gait::{Course, Envelope, Gait, Pitching};
 use crate::gait_file::{GaitForm, PitchFile, read_gait};
 use crate::joints::Drives;
 use crate::motor_file::read_motor;
+use crate::robot_file::RobotFile;
+use crate::spatial::vector::Axis;
 
 /// What is asked of the joints.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,8 +53,6 @@ pub struct Typed {
 pub(super) struct Periodically {
     pub(super) wave: Wave,
     pub(super) ramp_s: Option<f64>,
-    /// Of joints that pitch.
-    pub(super) pitch: Option<PitchFile>,
 }
 
 /// A gait or one period of a recording.
@@ -71,34 +72,62 @@ impl Periodically {
 }
 
 impl Moves {
-    /// The wave or the period of a gait; `no_recording` says why a recording will not do.
+    /// The wave or the period of a gait for a robot, its joints that pitch as typed; `no_recording` says why a recording will not do.
     pub(super) fn periodically(
         &self,
-        joints: usize,
-        is_3d: bool,
+        (robot, file): (&Path, &RobotFile),
+        pitching: &PitchFile,
         no_recording: &str,
     ) -> Result<Periodically, VerbError> {
-        match self {
-            Self::Wave(gait) => Ok(Periodically { wave: Wave::Gait(gait.clone()), ramp_s: None, pitch: None }),
-            Self::File { path, typed } if is_3d => gait_of(path, typed, joints),
-            Self::File { path, typed } => flat_gait_of(path, typed, joints),
-            Self::Track(path) => Err(VerbError::input(path, no_recording)),
+        let wrong = |path, problem: &str| Err(VerbError::input(path, problem));
+        let (is_typed, is_3d) = (*pitching != PitchFile::default(), file.model.is_3d);
+        if is_typed && !is_3d {
+            return wrong(robot, "is a planar model; the pitch options need space = \"3d\" in [model]");
         }
+        let (mut found, own) = match self {
+            Self::Wave(gait) => (Periodically { wave: Wave::Gait(gait.clone()), ramp_s: None }, None),
+            Self::File { path, typed } => {
+                let (found, own) = gait_of(path, typed, file.axes.len())?;
+                if own.is_some() && !is_3d {
+                    return wrong(
+                        path,
+                        "has pitch, and joints of a plane yaw: leave it out, or write space = \"3d\" in the robot file",
+                    );
+                }
+                (found, own)
+            }
+            Self::Track(path) => return wrong(path, no_recording),
+        };
+        match &mut found.wave {
+            Wave::Gait(gait) if file.axes.contains(&Axis::Pitch) => {
+                let own = own.unwrap_or_default();
+                gait.pitching = Some(Pitching {
+                    amplitude: pitching.amplitude_rad.or(own.amplitude_rad).unwrap_or(0.0),
+                    ahead: pitching.ahead_rad.or(own.ahead_rad).unwrap_or(FRAC_PI_2),
+                    turn: pitching.turn_rad.or(own.turn_rad).unwrap_or(0.0),
+                    axes: file.axes.clone(),
+                });
+            }
+            Wave::Gait(_) if is_typed || own.is_some() => {
+                return wrong(
+                    robot,
+                    "has no joint that pitches, and the gait has a wave of such: write axis = \"pitch\" in a [[joint]], or leave pitch out",
+                );
+            }
+            Wave::Table(_) if is_typed => {
+                return wrong(
+                    robot,
+                    "is of three dimensions and swims by a table, which has the angles of all joints: leave the pitch options out",
+                );
+            }
+            _ => {}
+        }
+        Ok(found)
     }
 }
 
-/// The gait of a file for so many joints that yaw.
-pub(super) fn flat_gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, VerbError> {
-    let gait = gait_of(path, typed, joints)?;
-    if gait.pitch.is_some() {
-        let problem = "has pitch, and joints of a plane yaw: leave it out, or write space = \"3d\" in the robot file";
-        return Err(VerbError::input(path, problem));
-    }
-    Ok(gait)
-}
-
-/// The gait of a file for so many joints.
-fn gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, VerbError> {
+/// The gait of a file for so many joints, with what it says of those that pitch.
+fn gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<(Periodically, Option<PitchFile>), VerbError> {
     let file = read_gait(path)?;
     let wrong = |problem: String| VerbError::input(path, problem);
     let envelope = match file.form {
@@ -116,7 +145,7 @@ fn gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, Ve
                 return Err(wrong(problem.to_owned()));
             }
             let cycle = recorded(&table, joints, true)?;
-            return Ok(Periodically { wave: Wave::Table(cycle), ramp_s: file.ramp_s, pitch: file.pitch });
+            return Ok((Periodically { wave: Wave::Table(cycle), ramp_s: file.ramp_s }, file.pitch));
         }
     };
     let need = |typed: Option<f64>, own: Option<f64>, key: &str, example: &str| {
@@ -130,8 +159,9 @@ fn gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, Ve
         phase: need(typed.phase_rad, file.phase_rad, "phase", "40 deg")?,
         turn: typed.turn_rad.or(file.turn_rad).unwrap_or(0.0),
         envelope,
+        pitching: None,
     };
-    Ok(Periodically { wave: Wave::Gait(gait), ramp_s: file.ramp_s, pitch: file.pitch })
+    Ok((Periodically { wave: Wave::Gait(gait), ramp_s: file.ramp_s }, file.pitch))
 }
 
 /// Joint angles of a table.

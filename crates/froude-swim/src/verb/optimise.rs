@@ -14,8 +14,12 @@ use super::VerbError;
 use super::answer::files_read;
 use super::sweep::{Drawn, Ready, SweepJob, gaits, table};
 use super::uncertain::{bodies, of_draws};
+use crate::chain::Chain;
+use crate::dynamics::Dynamics;
 use crate::front::{Objective, Search};
 use crate::gait::Gait;
+use crate::robot_file::{RobotFile, read_robot};
+use crate::spatial;
 use crate::sweep::{Row, Status};
 
 /// How often the distance of the grid is halved.
@@ -56,7 +60,21 @@ pub fn optimise(
     of: [Objective; 2],
     tell: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Outcome, VerbError> {
-    let ready = Ready::new(job)?;
+    let file = read_robot(&job.robot)?;
+    if file.model.is_3d {
+        best::<spatial::chain::Chain>(file, job, of, tell)
+    } else {
+        best::<Chain>(file, job, of, tell)
+    }
+}
+
+fn best<C: Dynamics>(
+    file: RobotFile,
+    job: &SweepJob,
+    of: [Objective; 2],
+    tell: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Outcome, VerbError> {
+    let ready = Ready::<C>::new(file, job)?;
     let (done, all) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let row = |(draw, gait): (usize, &Gait)| {
         let row = ready.row(gait, draw);
@@ -79,7 +97,8 @@ pub fn optimise(
         let n = ready.robots.len() - 1;
         all.fetch_add(n * shown.len(), Ordering::Relaxed);
         let of_gait = |place: &usize| {
-            let gait = gait(&front[*place], &ready);
+            let numbers = ["amplitude", "frequency", "phase", "turn"].map(|name| front[*place].get(name));
+            let gait = ready.grid.with(numbers);
             (1..=n).into_par_iter().map(|draw| row((draw, &gait))).collect::<Vec<Row>>()
         };
         let drawn: Vec<Vec<Row>> = shown.iter().map(of_gait).collect();
@@ -104,16 +123,6 @@ pub fn optimise(
     let found = Found { name: ready.name, of, front: front.len(), shown, drawn, swum: search.rows() };
     let blocks = [vec![files_read(&data).into()], found.blocks()].concat();
     Ok(Outcome { blocks, files, ..Outcome::default() })
-}
-
-fn gait(row: &Row, ready: &Ready) -> Gait {
-    Gait {
-        amplitude: row.get("amplitude"),
-        frequency: row.get("frequency"),
-        phase: row.get("phase"),
-        turn: row.get("turn"),
-        envelope: ready.grid.envelope.clone(),
-    }
 }
 
 /// Places that are spread over so many, both ends among them.

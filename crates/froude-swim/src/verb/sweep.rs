@@ -20,17 +20,21 @@ use froude_records::outcome::{Content, Head, Outcome, OutputFile};
 use froude_records::table::{Column, ColumnData, Table};
 use rayon::prelude::*;
 
-use super::VerbError;
 use super::answer::files_read;
 use super::columns::column;
-use super::moves::{Moves, Wave, flat_gait_of};
+use super::moves::{Moves, Wave};
 use super::reads::Reads;
 use super::uncertain::Drawing;
+use super::{Pitching, VerbError};
 use crate::blueprint::Blueprint;
+use crate::chain::Chain;
 use crate::draws::Beyond;
+use crate::dynamics::Dynamics;
 use crate::gait::Gait;
 use crate::joints::Drives;
 use crate::robot::Robot;
+use crate::robot_file::{RobotFile, read_robot};
+use crate::spatial;
 use crate::sweep::{Axis, COLUMNS, Grid, Row};
 use parts::Parts;
 
@@ -75,7 +79,7 @@ impl Ranges {
             frequency: self.frequency.unwrap_or(own.frequency),
             phase: self.phase.unwrap_or(own.phase),
             turn: self.turn.unwrap_or(own.turn),
-            envelope: own.envelope,
+            ..own
         }
     }
 }
@@ -138,7 +142,16 @@ const MOST_ROWS: usize = 1_000_000;
 ///
 /// A robot file, record or gait that cannot be used, too many gaits, a folder that cannot be written. A gait without an answer is a row.
 pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Outcome, VerbError> {
-    let ready = Ready::new(job)?;
+    let file = read_robot(&job.robot)?;
+    if file.model.is_3d { of::<spatial::chain::Chain>(file, job, tell) } else { of::<Chain>(file, job, tell) }
+}
+
+fn of<C: Dynamics>(
+    file: RobotFile,
+    job: &SweepJob,
+    tell: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Outcome, VerbError> {
+    let ready = Ready::<C>::new(file, job)?;
     let each = ready.robots.len();
     let rows = ready.gaits * each;
     std::fs::create_dir_all(&job.out).map_err(|e| RecordError::output(&job.out, &e))?;
@@ -193,25 +206,25 @@ pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Out
 
 /// All that the rows are made from.
 #[derive(Debug)]
-pub(super) struct Ready<'a> {
+pub(super) struct Ready<'a, C> {
     job: &'a SweepJob,
     pub(super) name: String,
     pub(super) grid: Grid,
     pub(super) gaits: usize,
     drives: Drives,
     /// The estimated robot first, then one per draw, law by law.
-    pub(super) robots: Vec<Robot>,
+    pub(super) robots: Vec<Robot<C>>,
     /// Draws that were no bodies.
     pub(super) beyond: Beyond,
     pub(super) reads: Reads,
 }
 
-impl<'a> Ready<'a> {
-    pub(super) fn new(job: &'a SweepJob) -> Result<Self, VerbError> {
-        let file = super::planar(&job.robot)?;
+impl<'a, C: Dynamics> Ready<'a, C> {
+    pub(super) fn new(file: RobotFile, job: &'a SweepJob) -> Result<Self, VerbError> {
+        Blueprint::of(&file)?.fitting::<C>()?;
         let (laws, _) = Blueprint::of_all_laws(&file)?;
         let drives = super::drives(&file, job.motor.as_deref())?;
-        let grid = job.ranges.about(&base(&job.moves, file.modules.len() - 1)?);
+        let grid = job.ranges.about(&base(&file, job)?);
         let too_many = |rows: String| SweepError::TooMany { rows, most: MOST_ROWS };
         let each = job.draws.map_or(0, |drawing| drawing.n * laws.len()) + 1;
         let rows = grid.gaits().and_then(|gaits| gaits.checked_mul(each));
@@ -237,15 +250,15 @@ impl<'a> Ready<'a> {
 }
 
 /// The gait in numbers.
-fn base(moves: &Moves, joints: usize) -> Result<Gait, VerbError> {
-    let refused = |path, problem| VerbError::input(path, problem);
-    match moves {
-        Moves::Wave(gait) => Ok(gait.clone()),
-        Moves::Track(path) => Err(refused(path, "is a recording, which has no numbers to sweep: name a gait")),
-        Moves::File { path, typed } => match flat_gait_of(path, typed, joints)?.wave {
-            Wave::Gait(gait) => Ok(gait),
-            Wave::Table(_) => Err(refused(path, "is a table, which has no numbers to sweep: take another kind")),
-        },
+fn base(file: &RobotFile, job: &SweepJob) -> Result<Gait, VerbError> {
+    let no_recording = "is a recording, which has no numbers to sweep: name a gait";
+    let found = job.moves.periodically((&job.robot, file), &Pitching::default(), no_recording)?;
+    match (found.wave, &job.moves) {
+        (Wave::Gait(gait), _) => Ok(gait),
+        (Wave::Table(_), Moves::File { path, .. }) => {
+            Err(VerbError::input(path, "is a table, which has no numbers to sweep: take another kind"))
+        }
+        (Wave::Table(_), _) => Err(VerbError::input(&job.robot, no_recording)),
     }
 }
 

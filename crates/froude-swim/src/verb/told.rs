@@ -1,9 +1,11 @@
-//! What is said of a swim in the plane, beside its figures.
+//! What is said of a swim, beside its figures.
 
 use froude_hydro::Link;
 use froude_records::number::{percent, significant};
 
 use super::answer::Figures;
+use super::balance;
+use crate::dynamics::Dynamics;
 use crate::joints::{Drives, Limits};
 use crate::robot_file::RobotFile;
 
@@ -12,10 +14,14 @@ pub(super) const NEUTRAL: f64 = 0.005;
 /// Lengths that differ by less than this part are the same.
 const SAME: f64 = 0.01;
 
-impl Figures<'_> {
-    /// Of a swim in the plane.
+impl<C: Dynamics> Figures<'_, C> {
+    /// All of it.
     pub(super) fn sentences(&self, file: &RobotFile, drives: &Drives) -> Vec<String> {
         let mut out = Vec::new();
+        if let Some(space) = &self.space {
+            balance::trim(&space.balance, &mut out);
+            balance::water(self, space, file, &mut out);
+        }
         self.losses(&mut out);
         self.dissipation(&mut out);
         self.servos(drives, &mut out);
@@ -23,7 +29,9 @@ impl Figures<'_> {
         if let Some(fastest) = self.fastest_rad_s {
             out.push(format!("the motors allow this gait up to {} deg/s", significant(fastest.to_degrees(), 3)));
         }
-        self.body(file, &mut out);
+        if self.space.is_none() {
+            self.body(file, &mut out);
+        }
         out.extend(file.remarks.iter().cloned());
         out
     }
@@ -66,7 +74,7 @@ impl Figures<'_> {
     }
 
     /// What joints that follow exactly need, and their drives do not give.
-    pub(super) fn beyond(&self, out: &mut Vec<String>) {
+    fn beyond(&self, out: &mut Vec<String>) {
         let needs = &self.effort.needs;
         if self.effort.stiffness.is_some() {
             return;

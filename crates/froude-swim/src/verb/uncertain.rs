@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::{Job, VerbError};
 use crate::blueprint::Blueprint;
 use crate::draws::{Beyond, envelope_95};
+use crate::dynamics::Dynamics;
 use crate::robot::Robot;
 use crate::robot_file::RobotFile;
 use crate::sensitivity::{Effect, Sensitivities, Sensitivity};
@@ -43,7 +44,7 @@ struct Drawn {
 /// # Errors
 ///
 /// A gait without an answer; records without a covariance where draws are asked for.
-pub(super) fn uncertain(
+pub(super) fn uncertain<C: Dynamics>(
     file: &RobotFile,
     job: &Job,
     tell: &(dyn Fn(usize, usize) + Sync),
@@ -52,10 +53,10 @@ pub(super) fn uncertain(
         return Ok(Vec::new());
     }
     let drives = super::drives(file, job.motor.as_deref())?;
-    let blueprint = Blueprint::of(file)?;
+    let blueprint = Blueprint::of(file)?.fitting::<C>()?;
     let no_recording = "is a recording; draws and sensitivities are of a gait";
-    let of = job.moves.periodically(file.modules.len() - 1, false, no_recording)?;
-    let swim = |robot: &Robot| robot.swim(of.course(), &drives, job.step_s);
+    let of = job.moves.periodically((&job.robot, file), &job.pitching, no_recording)?;
+    let swim = |robot: &Robot<C>| robot.swim(of.course(), &drives, job.step_s);
     // A gait without an answer says why before anything is drawn.
     swim(&blueprint.estimated())?;
     let drawn = match job.draws {
@@ -72,7 +73,7 @@ pub(super) fn uncertain(
                     let found = swim(&law.robot(values)).ok()?;
                     tell(done.fetch_add(1, Ordering::Relaxed) + 1, all);
                     let (p, m) = (&found.periodic, &found.periodic.means);
-                    let is = [found.unstable.is_some(), p.multipliers[0] > 1.0];
+                    let is = [found.unstable.is_some(), p.is_unstable()];
                     Some(([m.speed_m_s, m.net_w, m.positive_w, m.cost_j_m()], is))
                 };
                 by_law.push(draws.values.par_iter().filter_map(one).collect());
@@ -90,7 +91,7 @@ pub(super) fn uncertain(
     };
     let sensitivities = if job.is_sensitive {
         let answer =
-            |robot: &Robot| swim(robot).ok().map(|s| [s.periodic.means.speed_m_s, s.periodic.means.cost_j_m()]);
+            |robot: &Robot<C>| swim(robot).ok().map(|s| [s.periodic.means.speed_m_s, s.periodic.means.cost_j_m()]);
         blueprint.sensitivities(answer)
     } else {
         None

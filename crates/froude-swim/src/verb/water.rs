@@ -3,6 +3,7 @@
 //! **Frame.** The tank's, z down: seen from above, y is to the right of x. **Units.** SI.
 
 use crate::chain::Chain;
+use crate::dynamics::Dynamics;
 use crate::trajectory::Moment;
 
 /// A link at a moment.
@@ -16,21 +17,26 @@ pub(super) struct LinkInWater {
     pub(super) drag_n: [f64; 2],
 }
 
-/// Links from the head.
-pub(super) fn links<'a>(chain: &'a Chain, moment: &'a Moment) -> impl Iterator<Item = LinkInWater> + 'a {
-    let places = chain.places(moment.state.place_m, moment.state.heading, &moment.shape.angle);
-    chain.links.iter().zip(&moment.motions).zip(places).map(|((link, &motion), (place_m, heading))| {
-        let [_, x, y] = link.drag.load(link.half_length_m, motion);
+/// Links from the head, of a chain that the plane sees as `flat`.
+pub(super) fn links<C: Dynamics>((chain, flat): (&C, &Chain), moment: &Moment<C>) -> impl Iterator<Item = LinkInWater> {
+    let each = moment.motions.iter().enumerate().zip(places(flat, moment));
+    each.map(|((i, motion), (place_m, heading))| {
+        let [x, y, _] = chain.dragged(i, *motion).force_n;
         let (s, c) = heading.sin_cos();
         LinkInWater { place_m, heading, drag_n: [x * c - y * s, x * s + y * c] }
     })
 }
 
+fn places<C: Dynamics>(flat: &Chain, moment: &Moment<C>) -> impl Iterator<Item = ([f64; 2], f64)> {
+    let ([x, y, _], [.., heading]) = (C::place_m(&moment.state.pose), C::angles(&moment.state.pose));
+    flat.places([x, y], heading, &moment.shape.angle)
+}
+
 /// Speed of the centre of mass through the water, m/s.
-pub(super) fn speed_m_s(chain: &Chain, moment: &Moment) -> f64 {
-    let places = chain.places(moment.state.place_m, moment.state.heading, &moment.shape.angle);
+pub(super) fn speed_m_s<C: Dynamics>(flat: &Chain, moment: &Moment<C>) -> f64 {
     let (mut momentum, mut mass) = ([0.0; 2], 0.0);
-    for ((link, &[w, u, v]), (_, heading)) in chain.links.iter().zip(&moment.motions).zip(places) {
+    for ((link, motion), (_, heading)) in flat.links.iter().zip(&moment.motions).zip(places(flat, moment)) {
+        let [_, _, w, u, v, _] = C::six(motion);
         let (s, c) = heading.sin_cos();
         let (x, y) = (link.rigid.x * u, link.rigid.x * v + link.rigid.turn_y * w);
         momentum = [momentum[0] + x * c - y * s, momentum[1] + x * s + y * c];

@@ -5,10 +5,12 @@ use crate::adaptive::path;
 use froude_swim::chain::{AddedMass, Chain, Link};
 use froude_swim::drag::{LinkDrag, Turning};
 use froude_swim::drive::Limp;
-use froude_swim::driven::{Driven, Energy};
+use froude_swim::driven::Driven;
+use froude_swim::dynamics::Dynamics;
 use froude_swim::gait::{Envelope, Gait};
-use froude_swim::path::{State, Swimmer};
+use froude_swim::path::Swimmer;
 use froude_swim::planar::Inertia;
+use froude_swim::state::Energy;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -78,13 +80,14 @@ fn added_mass_as_printed_conserves_energy_but_no_impulse() {
 fn the_steps_of_a_gait_are_of_fourth_order() {
     let drag = LinkDrag { along: [0.1, 0.0], across: [2.0, 0.0], cross: None, turning: Turning::Strip };
     let chain = Chain { links: vec![link(drag); 5], added_mass: AddedMass::Full };
-    let gait = Gait { amplitude: 0.5, frequency: 1.4, phase: 0.7, turn: 0.0, envelope: Envelope::Lateral };
+    let gait =
+        Gait { amplitude: 0.5, frequency: 1.4, phase: 0.7, turn: 0.0, envelope: Envelope::Lateral, pitching: None };
     let mut swimmer = Swimmer::new(&chain, &gait);
-    let exact = adaptive::in_plane(&mut swimmer, &[0.0, 2.0], &State::default(), 1e-13)[1];
+    let exact = adaptive::followed(&mut swimmer, &[0.0, 2.0], &Chain::REST, 1e-13)[1];
     let mut error = |steps: u32| {
         let h = 2.0 / f64::from(steps);
-        let end = (0..steps).fold(State::default(), |s, i| swimmer.step(h * f64::from(i), h, &s).unwrap());
-        (end.place_m[0] - exact.place_m[0]).hypot(end.place_m[1] - exact.place_m[1])
+        let end = (0..steps).fold(Chain::REST, |s, i| swimmer.step(h * f64::from(i), h, &s).unwrap());
+        (end.pose[0] - exact.pose[0]).hypot(end.pose[1] - exact.pose[1])
     };
     let order = (error(100) / error(200)).log2();
     assert!((order - 4.0).abs() < 0.1, "{order}");
@@ -99,7 +102,7 @@ fn a_swimmer_does_not_know_a_uniform_current() {
     let mut still = Driven::new(&chain, Limp);
     let start: Vec<f64> = (0..still.size()).map(|_| rng.random_range(-0.5..0.5)).collect();
     let mut stream = still.clone();
-    stream.current_m_s = [0.3, -0.2];
+    stream.current_m_s = [0.3, -0.2, 0.0];
     let a = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| still.rates(t, x, out)).remove(1);
     let b = path(&[0.0, 1.0], &start, 1e-13, |t, x, out| stream.rates(t, x, out)).remove(1);
     for k in 0..a.len() {

@@ -7,9 +7,8 @@ mod dense;
 mod driven;
 mod laws;
 mod mamba;
+mod one_swimmer;
 mod robot_bytes;
-#[path = "../spatial_driven/mod.rs"]
-mod spatial_driven;
 mod spatial_forms;
 mod spatial_laws;
 mod spatial_period;

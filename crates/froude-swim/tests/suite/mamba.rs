@@ -9,10 +9,12 @@ use std::f64::consts::PI;
 use froude_hydro::{Body, CrossTerm, DragModel, Setting};
 use froude_swim::chain::{AddedMass, Chain, Link};
 use froude_swim::drag::{LinkDrag, Turning};
+use froude_swim::dynamics::{Dynamics, StateOf};
 use froude_swim::gait::{Envelope, Gait};
-use froude_swim::path::{State, Swimmer};
+use froude_swim::path::Swimmer;
 use froude_swim::planar::Inertia;
 use froude_swim::shares::{Distribution, Torque, shares};
+use froude_swim::state::Energy;
 
 const HALF_HEIGHT: f64 = 0.0588;
 const HALF_WIDTH: f64 = 0.0394;
@@ -55,6 +57,7 @@ fn gait(envelope: Envelope) -> Gait {
         phase: 40_f64.to_radians(),
         turn: 0.0,
         envelope,
+        pitching: None,
     }
 }
 
@@ -168,19 +171,21 @@ fn a_minute_closes_its_energy_and_has_converged() {
     let (chain, gait) = (chain(&F2_TANK, false), gait(Envelope::Lateral));
     let times: Vec<f64> = (0..=60).map(f64::from).collect();
     let mut swimmer = Swimmer::new(&chain, &gait);
-    let energy = |swimmer: &mut Swimmer<'_>, time_s: f64, state: &State| {
+    let energy = |swimmer: &mut Swimmer<'_>, time_s: f64, state: &StateOf<Chain>| {
         swimmer.rates(time_s, state).unwrap();
-        swimmer.energy_j()
+        swimmer.energy_j(state)[0]
     };
-    let start = State::default();
+    let start = Chain::REST;
     let at_start = energy(&mut swimmer, 0.0, &start);
-    let found = adaptive::in_plane(&mut swimmer, &times, &start, 1e-14);
-    let finer = adaptive::in_plane(&mut swimmer, &times, &start, 1e-15);
+    let found = adaptive::followed(&mut swimmer, &times, &start, 1e-14);
+    let finer = adaptive::followed(&mut swimmer, &times, &start, 1e-15);
     for ((time, state), finer) in times.iter().zip(&found).zip(&finer) {
-        let away = (state.place_m[0] - finer.place_m[0]).hypot(state.place_m[1] - finer.place_m[1]);
+        let away = (state.pose[0] - finer.pose[0]).hypot(state.pose[1] - finer.pose[1]);
         assert!(away < 1e-8, "{time} s: {away} m");
-        let residual = state.work_j - state.loss_j - (energy(&mut swimmer, *time, state) - at_start);
-        assert!(residual.abs() < 1e-10 * state.absolute_j.max(1.0), "{time} s: {residual} J of {}", state.absolute_j);
+        let residual =
+            state.energy(Energy::Work) - state.energy(Energy::Loss) - (energy(&mut swimmer, *time, state) - at_start);
+        let absolute = state.energy(Energy::Absolute);
+        assert!(residual.abs() < 1e-10 * absolute.max(1.0), "{time} s: {residual} J of {absolute}");
     }
 }
 

@@ -5,16 +5,17 @@ use crate::dense;
 use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_swim::chain::{AddedMass, Chain as Planar, Link as PlanarLink};
 use froude_swim::drag::{Cross, LinkDrag as PlanarDrag, Turning};
+use froude_swim::dynamics::{Dynamics, StateOf};
 use froude_swim::engine::{Given, Joints, Workspace as PlanarWorkspace};
 use froude_swim::gait::{Envelope, Gait};
-use froude_swim::path::{State as PlanarState, Swimmer as PlanarSwimmer};
+use froude_swim::path::Swimmer;
 use froude_swim::planar;
-use froude_swim::spatial::attitude::{LEVEL, of_angles, world_from_body};
+use froude_swim::spatial::attitude::{of_angles, world_from_body};
 use froude_swim::spatial::chain::{Chain, Link};
 use froude_swim::spatial::drag::LinkDrag;
 use froude_swim::spatial::engine::{Head, Workspace};
-use froude_swim::spatial::path::{State, Swimmer};
 use froude_swim::spatial::vector::{Axis, Inertia};
+use froude_swim::state::Energy;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -206,17 +207,20 @@ fn in_the_plane_a_path_of_ten_seconds_is_that_of_the_plane() {
     let (plane, spatial) = chains(10, &mut Pcg64Mcg::seed_from_u64(13));
     let gait = gait();
     let times: Vec<f64> = (0..=10).map(f64::from).collect();
-    let start = PlanarState { head: [0.1, 0.2, 0.0], ..PlanarState::default() };
-    let expected = adaptive::in_plane(&mut PlanarSwimmer::new(&plane, &gait), &times, &start, 1e-13);
-    let start = State { head: [0.0, 0.0, 0.1, 0.2, 0.0, 0.0], ..State::default() };
-    let found = adaptive::in_space(&mut Swimmer::new(&spatial, &gait), &times, &start, 1e-13);
+    let start = StateOf::<Planar> { head: [0.1, 0.2, 0.0], ..Planar::REST };
+    let expected = adaptive::followed(&mut Swimmer::new(&plane, &gait), &times, &start, 1e-13);
+    let start = StateOf::<Chain> { head: [0.0, 0.0, 0.1, 0.2, 0.0, 0.0], ..Chain::REST };
+    let found = adaptive::followed(&mut Swimmer::new(&spatial, &gait), &times, &start, 1e-13);
     for (a, b) in expected.iter().zip(&found) {
-        let away = (a.place_m[0] - b.place_m[0]).hypot(a.place_m[1] - b.place_m[1]);
+        let away = (a.pose[0] - b.pose[0]).hypot(a.pose[1] - b.pose[1]);
         assert!(away < 1e-9, "{away} m");
-        assert!(b.place_m[2].abs() < 1e-12, "{b:?}");
-        assert!((a.work_j - b.work_j).abs() < 1e-9 * a.absolute_j.max(1.0), "{a:?} {b:?}");
+        assert!(b.pose[2].abs() < 1e-12, "{b:?}");
+        assert!(
+            (a.energy(Energy::Work) - b.energy(Energy::Work)).abs() < 1e-9 * a.energy(Energy::Absolute).max(1.0),
+            "{a:?} {b:?}"
+        );
     }
-    assert!(found[10].place_m[0].hypot(found[10].place_m[1]) > 0.3, "it swims: {:?}", found[10]);
+    assert!(found[10].pose[0].hypot(found[10].pose[1]) > 0.3, "it swims: {:?}", found[10]);
 }
 
 /// What does not reduce: buoyancy 10 mm above the mass, and the mass below the axis of the joints, and the same gait rolls, in a turn the more.
@@ -232,10 +236,10 @@ fn a_mass_below_the_joints_rolls() {
     }
     let rolled = |turn: f64| {
         let gait = Gait { turn, ..gait() };
-        let start = State { attitude: LEVEL, head: [0.0, 0.0, 0.0, 0.2, 0.0, 0.0], ..State::default() };
+        let start = StateOf::<Chain> { head: [0.0, 0.0, 0.0, 0.2, 0.0, 0.0], ..Chain::REST };
         let times: Vec<f64> = (0..=100).map(|k| 0.1 * f64::from(k)).collect();
-        let found = adaptive::in_space(&mut Swimmer::new(&spatial, &gait), &times, &start, 1e-10);
-        found.iter().map(|s| world_from_body(s.attitude)[2][1].asin().abs()).fold(0.0, f64::max)
+        let found = adaptive::followed(&mut Swimmer::new(&spatial, &gait), &times, &start, 1e-10);
+        found.iter().map(|s| Chain::angles(&s.pose)[0].sin().abs()).fold(0.0, f64::max)
     };
     let (straight, turning) = (rolled(0.0), rolled(0.2));
     // A degree at least, and far from over.

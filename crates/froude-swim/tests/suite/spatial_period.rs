@@ -3,14 +3,12 @@
 use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_swim::chain::{AddedMass, Chain as Planar, Link as PlanarLink};
 use froude_swim::drag::{LinkDrag as PlanarDrag, Turning};
-use froude_swim::gait::{Envelope, Gait};
-use froude_swim::path::Swimmer as PlanarSwimmer;
+use froude_swim::dynamics::Dynamics;
+use froude_swim::gait::{Envelope, Gait, Pitching};
+use froude_swim::path::Swimmer;
 use froude_swim::planar;
-use froude_swim::spatial::attitude::angles;
 use froude_swim::spatial::chain::{Chain, Link};
 use froude_swim::spatial::drag::LinkDrag;
-use froude_swim::spatial::gait::SpatialGait;
-use froude_swim::spatial::path::{State, Swimmer};
 use froude_swim::spatial::vector::{Axis, Inertia};
 
 const MASS_KG: f64 = 1.343;
@@ -63,13 +61,13 @@ fn lateral() -> Gait {
 fn in_the_plane_the_motion_that_repeats_is_that_of_the_plane() {
     let gait = lateral();
     let plane = Planar { links: vec![plane(); 10], added_mass: AddedMass::Full };
-    let expected = PlanarSwimmer::new(&plane, &gait).periodic(200).unwrap();
+    let expected = Swimmer::new(&plane, &gait).periodic(200).unwrap();
     let chain = Chain { links: vec![link(0.0, 0.0); 10], joints: vec![Axis::Yaw; 9] };
     let found = Swimmer::new(&chain, &gait).periodic(200).unwrap();
     assert!((found.means.speed_m_s / expected.means.speed_m_s - 1.0).abs() < 1e-7, "{found:?} {expected:?}");
     assert!((found.means.net_w / expected.means.net_w - 1.0).abs() < 1e-7, "{found:?} {expected:?}");
     assert!((found.means.turn - expected.means.turn).abs() < 1e-7);
-    assert!(found.roll[1] - found.roll[0] < 1e-12 && found.way_m[2].abs() < 1e-12, "{found:?}");
+    assert!(found.tilt[0][1] - found.tilt[0][0] < 1e-12 && found.way_m[2].abs() < 1e-12, "{found:?}");
     assert_eq!(found.multipliers.iter().filter(|m| (*m - 1.0).abs() < 1e-6).count(), 2, "{:?}", found.multipliers);
 }
 
@@ -79,13 +77,14 @@ fn in_the_plane_the_motion_that_repeats_is_that_of_the_plane() {
 fn steps_alone_come_to_the_motion_that_repeats() {
     let joints: Vec<Axis> = (0..9).map(|i| if i % 2 == 0 { Axis::Yaw } else { Axis::Pitch }).collect();
     let chain = Chain { links: vec![link(0.01, 0.01); 10], joints: joints.clone() };
-    let gait = SpatialGait { yaw: lateral(), pitch_amplitude: 0.2, pitch_ahead: 1.57, pitch_turn: 0.0, joints };
+    let pitching = Some(Pitching { amplitude: 0.2, ahead: 1.57, turn: 0.0, axes: joints });
+    let gait = Gait { pitching, ..lateral() };
     let mut swimmer = Swimmer::new(&chain, &gait);
     let found = swimmer.periodic(200).unwrap();
     assert!(found.multipliers[0] < 0.8, "{:?}", found.multipliers);
-    assert!(found.roll[1] - found.roll[0] > 0.01, "{found:?}");
+    assert!(found.tilt[0][1] - found.tilt[0][0] > 0.01, "{found:?}");
     let h = std::f64::consts::TAU / lateral().frequency / 200.0;
-    let mut state = State::default();
+    let mut state = Chain::REST;
     for i in 0..30 * 200 {
         state = swimmer.step(f64::from(i) * h, h, &state).unwrap();
     }
@@ -93,10 +92,10 @@ fn steps_alone_come_to_the_motion_that_repeats() {
     for (a, b) in state.head.iter().zip(found.start.head) {
         assert!((a - b).abs() < 10.0 * left, "{:?} {:?}", state.head, found.start.head);
     }
-    let (a, b) = (angles(state.attitude), angles(found.start.attitude));
+    let (a, b) = (Chain::angles(&state.pose), Chain::angles(&found.start.pose));
     assert!((a[0] - b[0]).abs() < 10.0 * left && (a[1] - b[1]).abs() < 10.0 * left, "{a:?} {b:?}");
     // A motion that repeats stores nothing but height.
-    assert!(((found.means.loss_w + found.lifting_w) / found.means.net_w - 1.0).abs() < 1e-6, "{found:?}");
+    assert!(((found.means.loss_w + found.means.lifting_w) / found.means.net_w - 1.0).abs() < 1e-6, "{found:?}");
 }
 
 /// One per cent too heavy: it sinks at a speed that repeats, and what that gives, drag takes.
@@ -109,6 +108,6 @@ fn a_heavy_swimmer_sinks_at_a_speed_that_repeats() {
     let found = Swimmer::new(&chain, &gait).periodic(200).unwrap();
     assert!(found.way_m[2] > 0.01, "{found:?}");
     let sinks = 0.01 * 6.0 * MASS_KG * GRAVITY_M_S2 * found.way_m[2] / gait.frequency.recip() / std::f64::consts::TAU;
-    assert!((found.lifting_w / -sinks - 1.0).abs() < 1e-6, "{found:?}");
-    assert!(((found.means.loss_w + found.lifting_w) / found.means.net_w - 1.0).abs() < 1e-6, "{found:?}");
+    assert!((found.means.lifting_w / -sinks - 1.0).abs() < 1e-6, "{found:?}");
+    assert!(((found.means.loss_w + found.means.lifting_w) / found.means.net_w - 1.0).abs() < 1e-6, "{found:?}");
 }

@@ -28,7 +28,7 @@ fn with_covariance(folder: &Path, part: &dyn Fn(&str) -> f64) -> RobotFile {
 }
 
 /// The same of any robot file.
-fn covariance_of(mut file: RobotFile, folder: &Path, part: &dyn Fn(&str) -> f64) -> RobotFile {
+pub fn covariance_of(mut file: RobotFile, folder: &Path, part: &dyn Fn(&str) -> f64) -> RobotFile {
     let mut record = read_estimates(&file.drag.path).unwrap();
     let id = file.drag.select.clone().unwrap();
     let e = record.estimates.iter_mut().find(|e| e.id == id).unwrap();
@@ -165,7 +165,10 @@ fn draws_shrink_onto_the_estimate_however_the_law_is_shared_out() {
         file.drag.select = Some("circulation_tank_restricted/f4".to_owned());
         file.model.distribution = distribution;
         let blueprint = Blueprint::of(&covariance_of(file, folder.path(), &|_| 1e-6)).unwrap();
-        assert_eq!(blueprint.driven_by_water(&blueprint.estimated()).is_some(), distribution == Distribution::ByOrigin);
+        assert_eq!(
+            blueprint.driven_by_water(&blueprint.estimated::<froude_swim::chain::Chain>()).is_some(),
+            distribution == Distribution::ByOrigin
+        );
         let draws = blueprint.draws(50, 1).unwrap();
         for drawn in &draws.values {
             for (x, c) in drawn.iter().zip(blueprint.values()) {

@@ -11,9 +11,9 @@
 use std::cell::RefCell;
 
 use differential_equations::prelude::*;
-use froude_swim::path::{State as PlanarState, Swimmer as PlanarSwimmer};
-use froude_swim::spatial::attitude::unit;
-use froude_swim::spatial::path::{State, Swimmer};
+use froude_swim::dynamics::{Dynamics, StateOf};
+use froude_swim::path::Swimmer;
+use froude_swim::state::{ENERGIES, Numbers, State};
 
 /// Most steps between two times that are asked for.
 const MOST_STEPS: usize = 1_000_000;
@@ -47,32 +47,28 @@ pub fn path(
     out
 }
 
-/// The path of a swimmer in the plane.
-pub fn in_plane(
-    swimmer: &mut PlanarSwimmer<'_>,
+/// The path of a swimmer whose joints follow exactly.
+pub fn followed<C: Dynamics>(
+    swimmer: &mut Swimmer<'_, C>,
     times_s: &[f64],
-    start: &PlanarState,
+    start: &StateOf<C>,
     tolerance: f64,
-) -> Vec<PlanarState> {
-    let rates = |time_s: f64, numbers: &[f64], out: &mut [f64]| {
-        let found = swimmer.rates(time_s, &PlanarState::of(numbers.try_into().ok()?))?;
-        out.copy_from_slice(&found.numbers());
+) -> Vec<StateOf<C>> {
+    let state = |n: &[f64]| State {
+        pose: C::Pose::first_of(n),
+        head: C::Motion::first_of(&n[C::Pose::LEN..]),
+        energy_j: <[f64; ENERGIES]>::first_of(&n[C::Pose::LEN + C::Motion::LEN..]),
+    };
+    let numbers = |s: &StateOf<C>| [s.pose.as_ref(), s.head.as_ref(), &s.energy_j].concat();
+    let rates = |time_s: f64, from: &[f64], out: &mut [f64]| {
+        out.copy_from_slice(&numbers(&swimmer.rates(time_s, &state(from))?));
         Some(())
     };
-    let found = path(times_s, &start.numbers(), tolerance, rates);
-    found.iter().map(|n| PlanarState::of(n.as_slice().try_into().unwrap())).collect()
-}
-
-/// The path of a swimmer in three dimensions.
-pub fn in_space(swimmer: &mut Swimmer<'_>, times_s: &[f64], start: &State, tolerance: f64) -> Vec<State> {
-    let rates = |time_s: f64, numbers: &[f64], out: &mut [f64]| {
-        let found = swimmer.rates(time_s, &State::of(numbers.try_into().ok()?))?;
-        out.copy_from_slice(&found.numbers());
-        Some(())
+    let found = path(times_s, &numbers(start), tolerance, rates);
+    let settled = |n: &Vec<f64>| {
+        let mut state = state(n);
+        C::settle(state.pose.as_mut());
+        state
     };
-    let state = |n: &Vec<f64>| {
-        let state = State::of(n.as_slice().try_into().unwrap());
-        State { attitude: unit(state.attitude), ..state }
-    };
-    path(times_s, &start.numbers(), tolerance, rates).iter().map(state).collect()
+    found.iter().map(settled).collect()
 }
