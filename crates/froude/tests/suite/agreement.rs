@@ -35,7 +35,7 @@ fn example(name: &str) -> PathBuf {
 
 fn gait() -> Gait {
     let [amplitude, frequency, phase] = [30_f64, 80.0, 40.0].map(f64::to_radians);
-    Gait { amplitude, frequency, phase, turn: 0.0, envelope: Envelope::Lateral }
+    Gait::wave(amplitude, frequency, phase, Envelope::Lateral)
 }
 
 #[test]
