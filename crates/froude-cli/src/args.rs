@@ -148,7 +148,7 @@ pub enum Verb {
         #[command(subcommand)]
         job: CarriageJob,
     },
-    /// Print the JSON Schema of estimate.json, of what a verb prints with --json, or of a campaign, by which editors complete and check it.
+    /// Print the JSON Schema of estimate.json, of what a verb prints with --json, or of a campaign, for completion and checks in an editor.
     #[command(
         after_help = "Examples:\n  froude schema > estimate.schema.json\n  froude schema plan\n  froude schema campaign --out campaign.schema.json"
     )]

@@ -119,7 +119,7 @@ fn schema(of: &str, out: Option<&Path>) -> Result<(), Failure> {
     let is_older = |old: String| serde_json::from_str(&old).is_ok_and(|old: Value| !old["$schema"].is_null());
     if path.exists() && !std::fs::read_to_string(path).is_ok_and(is_older) {
         let shown = path.display();
-        return Err(Failure::refused(format_args!("{shown} is there and is no JSON Schema; name another file")));
+        return Err(Failure::refused(format_args!("{shown} exists and is not a JSON Schema; name another file")));
     }
     write_atomically(path, format!("{text}\n").as_bytes())?;
     out::say!("{}", path.display());

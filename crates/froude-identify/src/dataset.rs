@@ -45,6 +45,8 @@ pub struct Dataset {
     pub left_out: Vec<String>,
     /// Loads that were not measured in some rows: whether each row is an observation of the load.
     pub observed: IndexMap<String, Vec<bool>>,
+    /// Loads that no sensor read, as a declared weight: that repeats have one value says nothing of its scatter.
+    pub stated: Vec<String>,
     /// What these rows were drawn from, where they are a sample.
     pub sample: Option<Drawn>,
 }
@@ -251,6 +253,7 @@ impl Dataset {
             observed: (self.observed.iter())
                 .map(|(load, is)| (load.clone(), keep.iter().map(|&i| is[i]).collect()))
                 .collect(),
+            stated: self.stated.clone(),
             sample: self.sample.clone(),
         }
     }

@@ -77,7 +77,10 @@ fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f
     let options = fit::Options { covariance: fit::CovarianceKind::Classical, ..options };
     let refitted = (model.declared.ncols() > 0).then(|| fit::fit(&clear, &options).ok()).flatten();
     match fit::select::lack_of_fit(&clear, refitted.as_ref().unwrap_or(&model.fit), &stacked) {
-        Ok(tests) => tests.into_iter().filter_map(|t| Some((t.component, t.score.ok()?.p))).collect(),
+        Ok(tests) => {
+            let read = tests.into_iter().filter(|test| !data.stated.contains(&test.component));
+            read.filter_map(|t| Some((t.component, t.score.ok()?.p))).collect()
+        }
         Err(_) => indexmap::IndexMap::new(),
     }
 }

@@ -17,7 +17,7 @@ use froude_records::estimate::ErrorKind;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-use crate::dataset::{Dataset, labels};
+use crate::dataset::{Dataset, LOADS, labels};
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 
@@ -37,7 +37,7 @@ pub struct SharedError {
     pub quantity: String,
     /// Who shares it: `run`, `setup`, `campaign`.
     pub shared: &'static str,
-    /// Which load it belongs to, and a column per component of `e`, a row per observation.
+    /// What it moves, a load or another channel of the law, as the speed is one, and a column per component of `e`, a row per observation.
     pub directions: Vec<(String, Vec<Vec<f64>>)>,
     /// Covariance of `e`.
     pub covariance: Vec<Vec<f64>>,
@@ -217,13 +217,11 @@ pub(crate) fn directions(
     for error in shared_errors.iter().filter(|error| !error.is_of_each_row) {
         for k in 0..error.covariance.len() {
             let mut column = vec![0.0; n * loads.len()];
-            for (load, rows) in &error.directions {
-                let Some(r) = loads.iter().position(|name| name == load) else { continue };
-                for (i, row) in rows.iter().enumerate().take(n) {
-                    column[r * n + i] = row.get(k).copied().unwrap_or(0.0) * error.covariance[k][k].sqrt();
-                }
+            for (channel, rows) in &error.directions {
+                let of = |i: usize| rows.get(i).and_then(|row| row.get(k)).copied().unwrap_or(0.0);
+                let moved = moved_by(fit, channel, &|i| of(i) * error.covariance[k][k].sqrt())?;
+                column.iter_mut().zip(moved).for_each(|(sum, by)| *sum += by);
             }
-            as_logarithms(fit, &mut column, &fit.law.measured(fit.data)?);
             columns.push(column);
         }
     }
@@ -264,7 +262,6 @@ pub fn common_key(entry: &BudgetEntry, campaign: &str) -> Option<String> {
 /// the response is then wrong by −∂(Xβ)/∂q·e, taken by central differences.
 pub(crate) fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, IdentifyError> {
     let quantity = fit.data.meant(&entry.quantity);
-    let n = fit.data.rows;
     let values = fit.data.values(quantity).ok_or_else(|| IdentifyError::Campaign {
         place: "[[source.uncertainty]]".to_owned(),
         what: format!(
@@ -272,7 +269,23 @@ pub(crate) fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<
             fit.data.channels.keys().cloned().collect::<Vec<_>>().join(", ")
         ),
     })?;
-    let standard = |i: usize| if entry.relative { entry.standard * values[i] } else { entry.standard };
+    if quantity == "temperature" {
+        return Err(IdentifyError::Campaign {
+            place: "[[source.uncertainty]]".to_owned(),
+            what: "quantity = \"temperature\" acts through the density; state the uncertainty of density instead"
+                .to_owned(),
+        });
+    }
+    moved_by(fit, quantity, &|i| if entry.relative { entry.standard * values[i] } else { entry.standard })
+}
+
+/// What an error of a channel, of its own size in each row, does to the residuals of all responses; nothing where the observations have no such channel.
+///
+/// # Errors
+///
+/// A law that cannot be evaluated.
+fn moved_by(fit: Linearised<'_>, quantity: &str, standard: &dyn Fn(usize) -> f64) -> Result<Vec<f64>, IdentifyError> {
+    let n = fit.data.rows;
     let mut out = vec![0.0; n * fit.law.responses.len()];
     if let Some(r) = fit.law.responses.iter().position(|name| name == quantity) {
         for i in 0..n {
@@ -281,13 +294,8 @@ pub(crate) fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<
         as_logarithms(fit, &mut out, &fit.law.measured(fit.data)?);
         return Ok(out);
     }
-    if quantity == "temperature" {
-        return Err(IdentifyError::Campaign {
-            place: "[[source.uncertainty]]".to_owned(),
-            what: "quantity = \"temperature\" acts through the density; state the uncertainty of density instead"
-                .to_owned(),
-        });
-    }
+    // A load of another law moves nothing of this one.
+    let Some(values) = fit.data.values(quantity).filter(|_| !LOADS.contains(&quantity)) else { return Ok(out) };
     let scale = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())).max(1e-3);
     let step = 1e-5 * scale;
     let (above, below) = (fit.data.shifted(quantity, &vec![step; n]), fit.data.shifted(quantity, &vec![-step; n]));
@@ -345,17 +353,17 @@ pub(crate) fn groups(data: &Dataset, shared: Shared) -> Vec<usize> {
 /// S·D·C·Dᵀ·Sᵀ, the sum over the rows inside where each row has an error of its own.
 fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Part, IdentifyError> {
     let (p, n, q) = (fit.sensitivity.nrows(), fit.data.rows, error.covariance.len());
-    let mut per_newton = vec![1.0; n * fit.law.responses.len()];
-    as_logarithms(fit, &mut per_newton, &fit.law.measured(fit.data)?);
+    let per_unit: Vec<Vec<f64>> =
+        error.directions.iter().map(|(channel, _)| moved_by(fit, channel, &|_| 1.0)).collect::<Result<_, _>>()?;
     let c = Mat::from_fn(q, q, |a, b| error.covariance[a][b]);
     let mut moved = Mat::<f64>::zeros(p, q);
     let mut covariance = Mat::<f64>::zeros(p, p);
     for i in 0..n {
-        for (response, rows) in &error.directions {
-            if let (Some(r), Some(row)) = (fit.law.responses.iter().position(|name| name == response), rows.get(i)) {
-                for (k, d) in row.iter().enumerate() {
+        for ((_, rows), per_unit) in error.directions.iter().zip(&per_unit) {
+            for (k, d) in rows.get(i).into_iter().flatten().enumerate() {
+                for at in (i..per_unit.len()).step_by(n).filter(|at| per_unit[*at] != 0.0) {
                     for j in 0..p {
-                        moved[(j, k)] += fit.sensitivity[(j, r * n + i)] * d * per_newton[r * n + i];
+                        moved[(j, k)] += fit.sensitivity[(j, at)] * d * per_unit[at];
                     }
                 }
             }

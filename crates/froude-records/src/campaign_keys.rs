@@ -21,7 +21,7 @@ pub const ROOT: &[Key] = &[
     optional("tank", Kind::Table(TANK), "unbounded water", "the tank"),
     optional("source", Kind::List(&Kind::Table(SOURCE)), "none", "where observations and records come from"),
     optional("identify", Kind::Table(IDENTIFY), "its defaults", "how to fit, for all sources"),
-    optional("simulate", Kind::Table(SIMULATE), "nothing is simulated", "how to make up observations"),
+    optional("simulate", Kind::Table(SIMULATE), "nothing is simulated", "how to simulate observations"),
     optional("rig", Kind::Named(&[], &Kind::Any), "nothing is driven", "what drives the carriage"),
     optional("carriage", Kind::Named(&[], &Kind::Any), "nothing is driven", "what the carriage is to do"),
 ];
@@ -32,7 +32,7 @@ pub const FLUID: &[Key] = &[
         "density",
         Kind::Quantity(Dimension::DENSITY),
         "the table's column, else from temperature and salinity",
-        "density; one of air needs its viscosity beside it",
+        "density; for air, declare the viscosity too",
     )
     .within(Range::Positive),
     optional(
@@ -95,7 +95,7 @@ pub const SOURCE: &[Key] = &[
         "role",
         Kind::Word(&["fit", "validation"]),
         "fit",
-        "whether laws are fitted to its table, or those of the other sources are held against it",
+        "whether laws are fitted to its table (fit), or those of the other sources are tested on it (validation)",
     ),
     optional("table", Kind::Text, "another of the five inputs", "a table of observations (.csv, .parquet)"),
     optional("record", Kind::Text, "another of the five inputs", "an estimate.json"),
@@ -164,7 +164,7 @@ pub const TARE: &[Key] = &[
         "removed",
         Kind::Flag,
         "false",
-        "whether the table has it removed already: its uncertainty alone is restored",
+        "whether the table already has it removed; then only its uncertainty is included",
     ),
 ];
 
@@ -246,7 +246,7 @@ pub const IDENTIFY: &[Key] = &[
         "cross_validation",
         Kind::List(&Kind::Table(RANGE_BLOCK)),
         "none",
-        "a block that is fitted inside and predicted outside",
+        "a range of a column: rows inside are fitted, rows outside predicted",
     ),
     usual(
         "angle_offset",
@@ -254,7 +254,7 @@ pub const IDENTIFY: &[Key] = &[
         "ignore",
         "`estimate`: one angle between sensor and body per setup",
     ),
-    usual("dissipative", Kind::Flag, "false", "whether the fit is held to deliver no power"),
+    usual("dissipative", Kind::Flag, "false", "whether the fit is constrained to deliver no power"),
     optional(
         "model",
         Kind::List(&Kind::Named(MODEL, &Kind::Text)),
@@ -295,7 +295,7 @@ pub const PRIOR: &[Key] = &[
     positive(
         "model_form",
         Dimension::ONE,
-        "added to the uncertainty in the mean square, as part of the value: how far an ideal fluid is from a real one",
+        "added to the uncertainty in quadrature, as a fraction of the value: how far an ideal fluid is from a real one",
     ),
 ];
 

@@ -187,7 +187,7 @@ impl Observed for Steady {
         let way = WAYS.iter().find(has);
         if way.is_none() && !log.log.meta.conditions.contains_key("speed") {
             return Err(
-                "no channel speed or position says how it moves; of a body held in a stream write [conditions] speed = \"0.2 m/s\" in its sidecar".to_owned(),
+                "no channel speed or position shows how it moves; for a body held in a stream write [conditions] speed = \"0.2 m/s\" in its sidecar".to_owned(),
             );
         }
         let loads: Vec<&Channel> = LOADS.iter().filter(has).collect();
@@ -218,7 +218,7 @@ impl Observed for Steady {
         }
         let errors = tare::subtract(rows, &tares, source)?;
         let text = format!(
-            "{} subtracted at the same speed and angle; what is uncertain about their mean is shared by all observations there",
+            "{} subtracted at the same speed and angle; the uncertainty of their mean is shared by all observations there",
             counted(tares.len(), "run without the body is", "runs without the body are")
         );
         Ok((errors, vec![note("tare-subtracted", text)]))

@@ -64,7 +64,7 @@ pub const PULLED: TankMethod = source::method::<WeightTow>(
     &[WEIGHT_TOW, "models", "uncertainty", "plan", "keep", "group", "tare"],
 );
 
-/// Residuals of the equation of motion this many times the errors of the track are none of the camera.
+/// Residuals of the equation of motion above this many times the errors of the track are not due to the camera.
 const MISFIT: f64 = 3.0;
 /// Moving mass of a twin whose campaign declares none, kg.
 const USUAL_KG: f64 = 4.0;
@@ -199,7 +199,7 @@ impl Observed for WeightTow {
         if balance.residual_m > MISFIT * found.track.noise_m {
             out.push(warning("track-misfit",
                 format!(
-                    "run {id:?}: the equation of motion leaves {:.2} mm of the track, whose errors are {:.2} mm: look at weight, friction and moving_mass, at a string that \
+                    "run {id:?}: the equation of motion misses the track by {:.2} mm, and the errors of the track are {:.2} mm: check weight, friction and moving_mass, at a string that \
                      stretches, or a push at the start",
                     1e3 * balance.residual_m,
                     1e3 * found.track.noise_m

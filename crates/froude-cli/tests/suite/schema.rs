@@ -128,7 +128,7 @@ fn a_schema_is_written_over_a_schema_alone() {
     let refused = write("campaign.toml");
     assert_eq!(
         String::from_utf8_lossy(&refused.stderr).trim(),
-        "froude: campaign.toml is there and is no JSON Schema; name another file"
+        "froude: campaign.toml exists and is not a JSON Schema; name another file"
     );
     assert_eq!(refused.status.code(), Some(2));
 }

@@ -115,7 +115,8 @@ impl Counts {
     pub(crate) fn findings(&self, data: &Dataset, laws: &[ForceLaw]) -> Vec<Finding> {
         let mut out: Vec<Finding> =
             self.pushed.iter().filter_map(|(of, pushed)| self.along_motion(*of, pushed, data, laws)).collect();
-        for (load, [smallest, largest]) in &self.at_ends {
+        let read = self.at_ends.iter().filter(|(load, _)| data.stated.iter().all(|stated| stated != *load));
+        for (load, [smallest, largest]) in read {
             out.extend([("largest", largest), ("smallest", smallest)].into_iter().filter_map(
                 |(word, (end, there))| {
                     let is_much = *there >= 3 && *there as f64 > SATURATED_SHARE * self.rows as f64;

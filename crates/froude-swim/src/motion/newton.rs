@@ -3,7 +3,7 @@
 //! Newton's method; the eigenvalues of the map's derivative there are the Floquet multipliers. Where a step of it does not come nearer (torques that saturate have corners), the swimmer is let go for some periods
 //! instead, as it would in a tank.
 //!
-//! Without a righting moment roll and pitch stay where they are, and their part of the map's derivative is one: the smallest step that does is taken then (by singular values), and a multiplier of 1 says so.
+//! Without a righting moment roll and pitch stay where they are, and their part of the map's derivative is one: then the step of least norm is taken (by singular values), and a multiplier of 1 shows it.
 //!
 //! **Source.** Nayfeh & Balachandran (1995), *Applied Nonlinear Dynamics*, ch. 3 (stability of periodic solutions) and 6 (shooting).
 
@@ -22,7 +22,7 @@ pub(crate) const STEP: f64 = 1e-5;
 const NEARER: f64 = 0.5;
 /// … and it is halved at most so often.
 const HALVINGS: i32 = 5;
-/// Singular values below this part of the largest are none.
+/// Singular values below this fraction of the largest are treated as zero.
 const SINGULAR: f64 = 1e-7;
 
 /// How a map is.
@@ -72,7 +72,7 @@ pub struct Fixed {
     /// The numbers that repeat.
     pub at: Vec<f64>,
     derivative: Mat<f64>,
-    /// By how much they do not.
+    /// Largest difference over a period, in the sizes of [`Form`].
     pub residual: f64,
 }
 

@@ -70,7 +70,7 @@ impl<P: Numbers, M: Numbers> State<P, M> {
         self.energy_j[of as usize]
     }
 
-    /// self + h rate; off the unit sphere by what a step is off.
+    /// self + h rate; a quaternion is not normalised here.
     #[must_use]
     #[inline(always)]
     pub fn moved(&self, h: f64, rate: &Self) -> Self {

@@ -32,14 +32,14 @@ pub(super) fn equilibrium(space: &Space) -> Option<String> {
 pub(super) fn trim(balance: &Balance, out: &mut Vec<String>) {
     if balance.righting_m > RIGHTS_ITSELF_M {
         out.push(format!(
-            "rights itself: its mass lies {} mm below its buoyancy",
+            "rights itself: its centre of mass lies {} mm below its centre of buoyancy",
             significant(1e3 * balance.righting_m, 3)
         ));
     }
     if balance.trim_m.abs() > TRIMMED_M {
         let way = if balance.trim_m > 0.0 { "ahead of" } else { "behind" };
         out.push(format!(
-            "out of trim: straight and level, its mass lies {} mm {way} its buoyancy",
+            "out of trim: straight and level, its centre of mass lies {} mm {way} its centre of buoyancy",
             significant(1e3 * balance.trim_m.abs(), 3)
         ));
     }
@@ -67,11 +67,11 @@ pub(super) fn water<C: Dynamics>(f: &Figures<'_, C>, space: &Space, file: &Robot
     }
     if let (None, Some(first)) = (file.model.heave_drag, file.modules.first()) {
         out.push(format!(
-            "drag up and down is no part of the record: it is {} of that across, by the area seen from above; where it was measured, write heave_drag",
+            "the record has no vertical drag: it is taken as {} of the lateral drag, by the area seen from above; if it was measured, write heave_drag",
             significant(file.heave_drag(first), 3)
         ));
     }
     if file.model.roll_drag == [0.0; 2] {
-        out.push("no roll_drag: what turns a straight body about its own axis is not resisted".to_owned());
+        out.push("no roll_drag: the roll of a straight body is not damped".to_owned());
     }
 }

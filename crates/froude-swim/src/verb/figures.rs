@@ -125,13 +125,12 @@ pub(super) fn powers<C: Dynamics>(moments: &[Moment<C>]) -> Block {
     let has_friction = moments.iter().any(|m| m.power_w[3] > 0.0);
     let names = ["net, of the motors", "positive", "drag", "friction of the joints"].into_iter().enumerate();
     let series = names.take(if has_friction { 4 } else { 3 });
-    let height = if C::TILTS { " and what weight and buoyancy do" } else { "" };
-    let lie = if C::TILTS { "lie the" } else { "lies" };
+    let height = if C::TILTS { " and potential" } else { "" };
     chart(
         "powers",
         "Powers",
         &format!(
-            "What the motors give, its positive part, and what drag takes; between net power and drag {lie} kinetic energy of body and water{height}."
+            "What the motors give, its positive part, and what drag takes. Net power less drag and joint friction is the rate of change of kinetic{height} energy, that of the water included."
         ),
         "time [s]",
         vec![panel(

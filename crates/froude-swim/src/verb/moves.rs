@@ -111,13 +111,13 @@ impl Moves {
             Wave::Gait(_) if is_typed || own.is_some() => {
                 return wrong(
                     robot,
-                    "has no joint that pitches, and the gait has a wave of such: write axis = \"pitch\" in a [[joint]], or leave pitch out",
+                    "has no joint that pitches, but the gait has a pitch wave: write axis = \"pitch\" in a [[joint]], or leave pitch out",
                 );
             }
             Wave::Table(_) if is_typed => {
                 return wrong(
                     robot,
-                    "is of three dimensions and swims by a table, which has the angles of all joints: leave the pitch options out",
+                    "is three-dimensional and follows a table, which already has the angles of all joints: leave the pitch options out",
                 );
             }
             _ => {}

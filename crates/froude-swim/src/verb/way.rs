@@ -60,7 +60,7 @@ pub(super) fn swim<C: Dynamics>(
     let (mut details, mut trajectory, mut animated) = (Vec::new(), None, None);
     if let (Some(moments), Some(out)) = (&found.moments, &job.out) {
         details = vec![
-            ("The way", figures::way(moments)),
+            ("Path and motion", figures::way(moments)),
             ("Joints", vec![figures::joints(moments), figures::powers(moments)]),
             ("Where the power goes", figures::losses(&robot, moments)),
         ];

@@ -110,7 +110,7 @@ pub trait Observed: Clone + std::fmt::Debug + Send + Sync + 'static {
         0.0
     }
 
-    /// Variance of a load by the noise of `sensors` in a planned run, without what the speed does to it; `None` where repeated runs of the twin are to tell both.
+    /// Variance of a load by the noise of `sensors` in a planned run, without what the speed does to it; `None` if both are to be estimated from repeated runs of the twin.
     fn variance(&self, _run: &Reduced<Self::Found>, _load: &str, _sensors: &[SensorSpec]) -> Option<f64> {
         None
     }

@@ -24,7 +24,7 @@ pub use crate::plan::Expected;
 
 /// Step of differences by the speed, as part of it.
 const STEP: f64 = 1e-4;
-/// Repeats of the twin that tell the variance of an observation: its root to a twentieth, and that of all runs together better.
+/// Repeats of the twin from which the variance of an observation is estimated: its root to 5 %, over all runs together more closely.
 const REPEATS: u64 = 200;
 
 /// The runs of a twin as they would be reduced, without errors.

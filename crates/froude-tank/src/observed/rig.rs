@@ -44,7 +44,7 @@ pub struct Rig<'a> {
     pub speed_m_s: f64,
     /// Loads of the water on the body at its true angle.
     pub loads: Loads<'a>,
-    /// A log shows the speed so many times too large.
+    /// Factor by which a log overstates the speed \[-\].
     pub stretch: f64,
     /// How each load is read.
     pub readings: Vec<Reading>,

@@ -90,18 +90,30 @@ fn identified<M: Observed>(
     if !errors.is_empty() && observations.data.rows != rows.len() {
         let names: Vec<&str> = errors.iter().map(|error| error.name.as_str()).collect();
         let what = format!(
-            "`keep` and errors that all runs share ({}) do not go together: leave the logs that are not meant out of the folder",
+            "`keep` and errors that all runs share ({}) cannot be combined: move unwanted logs out of the folder",
             names.join(", ")
         );
         return Err(undeclared(&source.place, what));
     }
     observations.shared_errors.extend(errors);
+    observations.data.stated = stated(&observed);
     let mut result = identify_observations(campaign, &own, observations, spec.name, &|model| {
         progress(&format!("fitting {model}"));
     })?;
     findings.append(&mut result.findings);
     let blocks = vec![method.section(&observed, &rows, &logs)];
     Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
+}
+
+/// Loads that no sensor read in any run.
+fn stated<F>(reduced: &[Reduced<F>]) -> Vec<String> {
+    let loads = reduced.iter().flat_map(|run| &run.observation.loads);
+    let (read, stated): (Vec<_>, Vec<_>) = loads.partition(|load| load.is_read());
+    let mut names: Vec<String> = stated.iter().map(|load| load.name.clone()).collect();
+    names.sort();
+    names.dedup();
+    names.retain(|name| read.iter().all(|load| load.name != *name));
+    names
 }
 
 /// The source with the errors of its speeds in its budget: each run has one of its own.
@@ -126,21 +138,17 @@ pub fn with_speeds<M: Observed>(source: &Source, method: &M, reduced: &[Reduced<
     own
 }
 
-/// What all runs have in common, as the rows take it.
-///
-/// A speed that is wrong by δU moves a load against its law by −2 f δU/U, as quadratic drag does.
+/// What all runs have in common, as the rows take it: what it moves each load by, and the speed.
 #[must_use]
 pub fn shared<M: Observed>(method: &M, reduced: &[Reduced<M::Found>], loads: &[&str]) -> Vec<SharedError> {
     let one = |(k, name): (usize, &&str)| -> Option<SharedError> {
+        let rows = |of: &dyn Fn(&Reduced<M::Found>) -> f64| reduced.iter().map(|run| vec![of(run)]).collect();
         let of_load = |load: &&str| {
-            let row = |run: &Reduced<M::Found>| {
-                let (point, moves) = (&run.observation, &run.moves[k]);
-                let own = run.load(load).map_or((0.0, 0.0), |l| (point.loads[l].value, moves.loads_n[l]));
-                vec![own.1 - 2.0 * own.0 * moves.speed_m_s / point.speed_m_s]
-            };
-            ((*load).to_owned(), reduced.iter().map(row).collect::<Vec<_>>())
+            let moved = |run: &Reduced<M::Found>| run.load(load).map_or(0.0, |l| run.moves[k].loads_n[l]);
+            ((*load).to_owned(), rows(&moved))
         };
-        let directions: Vec<(String, Vec<Vec<f64>>)> = loads.iter().map(of_load).collect();
+        let speed = ("speed".to_owned(), rows(&|run| run.moves[k].speed_m_s));
+        let directions: Vec<(String, Vec<Vec<f64>>)> = loads.iter().map(of_load).chain([speed]).collect();
         let is_there = directions.iter().any(|(_, rows)| rows.iter().any(|row| row[0] != 0.0));
         // In standard uncertainties.
         is_there.then(|| SharedError { directions, ..SharedError::of_load(name, name, &[], 1.0, f64::INFINITY) })

@@ -6,6 +6,7 @@
 use froude_fit::budget::Uncertain;
 use froude_identify::method::{Export, MethodError};
 use froude_identify::simulate::{planned, truth};
+use froude_identify::source::check_budget;
 use froude_records::campaign::{BudgetEntry, Campaign, PlanBlock, SensorSpec, Shared, Source};
 use froude_records::units::Dimension;
 
@@ -78,8 +79,9 @@ impl<M: Observed> Twin<M> {
     pub fn with(campaign: &Campaign, source: &Source, method: M, points: Vec<Point>) -> Result<Self, MethodError> {
         // Where only the law tells the speed of a run, the law is read over what is planned instead, which differs between runs alike.
         let instead = |point: &Point| {
-            let other = point.conditions.iter().find(|(name, _)| **name != ANGLE.name);
-            point.conditions.get("speed").copied().or_else(|| Some(*other?.1)).unwrap_or(1.0)
+            let others = M::SPEC.conditions.iter().filter(|condition| condition.name != ANGLE.name);
+            let other = || others.clone().find_map(|condition| point.conditions.get(condition.name));
+            point.conditions.get("speed").or_else(other).copied().unwrap_or(1.0)
         };
         let block = |point: &Point| PlanBlock {
             configurations: vec![point.configuration.clone()],
@@ -94,10 +96,11 @@ impl<M: Observed> Twin<M> {
         let mut data = planned(&alone, &own)?;
         data.channels
             .retain(|name, _| !["f_x", "f_y"].contains(&name.as_str()) || M::SPEC.loads.contains(&name.as_str()));
+        check_budget(source, &data)?;
         let (law, values) = truth(&alone, &data)?;
         if let Some(load) = law.responses.iter().find(|load| !M::SPEC.loads.contains(&load.as_str())) {
             let what = format!(
-                "the law {} gives {load}, and {} observes {}: take a law of that in [simulate] model",
+                "the law {} gives {load}, and {} observes {}: choose a law for that in [simulate] model",
                 law.name,
                 M::SPEC.called,
                 M::SPEC.loads.join(" and ")

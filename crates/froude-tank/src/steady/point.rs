@@ -65,6 +65,11 @@ impl Load {
         let read = Mean { value, standard: 0.0, correlation_s, effective_n, trend, trend_standard: f64::INFINITY };
         Self { name: name.to_owned(), value, standard: 0.0, read, zero: 0.0, drift: None }
     }
+
+    /// Whether a sensor read it.
+    pub(crate) fn is_read(&self) -> bool {
+        self.read.trend_standard.is_finite()
+    }
 }
 
 /// One observation.

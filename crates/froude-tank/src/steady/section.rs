@@ -77,7 +77,12 @@ pub const PLAN: &[Key] = &[
         "speed of the tow, ahead or (below zero) astern",
     )
     .within(Range::NotZero("a tow goes somewhere, ahead or (below zero) astern")),
-    Key::new("angle", Kind::Axis(Dimension::ONE), IfMissing::Is("0 deg"), "angle of the body to its way"),
+    Key::new(
+        "angle",
+        Kind::Axis(Dimension::ONE),
+        IfMissing::Is("0 deg"),
+        "angle between the body and the direction of the tow",
+    ),
     REPEATS,
 ];
 
