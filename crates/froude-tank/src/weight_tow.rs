@@ -52,6 +52,7 @@ use crate::observed::spec::{ANGLE, Condition, Constant, Moves, Point, Run, Spec,
 use crate::steady::point::Point as Observation;
 use crate::steady::row::Row;
 
+use keys::USUAL_SCALE_M;
 pub use keys::{KEYS, PLAN, WeightTow};
 
 /// The last part of the way of a wagon, each run an observation.
@@ -68,8 +69,6 @@ pub const PULLED: TankMethod = source::method::<WeightTow>(
 const MISFIT: f64 = 3.0;
 /// Moving mass of a twin whose campaign declares none, kg.
 const USUAL_KG: f64 = 4.0;
-/// Size of a pixel of a twin whose campaign declares none, m.
-const USUAL_SCALE_M: f64 = 1.2e-3;
 impl Observed for WeightTow {
     const SPEC: Spec = Spec {
         name: WEIGHT_TOW,
@@ -141,7 +140,7 @@ impl Observed for WeightTow {
         let mark = sensors.iter().find(|s| s.quantity == MARK.name);
         let step = |s: &SensorSpec| s.resolution.unwrap_or(0.0) / 12.0_f64.sqrt();
         let noise_px = mark.map_or(0.0, |s| s.noise.unwrap_or(0.0).hypot(step(s)));
-        Self { noise_m: Some(self.scale_m.map_or(1.0, |s| s.value) * noise_px), ..*self }
+        Self { noise_m: Some(self.pixel_m() * noise_px), ..*self }
     }
 
     fn speed_standard_m_s(&self, found: &Found) -> f64 {

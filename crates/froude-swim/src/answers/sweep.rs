@@ -231,7 +231,8 @@ fn answer<C: Dynamics>(swim: &Swim<C>, gait: &Gait) -> [f64; COLUMNS.len() - 5] 
         swim.effort.needs.rate_rad_s,
         p.residual,
         p.periods as f64,
-        p.multipliers[0],
+        // Of a body that nothing rights a multiplier of 1 is found by differences, on either side.
+        if p.is_unstable() { p.multipliers[0] } else { p.multipliers[0].min(1.0) },
         by_speed,
         by_angle,
         unstable[0],

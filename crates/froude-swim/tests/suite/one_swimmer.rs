@@ -8,6 +8,7 @@ use froude_swim::chain::Chain as Planar;
 use froude_swim::course::Recorded;
 use froude_swim::drive::Following;
 use froude_swim::dynamics::Dynamics;
+use froude_swim::front::{Objective, front};
 use froude_swim::gait::{Course, Envelope, Gait, Pitching, Shape};
 use froude_swim::joints::Drives;
 use froude_swim::robot::Robot;
@@ -115,6 +116,12 @@ fn a_sweep_in_the_plane_has_the_rows_of_the_plane() {
     let mut grid = Grid::of(&lateral());
     grid.amplitude = Range { low: 0.3, high: 0.6, n: 2 };
     for drives in [Drives::free(9), servos()] {
+        let rows = |row: &dyn Fn(&Gait) -> Row| (0..2).map(|i| row(&grid.gait(i))).collect::<Vec<Row>>();
+        let of_plane = rows(&|gait| Row::of(&plane, &drives, None, gait, 0));
+        let of_space = rows(&|gait| Row::of(&space, &drives, None, gait, 0));
+        // Nothing rights this body: two multipliers of space are 1 but for differences, and lose no gait.
+        let on_front = |rows: &[Row]| front(rows, [Objective::Speed, Objective::Cost]).len();
+        assert_eq!(on_front(&of_plane), on_front(&of_space));
         for gait in (0..2).map(|i| grid.gait(i)) {
             let (a, b) = (Row::of(&plane, &drives, None, &gait, 0), Row::of(&space, &drives, None, &gait, 0));
             assert_eq!((a.status, b.status), (Status::Periodic, Status::Periodic));

@@ -18,7 +18,9 @@ pub(super) fn section<F>(conditions: &[Condition], runs: &[Reduced<F>]) -> Secti
         let [key, head] = condition.column;
         ResultColumn { digits: condition.digits, ..t.number(key, head, |run| run.point.condition(condition.name)) }
     }));
-    columns.push(t.number("speed_m_s", "speed [m/s]", |run| run.observation.speed_m_s).plain(5));
+    if !is_stated("speed") {
+        columns.push(t.number("speed_m_s", "speed [m/s]", |run| run.observation.speed_m_s).plain(5));
+    }
     let loads = runs.first().map_or(&[][..], |run| run.observation.loads.as_slice());
     columns.extend(
         loads

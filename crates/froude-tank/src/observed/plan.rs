@@ -5,7 +5,7 @@
 
 use froude_identify::method::{MethodError, Prospect};
 use froude_records::block::{ResultColumn, ResultTable, TableBuilder};
-use froude_records::campaign::{Campaign, SensorSpec, Source};
+use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
@@ -70,7 +70,7 @@ pub fn expected<M: Observed>(
         above.iter().zip(&below).map(|(a, b)| (a - b) / (2.0 * STEP * u)).collect()
     };
     let slopes: Vec<Vec<f64>> = (0..n).map(slope).collect();
-    let repeated = repeated(twin, sensors, &slopes, reduced);
+    let repeated = repeated(twin, sensors, &slopes, reduced).map_err(MethodError::refused)?;
     let (of_budget, rows) = declared(plan, &source.uncertainty)?;
     let variance = |r: usize, i: usize| -> f64 {
         let by_speed = (slopes[i][r] * twin.method.speed_standard_m_s(&reduced[i].found)).powi(2);
@@ -87,38 +87,53 @@ pub fn expected<M: Observed>(
     let of_rig =
         |(k, name): (usize, &&str)| PlannedError { name: (*name).to_owned(), dof: f64::INFINITY, moves: moved(k) };
     let errors: Vec<PlannedError> = twin.method.errors().iter().enumerate().map(of_rig).chain(of_budget).collect();
-    linearised(plan, &variance, &errors, in_variables)
+    // The fit knows errors of speed and angle by what each run has of them.
+    let of_run =
+        |entry: &BudgetEntry| entry.shared == Shared::Sample && ["speed", "angle"].contains(&entry.quantity.as_str());
+    let has_them = source.uncertainty.iter().any(of_run)
+        || reduced.iter().any(|run| twin.method.speed_standard_m_s(&run.found) > 0.0);
+    linearised(plan, &variance, &errors, in_variables && has_them)
 }
 
-/// Variance of each load of each run with what its speed does to it, N², by repeated runs with noise alone; nothing where the method states its own. A repeat that gives no
-/// observation is left out, as one in the tank would be.
+/// Variance of each load of each run with what its speed does to it, N², by repeated runs with noise alone, about their mean: a sensor's bias is no scatter. Nothing where the method
+/// states its own.
+///
+/// # Errors
+///
+/// A run that gives no observation in half of its repeats.
 fn repeated<M: Observed>(
     twin: &Twin<M>,
     sensors: &[SensorSpec],
     slopes: &[Vec<f64>],
     reduced: &[Reduced<M::Found>],
-) -> Vec<Vec<f64>> {
+) -> Result<Vec<Vec<f64>>, TankError> {
     let names = &twin.plan.law.responses;
     if names.iter().all(|name| reduced.iter().all(|run| twin.method.variance(run, name, sensors).is_some())) {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let constants = values(&twin.method.constants());
-    let mut squares = vec![vec![(0.0, 0.0); reduced.len()]; names.len()];
+    let mut errors = vec![vec![Vec::new(); reduced.len()]; names.len()];
     for seed in 1..=REPEATS {
         for (i, run) in twin.noisy(sensors, seed).iter().enumerate() {
-            let Ok((found, _)) = twin.method.reduce(&run.view(), &constants) else { continue };
-            for (r, name) in names.iter().enumerate() {
-                let Some(l) = reduced[i].load(name) else { continue };
-                let exact = &reduced[i].observation;
-                let error =
-                    found.loads[l].value - exact.loads[l].value - slopes[i][r] * (found.speed_m_s - exact.speed_m_s);
-                squares[r][i].0 += error * error;
-                squares[r][i].1 += 1.0;
+            let found = twin.method.reduce(&run.view(), &constants).ok();
+            for (of_load, (r, name)) in errors.iter_mut().zip(names.iter().enumerate()) {
+                let Some((l, (found, _))) = reduced[i].load(name).zip(found.as_ref()) else { continue };
+                of_load[i].push(found.loads[l].value - slopes[i][r] * found.speed_m_s);
             }
         }
     }
-    let mean = |(sum, count): (f64, f64)| if count > 0.0 { sum / count } else { 0.0 };
-    squares.into_iter().map(|of_load| of_load.into_iter().map(mean).collect()).collect()
+    let variance = |(of, run): (Vec<f64>, &Reduced<M::Found>)| {
+        let n = of.len() as f64;
+        if 2.0 * n < REPEATS as f64 {
+            let what = format!(
+                "gives an observation in {n} of {REPEATS} repeats with the noise of [[simulate.sensor]]: plan it longer, or with another setting"
+            );
+            return Err(TankError::of_run(&run.point.id, what));
+        }
+        let mean = of.iter().sum::<f64>() / n;
+        Ok(of.iter().map(|error| (error - mean).powi(2)).sum::<f64>() / (n - 1.0))
+    };
+    errors.into_iter().map(|of_load| of_load.into_iter().zip(reduced).map(variance).collect()).collect()
 }
 
 /// What the plan of a source takes and determines.

@@ -28,6 +28,12 @@ impl Loads<'_> {
         self.names().iter().position(|own| own == name).map_or(0.0, |k| self.at(speed_m_s)[k])
     }
 
+    /// The true angle of the body, rad.
+    #[must_use]
+    pub const fn angle_rad(&self) -> f64 {
+        self.angle_rad
+    }
+
     /// Their names.
     #[must_use]
     pub fn names(&self) -> &[String] {

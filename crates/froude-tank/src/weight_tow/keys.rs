@@ -137,7 +137,15 @@ pub struct WeightTow {
     pub noise_m: Option<f64>,
 }
 
+/// Size of a pixel of a twin whose campaign declares none, m.
+pub(super) const USUAL_SCALE_M: f64 = 1.2e-3;
+
 impl WeightTow {
+    /// Size of a pixel, m: a twin logs a mark whatever is declared.
+    pub(super) fn pixel_m(&self) -> f64 {
+        self.scale_m.map_or(USUAL_SCALE_M, |scale| scale.value)
+    }
+
     pub(super) fn of(values: &Values) -> Result<Self, RecordError> {
         let number = |values: &Values, key: &str| values.need(key, values.number(key));
         let lens = values.table("lens").map(|l| -> Result<Lens, RecordError> {

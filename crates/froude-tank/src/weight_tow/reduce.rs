@@ -62,9 +62,9 @@ pub const ERRORS: [&str; 4] =
 
 /// Positions of the wagon, m: of its mark by scale and lens, or as they stand.
 fn position_m(run: &Run<'_>, rig: &WeightTow) -> Vec<f64> {
-    match (run.channel("mark"), rig.scale_m) {
-        (mark @ [_, ..], Some(scale)) => metres(mark, scale.value, rig.lens),
-        _ => [run.channel("y/position"), run.channel("position")].concat(),
+    match run.channel("mark") {
+        [] => [run.channel("y/position"), run.channel("position")].concat(),
+        mark => metres(mark, rig.pixel_m(), rig.lens),
     }
 }
 

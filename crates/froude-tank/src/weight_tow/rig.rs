@@ -26,7 +26,7 @@ fn along(load: &str, angle_rad: f64) -> f64 {
 
 /// The speed at which the drag along the rail is what pulls, m/s.
 pub(super) fn terminal_m_s(rig: &WeightTow, run: &Point, loads: &Loads<'_>) -> Result<f64, String> {
-    let (weight_n, angle) = (run.condition("weight"), run.condition("angle"));
+    let (weight_n, angle) = (run.condition("weight"), loads.angle_rad());
     let pull = weight_n - rig.friction_n.value;
     let drag_n = |u: f64| -loads.names().iter().zip(loads.at(u)).map(|(name, f)| f * along(name, angle)).sum::<f64>();
     let over = |u: f64| drag_n(u) - pull;
@@ -46,7 +46,7 @@ pub(super) fn terminal_m_s(rig: &WeightTow, run: &Point, loads: &Loads<'_>) -> R
 
 /// A run as camera and cell log it.
 pub(super) fn pulled(own: &WeightTow, run: &Point, rig: &mut Rig<'_>) -> Trace {
-    let angle = run.condition("angle");
+    let angle = rig.loads.angle_rad();
     let names = rig.loads.names();
     let along: Vec<f64> = names.iter().map(|name| along(name, angle)).collect();
     let mass = rig.constants[MASS];

@@ -1,5 +1,6 @@
 //! The weight-driven rig on its twin: what a single run states of its speed and its drag.
 
+use froude_identify::method::Method as _;
 use froude_records::campaign_file::read_campaign;
 use froude_records::run::{Declared, Role};
 use froude_rig::weight_tow::{WeightRig, pull};
@@ -7,8 +8,8 @@ use froude_tank::observed::plan::exact;
 use froude_tank::observed::spec::{Point, Run};
 use froude_tank::observed::twin::Twin;
 use froude_tank::steady::window::Told;
-use froude_tank::weight_tow::WeightTow;
 use froude_tank::weight_tow::reduce::reduce;
+use froude_tank::weight_tow::{PULLED, WeightTow};
 use indexmap::IndexMap;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -86,4 +87,17 @@ fn an_error_of_the_friction_moves_the_drag_by_less_than_itself() {
         let part = run.moves[2].loads_n[0] / along;
         assert!(part > 0.0 && part < 1.0, "{}: {part}", run.point.id);
     }
+}
+
+/// A rig that logs positions in metres declares no scale; its twin logs a mark all the same, and is planned.
+#[test]
+fn a_rig_without_a_scale_is_planned() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/mamba-weights/campaign.toml");
+    let text = std::fs::read_to_string(example).unwrap();
+    let scale = text.lines().find(|line| line.starts_with("scale ")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("campaign.toml");
+    std::fs::write(&path, text.replace(scale, "")).unwrap();
+    let campaign = read_campaign(&path).unwrap();
+    assert_eq!(PULLED.plan(&campaign, &campaign.sources[0]).unwrap().unwrap().runs, 78);
 }
