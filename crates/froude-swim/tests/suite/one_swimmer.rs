@@ -125,6 +125,7 @@ fn a_sweep_in_the_plane_has_the_rows_of_the_plane() {
         for gait in (0..2).map(|i| grid.gait(i)) {
             let (a, b) = (Row::of(&plane, &drives, None, &gait, 0), Row::of(&space, &drives, None, &gait, 0));
             assert_eq!((a.status, b.status), (Status::Periodic, Status::Periodic));
+            assert!((0.999..=1.0).contains(&b.get("floquet")));
             for name in ["amplitude", "speed", "power_net", "power_pos", "power_friction", "cot", "torque_peak"] {
                 near(a.get(name), b.get(name), SAME, name);
             }
