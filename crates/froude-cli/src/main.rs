@@ -108,6 +108,9 @@ fn run(cli: Cli) -> Result<(), Failure> {
     Ok(())
 }
 
+/// A schema of a campaign is a hundred kilobytes.
+const MOST_SCHEMA_BYTES: u64 = 10 << 20;
+
 /// Prints a JSON Schema, or writes it over an older one.
 fn schema(of: &str, out: Option<&Path>) -> Result<(), Failure> {
     let printed = RESULTS.iter().find(|(verb, _)| *verb == of);
@@ -117,7 +120,7 @@ fn schema(of: &str, out: Option<&Path>) -> Result<(), Failure> {
         return Ok(());
     };
     let is_older = |old: String| serde_json::from_str(&old).is_ok_and(|old: Value| !old["$schema"].is_null());
-    if path.exists() && !std::fs::read_to_string(path).is_ok_and(is_older) {
+    if path.exists() && !froude::records::read::text(path, MOST_SCHEMA_BYTES, "JSON Schema").is_ok_and(is_older) {
         let shown = path.display();
         return Err(Failure::refused(format_args!("{shown} exists and is not a JSON Schema; name another file")));
     }
