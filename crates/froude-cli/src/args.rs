@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Command, Parser, Subcommand};
 use froude::methods::added_mass::option_list::ADDED_MASS_OPTIONS;
 use froude::records::given_option::GivenOption;
-use froude::records::schema::RESULTS;
 
 const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input; 130 stopped by Ctrl-C; re-run the same command to resume.";
 
@@ -149,22 +148,12 @@ pub enum Verb {
         job: CarriageJob,
     },
     /// Print the JSON Schema of estimate.json, of what a verb prints with --json, or of a campaign, for completion and checks in an editor.
-    #[command(
-        after_help = "Examples:\n  froude schema > estimate.schema.json\n  froude schema plan\n  froude schema campaign --out campaign.schema.json"
-    )]
+    #[command(after_help = "Examples:\n  froude schema plan\n  froude schema campaign > campaign.schema.json")]
     Schema {
         /// `campaign`, or the verb whose output to describe; hyphenate subcommands (`cfd-plan` for `froude cfd plan`).
-        #[arg(default_value = "identify", value_parser = described())]
+        #[arg(default_value = "identify", value_parser = froude::records::schema::described())]
         of: String,
-        /// File to write [default: standard output]; an older schema is replaced.
-        #[arg(long)]
-        out: Option<PathBuf>,
     },
-}
-
-/// What has a JSON Schema.
-fn described() -> Vec<&'static str> {
-    std::iter::once("campaign").chain(RESULTS.map(|(verb, _)| verb)).collect()
 }
 
 #[derive(Debug, clap::Args)]

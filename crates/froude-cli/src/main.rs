@@ -18,23 +18,18 @@ mod signals;
 mod stage;
 mod swim;
 
-use std::path::Path;
 use std::process::ExitCode;
 
 use args::{Cli, RobotJob, Verb};
 use clap::Parser;
 use failure::Failure;
-use froude::campaign_schema::campaign_schema;
 use froude::identify::prediction;
 use froude::pipeline::{self, Identified, Input, Job};
-use froude::records::schema::RESULTS;
-use froude::records::write::write_atomically;
 use froude::report::write::write_files;
 use froude::swim::verb::look;
 use froude::{demo, inspect, plan, twin};
 use out::Spinner;
 use print::Form;
-use serde_json::Value;
 
 fn main() -> ExitCode {
     // Where signals cannot be watched they end the program as they always do.
@@ -103,29 +98,11 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Verb::Robot { job: RobotJob::Inspect { robot } } => {
             print::answer(&mistaken::ROBOT.or(look(&robot), &[robot])?, form)?;
         }
-        Verb::Schema { of, out } => schema(&of, out.as_deref())?,
+        Verb::Schema { of } => match froude::records::schema::of_verb(&of) {
+            Some(schema) => out::say!("{schema}"),
+            None => out::say!("{:#}", froude::campaign_schema()),
+        },
     }
-    Ok(())
-}
-
-/// A schema of a campaign is a hundred kilobytes.
-const MOST_SCHEMA_BYTES: u64 = 10 << 20;
-
-/// Prints a JSON Schema, or writes it over an older one.
-fn schema(of: &str, out: Option<&Path>) -> Result<(), Failure> {
-    let printed = RESULTS.iter().find(|(verb, _)| *verb == of);
-    let text = printed.map_or_else(|| format!("{:#}", campaign_schema()), |(_, schema)| schema.trim_end().to_owned());
-    let Some(path) = out else {
-        out::say!("{text}");
-        return Ok(());
-    };
-    let is_older = |old: String| serde_json::from_str(&old).is_ok_and(|old: Value| !old["$schema"].is_null());
-    if path.exists() && !froude::records::read::text(path, MOST_SCHEMA_BYTES, "JSON Schema").is_ok_and(is_older) {
-        let shown = path.display();
-        return Err(Failure::refused(format_args!("{shown} exists and is not a JSON Schema; name another file")));
-    }
-    write_atomically(path, format!("{text}\n").as_bytes())?;
-    out::say!("{}", path.display());
     Ok(())
 }
 

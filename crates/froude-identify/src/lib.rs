@@ -66,4 +66,5 @@ pub mod wild;
 mod zero;
 
 pub use error::IdentifyError;
+pub mod campaign_schema;
 pub use froude_records::declare;

@@ -25,3 +25,15 @@ pub const RESULTS: [(&str, &str); 17] = [
     ("simulate", include_str!("../schemas/results/simulate.json")),
     ("swim", include_str!("../schemas/results/swim.json")),
 ];
+
+/// What has a JSON Schema: a campaign, whose schema the methods make, and the verbs of [`RESULTS`].
+#[must_use]
+pub fn described() -> Vec<&'static str> {
+    [&["campaign"][..], &RESULTS.map(|(verb, _)| verb)].concat()
+}
+
+/// The schema of what a verb prints.
+#[must_use]
+pub fn of_verb(name: &str) -> Option<&'static str> {
+    RESULTS.iter().find(|(verb, _)| *verb == name).map(|(_, schema)| schema.trim_end())
+}

@@ -228,6 +228,10 @@ impl Observed for Steady {
         Some(variance(sensors, load, self.parts_s(&run.observation), 1.0 / self.spec.tow.rate_hz))
     }
 
+    fn duration_s(&self, run: &Setting, _: f64) -> f64 {
+        self.driven(run)[1]
+    }
+
     fn step(&self, log: &TankLog, run: &Reduced<()>) -> Step {
         let window = &run.observation.window;
         let named = log.declared.segments.iter().any(|segment| segment.kind == SegmentKind::Steady);
@@ -248,7 +252,7 @@ impl Observed for Steady {
     fn columns<'r>(&self, t: &TableBuilder<'r, Planned<'r, ()>>) -> Vec<ResultColumn> {
         let window_s = |row: &Planned<'r, ()>| self.parts_s(&row.run.observation)[0];
         vec![
-            t.number("duration_s", "duration [s]", |row| self.driven(&row.run.point)[1]).places(1),
+            t.number("duration_s", "duration [s]", |row| row.duration_s).places(1),
             t.number("travel_m", "travel [m]", |row| self.driven(&row.run.point)[2]).places(2),
             t.number("window_s", "steady window [s]", window_s).places(1),
             t.number("steady_distance_m", "steady distance [m]", |row| window_s(row) * row.speed_m_s.abs()).places(2),

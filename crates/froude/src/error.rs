@@ -11,6 +11,8 @@ use froude_rig::campaign::runner::RunnerError;
 use froude_swim::verb::VerbError;
 use froude_tank::names::FREE_DECAY;
 
+use crate::registry::METHODS;
+
 /// Why a job of the pipeline failed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -148,7 +150,8 @@ impl From<MethodError> for Error {
         let MethodError::OfAnotherMethod { folder, found, method, is_imported, wanted } = error else {
             return Self::Method(error);
         };
-        let readers = crate::registry::readers(if is_imported { FREE_DECAY } else { &method });
+        let of = if is_imported { FREE_DECAY } else { &method };
+        let readers: Vec<&str> = METHODS.iter().filter(|m| m.runs() == of).flat_map(|m| m.names()).copied().collect();
         let instead = match readers.as_slice() {
             [] => "no method of this version reads those".to_owned(),
             _ if is_imported => format!("a [[source]] with method = {readers:?} reads releases"),

@@ -1,7 +1,6 @@
 //! Froude: hydrodynamic coefficients that can be trusted.
 //!
-//! The facade that a Rust user depends on: the rooms under their short names,
-//! and the pipeline that the program `froude` runs.
+//! The facade that a Rust user depends on: the rooms under their short names, and the pipeline that the program `froude` runs.
 //!
 //! ```no_run
 //! use froude::pipeline::{Job, identify};
@@ -11,7 +10,6 @@
 //! ```
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-pub use error::Error;
 pub use froude_cfd as cfd;
 pub use froude_control as control;
 pub use froude_fit as fit;
@@ -23,6 +21,7 @@ pub use froude_records as records;
 pub use froude_report as report;
 pub use froude_rig as rig;
 pub use froude_swim as swim;
+pub use {error::Error, method::campaign_schema};
 
 /// The methods that make estimates of sources, by what they are measured with.
 pub mod methods {
@@ -31,7 +30,6 @@ pub mod methods {
     pub use froude_tank as tank;
 }
 
-pub mod campaign_schema;
 pub mod carriage;
 pub mod demo;
 mod error;

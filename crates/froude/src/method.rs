@@ -10,7 +10,7 @@ use froude_identify::table::Table;
 use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::campaign_file;
 use froude_records::nearest::meant;
-use froude_rig::carriage::declared;
+use froude_rig::carriage::{declared, keys::CARRIAGE, keys::RIG};
 
 use crate::Error;
 use crate::registry::METHODS;
@@ -49,6 +49,13 @@ pub fn check_sections(campaign: &Campaign) -> Result<(), Error> {
     }
     declared(campaign)?;
     Ok(())
+}
+
+/// JSON Schema of a campaign, for editors.
+#[must_use]
+pub fn campaign_schema() -> serde_json::Value {
+    let others: [(&dyn Method, _); 2] = [(&AddedMass, "mesh"), (&Computed, "cases")];
+    froude_identify::campaign_schema::campaign_schema(&METHODS, &others, &[("rig", RIG), ("carriage", CARRIAGE)])
 }
 
 /// The methods of a source, each with the names that it is asked for; `instead` is used where a source names no method.

@@ -7,12 +7,6 @@ use froude_carriage::tuning::source::{Resonance, Tuning};
 use froude_identify::method::Method;
 use froude_tank::{accelerated_tow, decay, excited_response, oscillation, rotation, steady, sway, weight_tow};
 
-/// Names of the methods that read runs of a method.
-pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
-    METHODS.iter().filter(|method| method.runs() == runs).flat_map(|method| method.names()).copied().collect()
-}
-
-/// All methods that read runs.
 pub(crate) const METHODS: [&dyn Method; 13] = [
     &Carriage,
     &Servo,

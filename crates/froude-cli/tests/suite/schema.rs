@@ -114,21 +114,3 @@ fn a_person_reads_unit_default_and_what_a_key_means() {
     assert_eq!(source["steady"]["properties"]["shortest"]["default"], "2 s");
     assert_eq!(source["rotation"]["required"], serde_json::json!(["axis"]));
 }
-
-#[test]
-fn a_schema_is_written_over_a_schema_alone() {
-    let folder = tempfile::tempdir().unwrap();
-    let write = |file: &str| froude(folder.path(), &["schema", "campaign", "--out", file]);
-    for _ in 0..2 {
-        assert_eq!(write("campaign.schema.json").status.code(), Some(0));
-    }
-    let written = std::fs::read(folder.path().join("campaign.schema.json")).unwrap();
-    assert_eq!(serde_json::from_slice::<Value>(&written).unwrap(), schema());
-    std::fs::write(folder.path().join("campaign.toml"), "schema = 1\n").unwrap();
-    let refused = write("campaign.toml");
-    assert_eq!(
-        String::from_utf8_lossy(&refused.stderr).trim(),
-        "froude: campaign.toml exists and is not a JSON Schema; name another file"
-    );
-    assert_eq!(refused.status.code(), Some(2));
-}

@@ -149,6 +149,11 @@ pub trait Observed: Clone + std::fmt::Debug + Send + Sync + 'static {
         constants.iter().enumerate().map(one).collect()
     }
 
+    /// How long a planned run takes, s, by its log that lasts `logged_s`.
+    fn duration_s(&self, _run: &Point, logged_s: f64) -> f64 {
+        logged_s
+    }
+
     /// What was done to a run, as a step of its file.
     fn step(&self, log: &TankLog, run: &Reduced<Self::Found>) -> Step {
         logs::window_step(log, &run.observation.window.steady, "").with("speed", run.observation.speed_m_s, "m/s")

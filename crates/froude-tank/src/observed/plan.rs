@@ -146,7 +146,7 @@ pub fn prospect<M: Observed>(campaign: &Campaign, source: &Source) -> Result<Pro
     let (_, sensors) = seed_and_sensors(campaign, &twin.senses())?;
     let (runs, reduced) = exact(&twin, sensors).map_err(MethodError::refused)?;
     let expected = expected(&twin, source, &reduced, (sensors, campaign.identify.errors_in_variables))?;
-    let duration_s: f64 = runs.iter().map(Simulated::duration_s).sum();
+    let duration_s: f64 = runs.iter().map(|run| twin.method.duration_s(&run.point, run.duration_s())).sum();
     let has_speed_errors = reduced.iter().any(|run| twin.method.speed_standard_m_s(&run.found) > 0.0);
     let bias = ", nor that errors of the speed bias a fit without errors_in_variables";
     let paragraph = format!(
@@ -168,7 +168,7 @@ fn matrix<M: Observed>(twin: &Twin<M>, runs: &[Simulated], reduced: &[Reduced<M:
         .map(|(row, (simulated, run))| Planned {
             run,
             speed_m_s: twin.speed_m_s(row),
-            duration_s: simulated.duration_s(),
+            duration_s: twin.method.duration_s(&run.point, simulated.duration_s()),
         })
         .collect();
     let t = TableBuilder::new("matrix", "Run matrix.", &rows);

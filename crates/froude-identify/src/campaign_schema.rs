@@ -1,37 +1,35 @@
 //! JSON Schema of a campaign, for editors.
 
-use froude_added_mass::source::AddedMass;
-use froude_cfd::verb::Computed;
-use froude_identify::method::Method;
 use froude_records::campaign_file::{INPUTS, OF_TABLES};
 use froude_records::campaign_keys::{CASES, ROOT, ROWS};
 use froude_records::declare::{Key, object_schema};
-use froude_rig::carriage::keys::{CARRIAGE, RIG};
 use serde_json::{Map, Value, json};
 
-use crate::registry::METHODS;
+use crate::method::Method;
 
-/// JSON Schema (draft 2020-12) of a campaign, from the keys that its readers and the methods declare.
+/// JSON Schema (draft 2020-12) of a campaign, from the keys that its readers and the methods declare: `methods` are those of runs, `others` those of another input, with its key, and
+/// `sections` those of the campaign that another crate reads.
 ///
 /// Like each of its parts it keeps to what draft 7 has too.
 #[must_use]
-pub fn campaign_schema() -> Value {
+pub fn campaign_schema(methods: &[&dyn Method], others: &[(&dyn Method, &str)], sections: &[(&str, &[Key])]) -> Value {
     let mut schema = object_schema(ROOT);
     let mut forms = Map::from_iter([form("rows", ROWS), form("cases", CASES)]);
-    for (section, keys) in [("rig", RIG), ("carriage", CARRIAGE)] {
-        let description = schema["properties"][section]["description"].take();
-        schema["properties"][section] = object_schema(keys);
-        schema["properties"][section]["description"] = description;
+    for (section, keys) in sections {
+        let description = schema["properties"][*section]["description"].take();
+        schema["properties"][*section] = object_schema(keys);
+        schema["properties"][*section]["description"] = description;
     }
     let source = &mut schema["properties"]["source"]["items"];
-    let names: Vec<&str> = METHODS.iter().flat_map(|method| method.names()).copied().collect();
+    let names: Vec<&str> = methods.iter().flat_map(|method| method.names()).copied().collect();
     source["properties"]["method"]["anyOf"] =
         json!([{ "enum": names }, { "type": "array", "items": { "enum": names } }]);
     source["oneOf"] = INPUTS.map(has).to_vec().into();
 
     let mut rules = Vec::new();
-    let of_runs = METHODS.into_iter().map(|method| (method, None));
-    let of_others: [(&dyn Method, _); 2] = [(&AddedMass, Some("mesh")), (&Computed, Some("cases"))];
+    let takers = |key: &str| takers(methods, key);
+    let of_runs = methods.iter().map(|method| (*method, None));
+    let of_others = others.iter().map(|(method, input)| (*method, Some(*input)));
     for (method, input) in of_runs.chain(of_others) {
         let Some(own) = method.declares() else { continue };
         source["properties"][own.section] = object_schema(own.keys);
@@ -78,8 +76,8 @@ fn is_of(methods: &[&str]) -> Value {
 }
 
 /// Names of the methods that take a key of a source.
-fn takers(key: &str) -> Vec<&'static str> {
-    METHODS.iter().filter(|method| method.takes().contains(&key)).flat_map(|method| method.names()).copied().collect()
+fn takers(methods: &[&dyn Method], key: &str) -> Vec<&'static str> {
+    methods.iter().filter(|method| method.takes().contains(&key)).flat_map(|method| method.names()).copied().collect()
 }
 
 fn rule(condition: Value, then: Value) -> Value {
