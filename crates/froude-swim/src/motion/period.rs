@@ -1,7 +1,7 @@
 //! The motion that repeats itself: a fixed point of the map over one period.
 //!
 //! Nothing in the water depends on where the swimmer is and where it heads; on roll and pitch it does by weight and buoyancy. What repeats are the head's own motion, its roll and pitch in three dimensions, and the joints' angles
-//! and rates where servos drive them. Newton's method on the map of these numbers finds the motion ([`crate::newton`]), and a multiplier beyond 1 is a gait that leaves its own path. Depth may change
+//! and rates where servos drive them. Newton's method on the map of these numbers finds the motion (by Newton's method), and a multiplier beyond 1 is a gait that leaves its own path. Depth may change
 //! from period to period: a swimmer that is too heavy sinks at a speed that repeats. Speed is
 //! that of the centre of mass through the water from the beginning of a period, t = 0, to its end (chord), divided by the period: of a gait that turns it depends on where the
 //! period begins, and it is nothing after a full turn.

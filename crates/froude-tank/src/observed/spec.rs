@@ -110,7 +110,7 @@ pub struct Run<'a> {
     pub point: Point,
     /// Time, s.
     pub time_s: &'a [f64],
-    /// Channels that [`Observed::takes`] names.
+    /// Channels that [`super::method::Observed::takes`] names.
     pub channels: Vec<(&'a str, &'a [f64])>,
     /// What its sidecar declares of its parts.
     pub told: Told<'a>,
