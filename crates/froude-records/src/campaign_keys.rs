@@ -269,7 +269,7 @@ pub const IDENTIFY: &[Key] = &[
     ),
 ];
 
-/// Kinds of covariance that can be asked for.
+/// Covariances that a campaign may choose.
 pub(crate) const COVARIANCES: [&str; 4] = ["classical", "HC3", "cluster", "serial"];
 
 /// Keys of `[[identify.prior]]` and `[[identify.known]]`: value and uncertainty, or an entry of a record.

@@ -266,7 +266,12 @@ const CALIBRATION: &[Key] = &[
     REPEATS,
     optional("start", Kind::Quantity(Dimension::LENGTH), "that of the tows", "where lifting begins"),
     positive("distance", Dimension::LENGTH, "that of the tows", "way of each lift"),
-    optional("floor", Kind::Quantity(Dimension::LENGTH), "none", "where a weight comes to rest on the floor"),
+    optional(
+        "floor",
+        Kind::Quantity(Dimension::LENGTH),
+        "none",
+        "coordinate at which a falling weight reaches the floor: below it the cord is slack",
+    ),
 ];
 
 const EXCITATION: &[Key] = &[

@@ -177,7 +177,7 @@ impl<C: Dynamics> Robot<C> {
         };
         let mut periodic = found.ok_or_else(|| self.not_periodic())?;
         let mut unstable = None;
-        // What nothing rights comes to no rest in roll and pitch.
+        // Without a righting moment, roll and pitch do not settle.
         if periodic.is_unstable() && self.chain.is_righted() {
             let mut again = Seen::new(&self.chain, drives, gait);
             let mut see = |now: &Instant<'_, C::Motion>| again.see(now);

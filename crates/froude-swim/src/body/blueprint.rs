@@ -125,7 +125,7 @@ impl Blueprint {
     ///
     /// # Errors
     ///
-    /// [`RobotError`]: records that cannot be read, estimates that are none of a robot, numbers without what they refer to.
+    /// [`RobotError`]: records that cannot be read, estimates that do not describe a robot, numbers without what they refer to.
     pub fn of(file: &RobotFile) -> Result<Self, RobotError> {
         Self::by(file, Fitted::new(&file.drag)?)
     }
@@ -314,7 +314,7 @@ impl<C: Dynamics> Robot<C> {
     ///
     /// # Errors
     ///
-    /// [`RobotError`]: records that cannot be read, estimates that are none of a robot, numbers without what they refer to, in three dimensions an added mass of sway alone.
+    /// [`RobotError`]: records that cannot be read, estimates that do not describe a robot, numbers without what they refer to, in three dimensions an added mass of sway alone.
     pub fn of(file: &RobotFile) -> Result<Self, RobotError> {
         Ok(Blueprint::of(file)?.fitting::<C>()?.estimated())
     }

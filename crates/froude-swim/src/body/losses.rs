@@ -23,7 +23,7 @@ impl Loss {
             speed_m_s: u.hypot(across),
             // Fore and aft, and to all sides, are alike.
             angle_rad: across.atan2(u.abs()),
-            // A link that gains is told apart.
+            // A link that gains energy from the water loses nothing here.
             power_w: drag.power_w.max(0.0),
             along_w: -x * u,
         }

@@ -147,7 +147,7 @@ impl Fixed {
         None
     }
 
-    /// The one near which a swimmer comes to rest that leaves an unstable one, as [`Fixed::near`] finds it.
+    /// The fixed point that a swimmer approaches after it has left an unstable one, found as by [`Fixed::near`].
     pub fn settled(map: &mut (dyn Map + '_), unstable: &[f64], one_of: usize, most_periods: usize) -> Option<Self> {
         let form = map.form().clone();
         let near = crate::settled::settled(unstable, &form.size, most_periods, |z| {

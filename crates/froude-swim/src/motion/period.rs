@@ -97,7 +97,7 @@ fn most_periods<C: Dynamics>() -> usize {
 }
 
 impl<C: Dynamics> Swimmer<'_, C> {
-    /// The periodic motion in `steps` steps a period; `None` where there is none within reach or an inertia is not positive.
+    /// The periodic motion in `steps` steps a period; `None` if none is found, or if an inertia is not positive.
     #[must_use]
     pub fn periodic(&self, steps: usize) -> Option<Periodic<C>> {
         self.periodic_seen(steps, &mut |_| ())
@@ -144,7 +144,7 @@ impl<C: Dynamics> Swimmer<'_, C> {
 impl<'a, C: Dynamics> Driven<'a, Servo<'a>, C> {
     /// The periodic motion in `steps` steps a period, sought from a motion of the head with the joints where they shall be; seen at the beginning of each step of a period.
     ///
-    /// `None` where there is none within reach or an inertia is not positive.
+    /// `None` if none is found, or if an inertia is not positive.
     pub fn periodic_seen(&self, head: &StateOf<C>, steps: usize, see: &mut Seeing<'_, C>) -> Option<Periodic<C>> {
         let mut wanted = Shape::straight(self.chain.joints());
         self.drive.course().at(0.0, &mut wanted);

@@ -8,7 +8,7 @@ use super::answer::{Figures, Space};
 use crate::dynamics::{Balance, Dynamics, RIGHTS_ITSELF_M};
 use crate::robot_file::RobotFile;
 
-/// A trim is none below this, m.
+/// Offsets smaller than this count as no trim, m.
 const TRIMMED_M: f64 = 1e-4;
 
 /// A body that nothing rights, before its figures.

@@ -77,7 +77,7 @@ impl<M: Observed> Twin<M> {
     ///
     /// As [`Self::of`].
     pub fn with(campaign: &Campaign, source: &Source, method: M, points: Vec<Point>) -> Result<Self, MethodError> {
-        // Where only the law tells the speed of a run, the law is read over what is planned instead, which differs between runs alike.
+        // If only the law gives the speed of a run, the law is read with a planned condition in place of the speed: both differ between the same runs.
         let instead = |point: &Point| {
             let others = M::SPEC.conditions.iter().filter(|condition| condition.name != ANGLE.name);
             let other = || others.clone().find_map(|condition| point.conditions.get(condition.name));

@@ -133,6 +133,8 @@ pub struct WeightTow {
     pub still_s: f64,
     /// Its frames, and samples, a second.
     pub rate_hz: f64,
+    /// Whether the budget has an error of the angle, which the balance lacks.
+    pub has_angle_error: bool,
     /// Errors of the track, m, which take the place of those that it shows: of a run that is only planned.
     pub noise_m: Option<f64>,
 }
@@ -163,6 +165,7 @@ impl WeightTow {
             travel_m: number(tow, "travel")?,
             still_s: number(tow, "still")?,
             rate_hz: number(tow, "rate")?,
+            has_angle_error: false,
             noise_m: None,
         })
     }

@@ -14,7 +14,7 @@ use froude_tank::observed::source::{NEEDS, method};
 use froude_tank::observed::spec::{Condition, Constant, Point, Run, Spec, Unstated};
 use froude_tank::steady::point::{Load, Point as Observation};
 
-/// A body of submerged weight W hangs on a thin wire in a stream of speed U, which tilts the wire by θ: f_x = −W tan θ.
+/// A body of submerged weight W hangs on a thin wire in a stream of speed U. Its drag tilts the wire by θ: f_x = −W tan θ.
 #[derive(Debug, Clone)]
 pub struct Hanging {
     weight: Constant,

@@ -30,6 +30,7 @@ fn the_drag_of_a_run_that_still_accelerates_has_the_error_that_it_states() {
         travel_m: 0.8,
         still_s: 2.0,
         rate_hz: 50.0,
+        has_angle_error: false,
         noise_m: None,
     };
     for weight_n in [0.025, 0.06, 0.113] {
@@ -100,4 +101,34 @@ fn a_rig_without_a_scale_is_planned() {
     std::fs::write(&path, text.replace(scale, "")).unwrap();
     let campaign = read_campaign(&path).unwrap();
     assert_eq!(PULLED.plan(&campaign, &campaign.sources[0]).unwrap().unwrap().runs, 78);
+}
+
+/// δf = −L δ e with e = (cos θ, −sin θ): what the finding and the book state, by the twin's own balance of one run at 30 deg whose body lies δ off.
+#[test]
+fn an_angle_that_errs_moves_a_balanced_run_by_the_load_across() {
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/mamba-weights/campaign.toml");
+    let mut campaign = read_campaign(std::path::Path::new(example)).unwrap();
+    let source = campaign.sources[0].clone();
+    let twin = Twin::<WeightTow>::of(&campaign, &source).unwrap();
+    let row = twin.points.iter().position(|p| (p.condition("angle") - 30_f64.to_radians()).abs() < 1e-9).unwrap();
+    let point = twin.points[row].clone();
+    let (theta, delta) = (point.condition("angle"), 0.01_f64);
+    let mut turned = point.clone();
+    turned.conditions.insert("angle", theta + delta);
+    campaign.sources[0] = source.clone();
+    let log = Twin::with(&campaign, &source, twin.method, vec![turned]).unwrap().exactly().remove(0);
+    let as_turned = reduce(&log.view(), &twin.method).unwrap();
+    let mut stated = log.view();
+    stated.point = point;
+    let as_stated = reduce(&stated, &twin.method).unwrap();
+    let load = |of: &froude_tank::steady::point::Point, name: &str| {
+        of.loads.iter().find(|load| load.name == name).unwrap().value
+    };
+    let [x, y] = ["f_x", "f_y"].map(|name| load(&as_turned.0, name));
+    let across = x * theta.sin() + y * theta.cos();
+    for (name, expected) in [("f_x", -across * delta * theta.cos()), ("f_y", across * delta * theta.sin())] {
+        let moved = load(&as_stated.0, name) - load(&as_turned.0, name);
+        // To first order in δ.
+        assert!((moved / expected - 1.0).abs() < 3.0 * delta, "{name}: {moved} {expected}");
+    }
 }
