@@ -1,7 +1,7 @@
 //! What the methods read of their sections of a campaign alike: constants, cycles, frequencies, plans.
 
 use froude_fit::budget::Uncertain;
-use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
+use froude_identify::declare::{Key, Kind, Range, Values, optional, required, usual};
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::campaign::{BudgetEntry, Source};
@@ -68,19 +68,18 @@ pub(crate) fn gain(entry: &BudgetEntry, zero: &str) -> Result<f64, MethodError> 
 }
 
 /// Which cycles are used.
-pub const CYCLES: Key = Key::new(
+pub const CYCLES: Key = usual(
     "cycles",
     Kind::Table(&[
-        Key::new("skip", Kind::Whole, IfMissing::Is("1"), "left out after the motion has begun"),
-        Key::new("used", Kind::Whole, IfMissing::Nothing("all"), "used after those"),
-        Key::new("fewest", Kind::Whole, IfMissing::Is("5"), "fewest that are accepted"),
+        usual("skip", Kind::Whole, "1", "left out after the motion has begun"),
+        optional("used", Kind::Whole, "all", "used after those"),
+        usual("fewest", Kind::Whole, "5", "fewest that are accepted"),
     ]),
-    IfMissing::Is("{ skip = 1, fewest = 5 }"),
+    "{ skip = 1, fewest = 5 }",
     "`skip`: whole cycles left out at the start of the motion; `used`: cycles used after those (else all, with the incomplete one at the end); `fewest`: fewest whole cycles accepted",
 );
 /// Harmonics of the angle.
-pub const HARMONICS: Key =
-    Key::new("harmonics", Kind::Count(20), IfMissing::Is("3"), "number of harmonics fitted to the motion");
+pub const HARMONICS: Key = usual("harmonics", Kind::Count(20), "3", "number of harmonics fitted to the motion");
 
 /// Of the values of [`CYCLES`].
 pub(crate) fn cycles(values: &Values) -> Result<Cycles, RecordError> {
@@ -90,27 +89,23 @@ pub(crate) fn cycles(values: &Values) -> Result<Cycles, RecordError> {
 }
 
 /// Frequencies of a motion.
-pub const FREQUENCY: Key = Key::new(
+pub const FREQUENCY: Key = required(
     "frequency",
     Kind::Frequency,
-    IfMissing::Required("write \"0.2 Hz\" or \"70 deg/s\", a list, or { start, stop, step }"),
+    "write \"0.2 Hz\" or \"70 deg/s\", a list, or { start, stop, step }",
     "in Hz, or as an angular frequency in deg/s or rad/s",
 )
 .within(Range::Positive);
 /// Length of a run.
-pub const PERIODS: Key =
-    Key::new("periods", Kind::Count(100_000), IfMissing::Is("7"), "periods in each run, start-up included");
+pub const PERIODS: Key = usual("periods", Kind::Count(100_000), "7", "periods in each run, start-up included");
 /// Time at rest before a run.
-pub const STILL: Key =
-    Key::new("still", Kind::Quantity(Dimension::TIME), IfMissing::Is("1 s"), "time at rest before each run")
-        .within(Range::NotNegative("a time that passes is not"));
+pub const STILL: Key = usual("still", Kind::Quantity(Dimension::TIME), "1 s", "time at rest before each run")
+    .within(Range::NotNegative("a time that passes is not"));
 /// Rate of the log.
-pub const RATE: Key =
-    Key::new("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), IfMissing::Is("100 Hz"), "sampling rate of the log")
-        .within(Range::Positive);
+pub const RATE: Key = usual("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), "100 Hz", "sampling rate of the log")
+    .within(Range::Positive);
 /// Repeats of a run.
-pub const REPEATS: Key =
-    Key::new("repeats", Kind::Count(MOST_RUNS as u64), IfMissing::Is("1"), "number of times each run is made");
+pub const REPEATS: Key = usual("repeats", Kind::Count(MOST_RUNS as u64), "1", "number of times each run is made");
 
 /// Configurations of a block of a plan; one empty text where the body has only one and none to name.
 pub(crate) fn configurations(values: &Values) -> Vec<String> {
@@ -123,5 +118,5 @@ pub(crate) fn configurations(values: &Values) -> Vec<String> {
 /// Amplitudes of a motion; `advice` is what to write.
 #[must_use]
 pub const fn amplitude(dimension: Dimension, advice: &'static str, doc: &'static str) -> Key {
-    Key::new("amplitude", Kind::Axis(dimension), IfMissing::Required(advice), doc).within(Range::Positive)
+    required("amplitude", Kind::Axis(dimension), advice, doc).within(Range::Positive)
 }

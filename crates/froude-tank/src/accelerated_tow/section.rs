@@ -14,7 +14,7 @@
 //! steady       = "4 s"
 //! ```
 
-use froude_identify::declare::{ByConfiguration, IfMissing, Key, Kind, Range, Values};
+use froude_identify::declare::{ByConfiguration, Key, Kind, Range, Values, optional, required, usual};
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Source};
 use froude_records::run::{Declared, Role};
@@ -28,69 +28,35 @@ use crate::names::ACCELERATED_TOW;
 
 /// The keys of `[source.accelerated_tow]`.
 pub const KEYS: &[Key] = &[
-    Key::new(
-        "axis",
-        Kind::Word(&["x", "y"]),
-        IfMissing::Required(
-            "state which axis of the body lies along the travel: \"x\" (forward) or \"y\" (to starboard); drag and added mass are those along it",
-        ),
-        "the axis of the body that lies along the travel, `x` or `y`: drag and added mass are those along it",
-    ),
-    Key::new(
-        "mass",
-        Kind::PerConfiguration(Dimension::MASS),
-        IfMissing::Nothing("by runs in air"),
-        "all that moves below the load cell; one number, or one for each configuration. Runs of the role `dry_air` weigh it instead, and go before what is declared",
-    )
+    required("axis", Kind::Word(&["x", "y"]), "state which axis of the body lies along the travel: \"x\" (forward) or \"y\" (to starboard); drag and added mass are those along it", "the axis of the body that lies along the travel, `x` or `y`: drag and added mass are those along it"),
+    optional("mass", Kind::PerConfiguration(Dimension::MASS), "by runs in air", "all that moves below the load cell; one number, or one for each configuration. Runs of the role `dry_air` weigh it instead, and go before what is declared")
     .within(Range::Positive),
-    Key::new(
-        "delay",
-        Kind::Constant(Dimension::TIME),
-        IfMissing::Nothing("none taken"),
-        "of the force behind the motion: filters and samplers that one channel has and the other has not. Its `standard` is in the budget",
-    ),
-    Key::new(
-        "window",
-        Kind::Quantity(Dimension::TIME),
-        IfMissing::Is("0.4 s"),
-        "length of the windows that motion and force are weighted over",
-    )
+    optional("delay", Kind::Constant(Dimension::TIME), "none taken", "of the force behind the motion: filters and samplers that one channel has and the other has not. Its `standard` is in the budget"),
+    usual("window", Kind::Quantity(Dimension::TIME), "0.4 s", "length of the windows that motion and force are weighted over")
     .within(Range::Positive),
 ];
 
 /// The keys of a block of a plan.
 pub const PLAN: &[Key] = &[
-    Key::new(
-        "configurations",
-        Kind::Texts,
-        IfMissing::Nothing("one unnamed body"),
-        "names of the configurations, as in `mass`",
-    ),
-    Key::new(
-        "medium",
-        Kind::Word(&["water", "air"]),
-        IfMissing::Is("water"),
-        "`water`, or `air`, which determines the mass alone",
-    ),
-    Key::new(
+    optional("configurations", Kind::Texts, "one unnamed body", "names of the configurations, as in `mass`"),
+    usual("medium", Kind::Word(&["water", "air"]), "water", "`water`, or `air`, which determines the mass alone"),
+    required(
         "speed",
         Kind::Axis(Dimension::SPEED),
-        IfMissing::Required("write \"0.3 m/s\", a list, or { start, stop, step }"),
+        "write \"0.3 m/s\", a list, or { start, stop, step }",
         "speed that is reached, ahead or (below zero) astern",
     )
     .within(Range::NotZero("a tow goes somewhere, ahead or (below zero) astern")),
-    Key::new(
+    required(
         "acceleration",
         Kind::Axis(Dimension::ACCELERATION),
-        IfMissing::Required("write \"0.2 m/s^2\", a list, or { start, stop, step }"),
+        "write \"0.2 m/s^2\", a list, or { start, stop, step }",
         "up to it and back to rest; its sign is that of the speed",
     )
     .within(Range::Positive),
-    Key::new("steady", Kind::Quantity(Dimension::TIME), IfMissing::Is("4 s"), "time at the speed")
-        .within(Range::Positive),
-    Key::new("still", Kind::Quantity(Dimension::TIME), IfMissing::Is("5 s"), "time at rest before and after")
-        .within(Range::Positive),
-    Key::new("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), IfMissing::Is("100 Hz"), "sampling rate of the log")
+    usual("steady", Kind::Quantity(Dimension::TIME), "4 s", "time at the speed").within(Range::Positive),
+    usual("still", Kind::Quantity(Dimension::TIME), "5 s", "time at rest before and after").within(Range::Positive),
+    usual("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), "100 Hz", "sampling rate of the log")
         .within(Range::Positive),
     REPEATS,
 ];

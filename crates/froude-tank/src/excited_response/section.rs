@@ -17,7 +17,7 @@
 //! free   = 2
 //! ```
 
-use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
+use froude_identify::declare::{Key, Kind, Range, Values, optional, required, usual};
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::campaign::Source;
@@ -35,100 +35,67 @@ use crate::matrix::{Plan, Point};
 use crate::names::EXCITED_RESPONSE;
 
 const WINDOW: &[Key] = &[
-    Key::new(
+    required(
         "from",
         Kind::Quantity(Dimension::TIME),
-        IfMissing::Required("write from = \"14 s\", counted from the start of the wavemaker"),
+        "write from = \"14 s\", counted from the start of the wavemaker",
         "begin",
     ),
-    Key::new(
+    required(
         "to",
         Kind::Quantity(Dimension::TIME),
-        IfMissing::Required("write to = \"20 s\", before the reflected wave is back at the body"),
+        "write to = \"20 s\", before the reflected wave is back at the body",
         "end",
     ),
 ];
 
 /// The keys of `[source.excited_response]`.
 pub const KEYS: &[Key] = &[
-    Key::new(
-        "axis",
-        Kind::Word(&Motion::NAMES),
-        IfMissing::Required("state what the free body does: axis = \"heave\""),
-        "what the free body does: `heave`",
-    ),
-    Key::new(
-        "mass",
-        Kind::Constant(Dimension::MASS),
-        IfMissing::Required("write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves"),
-        "all that moves, with its `standard` uncertainty; a number without one counts as exact, here and below, and is said",
-    )
+    required("axis", Kind::Word(&Motion::NAMES), "state what the free body does: axis = \"heave\"", "what the free body does: `heave`"),
+    required("mass", Kind::Constant(Dimension::MASS), "write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves", "all that moves, with its `standard` uncertainty; a number without one counts as exact, here and below, and is said")
     .within(Range::Positive),
-    Key::new(
-        "restoring",
-        Kind::Constant(STIFFNESS),
-        IfMissing::Required(
-            "write restoring = { value = \"2300 N/m\", standard = \"0.5 %\" }: C33 = rho g times the water plane, and springs",
-        ),
-        "C33",
-    )
+    required("restoring", Kind::Constant(STIFFNESS), "write restoring = { value = \"2300 N/m\", standard = \"0.5 %\" }: C33 = rho g times the water plane, and springs", "C33")
     .within(Range::Positive),
-    Key::new(
-        "delay",
-        Kind::Constant(Dimension::TIME),
-        IfMissing::Is("0 s"),
-        "of the force behind the motion, each as it stands against the wavemaker in its own log: what filters differ by",
-    ),
-    Key::new(
-        "window",
-        Kind::Table(WINDOW),
-        IfMissing::Nothing("none"),
-        "`from` and `to`, counted from the start of the wavemaker of each run. It begins when the wave has come up at the body, and ends before its reflections are back. Without it there is no B33",
-    ),
-    Key::new("harmonics", Kind::Count(20), IfMissing::Is("3"), "of every fit"),
+    usual("delay", Kind::Constant(Dimension::TIME), "0 s", "of the force behind the motion, each as it stands against the wavemaker in its own log: what filters differ by"),
+    optional("window", Kind::Table(WINDOW), "none", "`from` and `to`, counted from the start of the wavemaker of each run. It begins when the wave has come up at the body, and ends before its reflections are back. Without it there is no B33"),
+    usual("harmonics", Kind::Count(20), "3", "of every fit"),
 ];
 
 const fn passing(name: &'static str, default: &'static str, doc: &'static str) -> Key {
-    Key::new(name, Kind::Quantity(Dimension::TIME), IfMissing::Is(default), doc)
-        .within(Range::NotNegative("a time that passes is not"))
+    usual(name, Kind::Quantity(Dimension::TIME), default, doc).within(Range::NotNegative("a time that passes is not"))
 }
 
 /// The keys of a block of a plan.
 pub const PLAN: &[Key] = &[
-    Key::new(
+    required(
         "period",
         Kind::Axis(Dimension::TIME),
-        IfMissing::Required("write \"1.2 s\", a list, or { start, stop, step }"),
+        "write \"1.2 s\", a list, or { start, stop, step }",
         "period of the wave",
     )
     .within(Range::Positive),
-    Key::new(
+    required(
         "stroke",
         Kind::Quantity(Dimension::LENGTH),
-        IfMissing::Required("write stroke = \"9 mm\", the amplitude of the wavemaker"),
+        "write stroke = \"9 mm\", the amplitude of the wavemaker",
         "amplitude of the wavemaker",
     )
     .within(Range::Positive),
-    Key::new(
+    required(
         "force",
         Kind::Quantity(Dimension::FORCE),
-        IfMissing::Required("write force = \"12 N\", the amplitude to expect of the exciting force on the held body"),
+        "write force = \"12 N\", the amplitude to expect of the exciting force on the held body",
         "amplitude to expect of the exciting force on the held body",
     )
     .within(Range::Positive),
-    Key::new("held", Kind::Count(MOST_RUNS as u64), IfMissing::Is("1"), "runs with the body held, at each period"),
-    Key::new("free", Kind::Count(MOST_RUNS as u64), IfMissing::Is("1"), "runs with it free, at each period"),
+    usual("held", Kind::Count(MOST_RUNS as u64), "1", "runs with the body held, at each period"),
+    usual("free", Kind::Count(MOST_RUNS as u64), "1", "runs with it free, at each period"),
     passing("still", "2 s", "at rest on the log before the wavemaker starts"),
     passing("ramp", "2 s", "time in which the wavemaker reaches its full stroke"),
     passing("travel", "5 s", "from the wavemaker's start until the wave is at the body"),
-    Key::new(
-        "lasts",
-        Kind::Quantity(Dimension::TIME),
-        IfMissing::Is("25 s"),
-        "so long the wavemaker runs, and the log from there",
-    )
-    .within(Range::Positive),
-    Key::new("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), IfMissing::Is("200 Hz"), "sampling rate of the log")
+    usual("lasts", Kind::Quantity(Dimension::TIME), "25 s", "so long the wavemaker runs, and the log from there")
+        .within(Range::Positive),
+    usual("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), "200 Hz", "sampling rate of the log")
         .within(Range::Positive),
 ];
 

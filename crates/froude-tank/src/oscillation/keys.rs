@@ -18,69 +18,35 @@
 //! ```
 
 use froude_hydro::swing::Pivot;
-use froude_identify::declare::{IfMissing, Key, Kind, Range};
+use froude_identify::declare::{Key, Kind, Range, optional, required, usual};
 use froude_records::units::Dimension;
 
 use crate::declared::{CYCLES, FREQUENCY, HARMONICS, PERIODS, RATE, REPEATS, STILL, amplitude};
 
 /// The keys of `[source.forced_oscillation]`.
 pub const KEYS: &[Key] = &[
-    Key::new(
-        "pivot",
-        Kind::Word(&Pivot::NAMES),
-        IfMissing::Required(
-            "state how the pivot axis lies: \"stream\" (along the stream, the body swings across it like a pendulum) or \"upright\" (the body \
-             turns its heading into the stream); the two give different velocities and different added masses",
-        ),
-        "`stream` or `upright`",
-    ),
-    Key::new(
-        "radius",
-        Kind::Constant(Dimension::LENGTH),
-        IfMissing::Required("write radius = { value = \"476 mm\", standard = \"1 mm\" }"),
-        "from the pivot axis to the body's reference point; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
-    )
+    required("pivot", Kind::Word(&Pivot::NAMES), "state how the pivot axis lies: \"stream\" (along the stream, the body swings across it like a pendulum) or \"upright\" (the body \
+             turns its heading into the stream); the two give different velocities and different added masses", "`stream` or `upright`"),
+    required("radius", Kind::Constant(Dimension::LENGTH), "write radius = { value = \"476 mm\", standard = \"1 mm\" }", "from the pivot axis to the body's reference point; `standard` is a standard uncertainty, here and below, and a number without it counts as exact")
     .within(Range::NotZero("the body swings about a pivot that lies away from it")),
-    Key::new(
-        "mass",
-        Kind::PerConfiguration(Dimension::MASS),
-        IfMissing::Required(
-            "write mass = { value = \"1.63 kg\", standard = \"5 g\" }: all that moves below the load cell; by configuration where there are several",
-        ),
-        "all that moves below the load cell: one number, or one for each configuration",
-    )
+    required("mass", Kind::PerConfiguration(Dimension::MASS), "write mass = { value = \"1.63 kg\", standard = \"5 g\" }: all that moves below the load cell; by configuration where there are several", "all that moves below the load cell: one number, or one for each configuration")
     .within(Range::NotNegative("a mass is not")),
-    Key::new(
-        "buoyancy",
-        Kind::PerConfiguration(Dimension::FORCE),
-        IfMissing::Nothing("to be found"),
-        "buoyancy less weight, upwards positive, as far as it is known beforehand",
-    ),
-    Key::new(
-        "delay",
-        Kind::Constant(Dimension::TIME),
-        IfMissing::Nothing("to be found"),
-        "of the force behind the angle, positive where the force is stamped late",
-    ),
+    optional("buoyancy", Kind::PerConfiguration(Dimension::FORCE), "to be found", "buoyancy less weight, upwards positive, as far as it is known beforehand"),
+    optional("delay", Kind::Constant(Dimension::TIME), "to be found", "of the force behind the angle, positive where the force is stamped late"),
     CYCLES,
     HARMONICS,
 ];
 
 /// The keys of a block of a plan.
 pub const PLAN: &[Key] = &[
-    Key::new(
+    optional(
         "configurations",
         Kind::Texts,
-        IfMissing::Nothing("one unnamed body"),
+        "one unnamed body",
         "names of the configurations, as in `mass` and `buoyancy`",
     ),
-    Key::new(
-        "medium",
-        Kind::Word(&["water", "air"]),
-        IfMissing::Is("water"),
-        "`water`, or `air`, which determines only mass and delay",
-    ),
-    Key::new("flow", Kind::Axis(Dimension::SPEED), IfMissing::Is("0 m/s"), "speed of the stream"),
+    usual("medium", Kind::Word(&["water", "air"]), "water", "`water`, or `air`, which determines only mass and delay"),
+    usual("flow", Kind::Axis(Dimension::SPEED), "0 m/s", "speed of the stream"),
     amplitude(Dimension::ANGLE, "write \"10 deg\", a list, or { start, stop, step }", "amplitude of the angle"),
     FREQUENCY,
     PERIODS,

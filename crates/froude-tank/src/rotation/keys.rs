@@ -17,7 +17,7 @@
 //! ```
 
 use froude_hydro::swing::Pivot;
-use froude_identify::declare::{IfMissing, Key, Kind, Range};
+use froude_identify::declare::{Key, Kind, Range, optional, required, usual};
 use froude_records::run::Role;
 use froude_records::units::Dimension;
 
@@ -25,41 +25,14 @@ use crate::declared::{CYCLES, FREQUENCY, HARMONICS, INERTIA, PERIODS, RATE, REPE
 
 /// The keys of `[source.rotation]`.
 pub const KEYS: &[Key] = &[
-    Key::new(
-        "axis",
-        Kind::Word(&Pivot::NAMES),
-        IfMissing::Required(
-            "state how the axis of rotation lies: \"upright\" (gravity does nothing) or \"stream\" (level, along the stream: weight and buoyancy \
-             restore, and their moment is taken off)",
-        ),
-        "`upright` or `stream` (level, along the tank)",
-    ),
-    Key::new(
-        "inertia",
-        Kind::Constant(INERTIA),
-        IfMissing::Nothing("from runs in air"),
-        "dry, of all that moves below the torque cell; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
-    )
+    required("axis", Kind::Word(&Pivot::NAMES), "state how the axis of rotation lies: \"upright\" (gravity does nothing) or \"stream\" (level, along the stream: weight and buoyancy \
+             restore, and their moment is taken off)", "`upright` or `stream` (level, along the tank)"),
+    optional("inertia", Kind::Constant(INERTIA), "from runs in air", "dry, of all that moves below the torque cell; `standard` is a standard uncertainty, here and below, and a number without it counts as exact")
     .within(Range::NotNegative("an inertia is not")),
-    Key::new(
-        "tare_inertia",
-        Kind::Constant(INERTIA),
-        IfMissing::Nothing("required with runs of the shaft alone"),
-        "the same without the body",
-    )
+    optional("tare_inertia", Kind::Constant(INERTIA), "required with runs of the shaft alone", "the same without the body")
     .within(Range::NotNegative("an inertia is not")),
-    Key::new(
-        "restoring",
-        Kind::Constant(Dimension::MOMENT),
-        IfMissing::Nothing("required about a level axis, refused about an upright one"),
-        "K, from the torque at rest at two angles; with a standard uncertainty it is known beforehand and improved by the runs",
-    ),
-    Key::new(
-        "delay",
-        Kind::Constant(Dimension::TIME),
-        IfMissing::Nothing("to be found"),
-        "of the torque behind the angle, positive where the torque is stamped late",
-    ),
+    optional("restoring", Kind::Constant(Dimension::MOMENT), "required about a level axis, refused about an upright one", "K, from the torque at rest at two angles; with a standard uncertainty it is known beforehand and improved by the runs"),
+    optional("delay", Kind::Constant(Dimension::TIME), "to be found", "of the torque behind the angle, positive where the torque is stamped late"),
     CYCLES,
     HARMONICS,
 ];
@@ -70,10 +43,10 @@ const ROLE_NAMES: [&str; 3] = ["test", "dry_air", "tare"];
 
 /// The keys of a block of a plan.
 pub const PLAN: &[Key] = &[
-    Key::new(
+    usual(
         "role",
         Kind::Word(&ROLE_NAMES),
-        IfMissing::Is("test"),
+        "test",
         "`test`; `dry_air`: the same motion in air; `tare`: the shaft without the body, in water",
     ),
     amplitude(Dimension::ANGLE, "write \"45 deg\", a list, or { start, stop, step }", "amplitude of the angle"),

@@ -10,7 +10,7 @@
 //! tow       = { still = "5 s", acceleration = "0.3 m/s^2", steady = "10 s", rate = "100 Hz" }
 //! ```
 
-use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
+use froude_identify::declare::{Key, Kind, Range, Values, optional, required, usual};
 use froude_records::RecordError;
 use froude_records::units::Dimension;
 use froude_rig::steady::Tow;
@@ -21,11 +21,11 @@ use crate::declared::REPEATS;
 const FORCE_RATE: Dimension = Dimension::new(1, 1, -3);
 
 const fn positive(name: &'static str, dimension: Dimension, default: &'static str, doc: &'static str) -> Key {
-    Key::new(name, Kind::Quantity(dimension), IfMissing::Is(default), doc).within(Range::Positive)
+    usual(name, Kind::Quantity(dimension), default, doc).within(Range::Positive)
 }
 
 const fn needed(name: &'static str, dimension: Dimension, advice: &'static str, doc: &'static str) -> Key {
-    Key::new(name, Kind::Quantity(dimension), IfMissing::Required(advice), doc).within(Range::Positive)
+    required(name, Kind::Quantity(dimension), advice, doc).within(Range::Positive)
 }
 
 /// The keys of `[source.steady]`.
@@ -37,24 +37,24 @@ pub const KEYS: &[Key] = &[
         "1 %",
         "a stretch is steady where its blocks lie within ± this of the middle of their range",
     ),
-    Key::new(
+    usual(
         "settle",
         Kind::Quantity(Dimension::TIME),
-        IfMissing::Is("1 s"),
+        "1 s",
         "left out at the start of that stretch, and after the body has come to rest",
     )
     .within(Range::NotNegative("a time that is left out is not")),
     positive("shortest", Dimension::TIME, "2 s", "shortest window that is accepted"),
-    Key::new(
+    optional(
         "drift",
         Kind::Table(&[
             needed("rate", FORCE_RATE, "write rate = \"2 mN/min\"", "as much as it may be"),
             needed("most", Dimension::FORCE, "write most = \"10 mN\"", "more than this makes a zero useless"),
         ]),
-        IfMissing::Nothing("not declared"),
+        "not declared",
         "how far the zero of the cell may drift between a still run and a test (`rate`), and how much of it is accepted (`most`)",
     ),
-    Key::new(
+    usual(
         "tow",
         Kind::Table(&[
             positive("still", Dimension::TIME, "5 s", "at rest before and after"),
@@ -62,27 +62,22 @@ pub const KEYS: &[Key] = &[
             positive("steady", Dimension::TIME, "10 s", "at constant speed"),
             positive("rate", Dimension::ANGULAR_SPEED, "100 Hz", "samples a second"),
         ]),
-        IfMissing::Is("{ still = \"5 s\", acceleration = \"0.3 m/s^2\", steady = \"10 s\", rate = \"100 Hz\" }"),
+        "{ still = \"5 s\", acceleration = \"0.3 m/s^2\", steady = \"10 s\", rate = \"100 Hz\" }",
         "how planned runs are driven: time at rest before and after, acceleration, time at constant speed, samples a second",
     ),
 ];
 
 /// The keys of a block of a plan.
 pub const PLAN: &[Key] = &[
-    Key::new("configurations", Kind::Texts, IfMissing::Nothing("one unnamed body"), "names of the configurations"),
-    Key::new(
+    optional("configurations", Kind::Texts, "one unnamed body", "names of the configurations"),
+    required(
         "speed",
         Kind::Axis(Dimension::SPEED),
-        IfMissing::Required("write \"0.1 m/s\", a list, or { start, stop, step }"),
+        "write \"0.1 m/s\", a list, or { start, stop, step }",
         "speed of the tow, ahead or (below zero) astern",
     )
     .within(Range::NotZero("a tow goes somewhere, ahead or (below zero) astern")),
-    Key::new(
-        "angle",
-        Kind::Axis(Dimension::ONE),
-        IfMissing::Is("0 deg"),
-        "angle between the body and the direction of the tow",
-    ),
+    usual("angle", Kind::Axis(Dimension::ONE), "0 deg", "angle between the body and the direction of the tow"),
     REPEATS,
 ];
 

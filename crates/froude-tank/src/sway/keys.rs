@@ -13,54 +13,32 @@
 //! speed     = "1 m/s"
 //! ```
 
-use froude_identify::declare::{IfMissing, Key, Kind, Range};
+use froude_identify::declare::{Key, Kind, Range, optional, required, usual};
 use froude_records::units::Dimension;
 
 use crate::declared::{CYCLES, FREQUENCY, HARMONICS, PERIODS, RATE, REPEATS, STILL, amplitude};
 
 /// The keys of `[source.sway]`.
 pub const KEYS: &[Key] = &[
-    Key::new(
-        "mass",
-        Kind::Constant(Dimension::MASS),
-        IfMissing::Required("write mass = { value = \"46.5 kg\", standard = \"0.05 kg\" }: of all that moves below the load cell, with the water that the hull encloses"),
-        "of all that moves below the load cell, with the water that the hull encloses; runs in air need the same water in it; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
-    )
+    required("mass", Kind::Constant(Dimension::MASS), "write mass = { value = \"46.5 kg\", standard = \"0.05 kg\" }: of all that moves below the load cell, with the water that the hull encloses", "of all that moves below the load cell, with the water that the hull encloses; runs in air need the same water in it; `standard` is a standard uncertainty, here and below, and a number without it counts as exact")
     .within(Range::NotNegative("a mass is not")),
-    Key::new(
-        "x_g",
-        Kind::Constant(Dimension::LENGTH),
-        IfMissing::Required(
-            "write x_g = { value = \"12 mm\", standard = \"2 mm\" }: the centre of gravity forward of the reference point, \"0 mm\" where they are one",
-        ),
-        "centre of gravity of that mass, forward of the reference point of the moment",
-    ),
-    Key::new(
-        "length",
-        Kind::Quantity(Dimension::LENGTH),
-        IfMissing::Nothing("no nondimensional coefficients"),
-        "L of the nondimensional coefficients and of the reduced frequency ωL/U",
-    )
+    required("x_g", Kind::Constant(Dimension::LENGTH), "write x_g = { value = \"12 mm\", standard = \"2 mm\" }: the centre of gravity forward of the reference point, \"0 mm\" where they are one", "centre of gravity of that mass, forward of the reference point of the moment"),
+    optional("length", Kind::Quantity(Dimension::LENGTH), "no nondimensional coefficients", "L of the nondimensional coefficients and of the reduced frequency ωL/U")
     .within(Range::Positive),
-    Key::new(
-        "delay",
-        Kind::Constant(Dimension::TIME),
-        IfMissing::Nothing("to be found"),
-        "of the loads behind the motion, positive where they are stamped late",
-    ),
+    optional("delay", Kind::Constant(Dimension::TIME), "to be found", "of the loads behind the motion, positive where they are stamped late"),
     CYCLES,
     HARMONICS,
 ];
 
 /// The keys of a block of a plan.
 pub const PLAN: &[Key] = &[
-    Key::new(
+    usual(
         "medium",
         Kind::Word(&["water", "air"]),
-        IfMissing::Is("water"),
+        "water",
         "`water`, or `air`: the same motion in air, which determines mass and delay",
     ),
-    Key::new("speed", Kind::Axis(Dimension::SPEED), IfMissing::Is("0 m/s"), "speed forward, through the water"),
+    usual("speed", Kind::Axis(Dimension::SPEED), "0 m/s", "speed forward, through the water"),
     amplitude(Dimension::LENGTH, "write \"80 mm\", a list, or { start, stop, step }", "amplitude of the sway"),
     FREQUENCY,
     PERIODS,

@@ -17,7 +17,7 @@
 //! angle  = { start = "3 deg", stop = "39 deg", step = "3 deg" }
 //! ```
 
-use froude_identify::declare::{IfMissing, Key, Kind, Range, Values};
+use froude_identify::declare::{Key, Kind, Range, Values, optional, required, usual};
 use froude_records::RecordError;
 use froude_records::run::Declared as Number;
 use froude_records::units::Dimension;
@@ -26,87 +26,50 @@ use super::track::Lens;
 use crate::declared::REPEATS;
 
 const LENS: &[Key] = &[
-    Key::new(
+    required(
         "centre",
         Kind::Number,
-        IfMissing::Required("write centre = 960, the pixel that the axis of the lens goes through"),
+        "write centre = 960, the pixel that the axis of the lens goes through",
         "c, pixels",
     ),
-    Key::new("radial", Kind::Number, IfMissing::Required("write radial = -2.0e-8, in 1/pixel²"), "k, 1/pixel²"),
+    required("radial", Kind::Number, "write radial = -2.0e-8, in 1/pixel²", "k, 1/pixel²"),
 ];
 const TOW: &[Key] = &[
-    Key::new("travel", Kind::Quantity(Dimension::LENGTH), IfMissing::Is("0.8 m"), "way of a run")
-        .within(Range::Positive),
-    Key::new("still", Kind::Quantity(Dimension::TIME), IfMissing::Is("2 s"), "time at rest before and after")
-        .within(Range::Positive),
-    Key::new("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), IfMissing::Is("50 Hz"), "frames, and samples, a second")
+    usual("travel", Kind::Quantity(Dimension::LENGTH), "0.8 m", "way of a run").within(Range::Positive),
+    usual("still", Kind::Quantity(Dimension::TIME), "2 s", "time at rest before and after").within(Range::Positive),
+    usual("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), "50 Hz", "frames, and samples, a second")
         .within(Range::Positive),
 ];
 
 /// The keys of `[source.weight_tow]`.
 pub const KEYS: &[Key] = &[
-    Key::new(
-        "scale",
-        Kind::Constant(Dimension::LENGTH),
-        IfMissing::Nothing("required for a mark in pixels"),
-        "size of a pixel at the plane of the mark; its `standard` is an error that all runs share",
-    )
+    optional("scale", Kind::Constant(Dimension::LENGTH), "required for a mark in pixels", "size of a pixel at the plane of the mark; its `standard` is an error that all runs share")
     .within(Range::Positive),
-    Key::new(
-        "lens",
-        Kind::Table(LENS),
-        IfMissing::Nothing("none"),
-        "radial distortion along the rail: x = s (u − c)(1 + k (u − c)²), `centre` c in pixels, `radial` k in 1/pixel²",
-    ),
-    Key::new(
-        "moving_mass",
-        Kind::Constant(Dimension::MASS),
-        IfMissing::Nothing("none"),
-        "all that moves: wagon, rod, body and the water that goes with them; the hanging weight's own mass is added. With it the drag along the rail is that of the balance; without it that of the cell, and runs that are not shown to be steady are left out",
-    )
+    optional("lens", Kind::Table(LENS), "none", "radial distortion along the rail: x = s (u − c)(1 + k (u − c)²), `centre` c in pixels, `radial` k in 1/pixel²"),
+    optional("moving_mass", Kind::Constant(Dimension::MASS), "none", "all that moves: wagon, rod, body and the water that goes with them; the hanging weight's own mass is added. With it the drag along the rail is that of the balance; without it that of the cell, and runs that are not shown to be steady are left out")
     .within(Range::Positive),
-    Key::new("friction", Kind::Constant(Dimension::FORCE), IfMissing::Is("0 N"), "of pulleys and rail")
+    usual("friction", Kind::Constant(Dimension::FORCE), "0 N", "of pulleys and rail")
         .within(Range::NotNegative("friction is not")),
-    Key::new(
-        "window",
-        Kind::Quantity(Dimension::LENGTH),
-        IfMissing::Is("0.2 m"),
-        "the last part of the way, over which speed and loads are taken",
-    )
+    usual("window", Kind::Quantity(Dimension::LENGTH), "0.2 m", "the last part of the way, over which speed and loads are taken")
     .within(Range::Positive),
-    Key::new(
-        "tolerance",
-        Kind::Quantity(Dimension::ONE),
-        IfMissing::Is("2 %"),
-        "change of the speed over it that still counts as steady",
-    )
+    usual("tolerance", Kind::Quantity(Dimension::ONE), "2 %", "change of the speed over it that still counts as steady")
     .within(Range::Positive),
-    Key::new(
-        "reached",
-        Kind::Quantity(Dimension::ONE),
-        IfMissing::Is("50 %"),
-        "part of the terminal speed that a run must have",
-    )
+    usual("reached", Kind::Quantity(Dimension::ONE), "50 %", "part of the terminal speed that a run must have")
     .within(Range::Positive),
-    Key::new(
-        "tow",
-        Kind::Table(TOW),
-        IfMissing::Is("{ travel = \"0.8 m\", still = \"2 s\", rate = \"50 Hz\" }"),
-        "of planned runs: `travel`, time at rest before and after (`still`), frames a second (`rate`)",
-    ),
+    usual("tow", Kind::Table(TOW), "{ travel = \"0.8 m\", still = \"2 s\", rate = \"50 Hz\" }", "of planned runs: `travel`, time at rest before and after (`still`), frames a second (`rate`)"),
 ];
 
 /// The keys of a block of a plan.
 pub const PLAN: &[Key] = &[
-    Key::new("configurations", Kind::Texts, IfMissing::Nothing("one unnamed body"), "names of the configurations"),
-    Key::new(
+    optional("configurations", Kind::Texts, "one unnamed body", "names of the configurations"),
+    required(
         "weight",
         Kind::Axis(Dimension::FORCE),
-        IfMissing::Required("write \"100 mN\", a list, or { start, stop, step }"),
+        "write \"100 mN\", a list, or { start, stop, step }",
         "the hanging weight",
     )
     .within(Range::Positive),
-    Key::new("angle", Kind::Axis(Dimension::ONE), IfMissing::Is("0 deg"), "angle of the body to the rail"),
+    usual("angle", Kind::Axis(Dimension::ONE), "0 deg", "angle of the body to the rail"),
     REPEATS,
 ];
 
