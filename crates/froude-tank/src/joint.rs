@@ -25,7 +25,8 @@ use std::ops::Range;
 
 use froude_fit as ls;
 use froude_fit::Status;
-use froude_fit::budget::{Combined, Part, Uncertain};
+use froude_fit::budget::{Combined, Kind, Part, Shape, Uncertain};
+use froude_fit::faer::Mat;
 use froude_records::campaign::{BoundKind, Identify};
 
 use crate::error::TankError;
@@ -224,6 +225,31 @@ pub struct DeclaredError {
     pub dof: f64,
     /// ∂β/∂e.
     pub sensitivity: Vec<f64>,
+}
+
+impl DeclaredError {
+    /// Its line of the budget.
+    #[must_use]
+    pub fn part(&self) -> Part {
+        let p = self.sensitivity.len();
+        let moves = |j: usize| self.sensitivity[j] * self.standard;
+        part(&self.name, Kind::B, Mat::from_fn(p, p, |i, j| moves(i) * moves(j)), self.dof)
+    }
+}
+
+/// A line of a budget that all coefficients share.
+pub(crate) fn part(name: &str, kind: Kind, covariance: Mat<f64>, dof: f64) -> Part {
+    let p = covariance.nrows();
+    Part {
+        name: name.to_owned(),
+        shared: "campaign",
+        kind,
+        covariance,
+        dof: vec![dof; p],
+        shape: Shape::Normal,
+        in_scatter: false,
+        origin: None,
+    }
 }
 
 /// What is left of a load of a run, in the unit of the cell.

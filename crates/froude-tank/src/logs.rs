@@ -34,26 +34,30 @@ pub(crate) struct Logs {
     pub findings: Vec<Finding>,
 }
 
-/// Every log of a folder whose role is one of `roles`; `channels` states in words what a log of `method` has beside the time.
-pub(crate) fn read(
-    folder: &Path,
-    method: &str,
-    roles: &[Role],
-    channels: &str,
-    progress: &dyn Fn(&str),
-) -> Result<Logs, MethodError> {
-    read_averaging(folder, method, roles, channels, LENGTHS, progress)
+/// Which logs of a folder a method reads.
+pub(crate) struct Wanted<'a> {
+    /// The method that they are of.
+    pub method: &'a str,
+    /// Whether each says so; else one that says nothing is of this method, and all are in the first of `roles`.
+    pub is_stated: bool,
+    /// Their roles.
+    pub roles: &'a [Role],
+    /// What a log has, in words.
+    pub channels: &'a str,
+    /// What is averaged.
+    pub lengths: Lengths,
 }
 
-/// The same, with other lengths of what is averaged.
-pub(crate) fn read_averaging(
-    folder: &Path,
-    method: &str,
-    roles: &[Role],
-    channels: &str,
-    lengths: Lengths,
-    progress: &dyn Fn(&str),
-) -> Result<Logs, MethodError> {
+impl<'a> Wanted<'a> {
+    /// Logs that state what they are.
+    pub(crate) const fn of(method: &'a str, roles: &'a [Role], channels: &'a str) -> Self {
+        Self { method, is_stated: true, roles, channels, lengths: LENGTHS }
+    }
+}
+
+/// Every log of a folder that is wanted.
+pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) -> Result<Logs, MethodError> {
+    let Wanted { method, is_stated, roles, channels, lengths } = *wanted;
     if folder.is_file() {
         return Err(MethodError::input(
             folder,
@@ -63,9 +67,8 @@ pub(crate) fn read_averaging(
     let paths = paths_in(folder, method)?;
     if paths.is_empty() {
         refuse_others(folder, method, &recorded_in(folder)?)?;
-        let what = format!(
-            "no runs: put one log per run there, as CSV, Parquet or MCAP with {channels}, each with a sidecar (.toml)"
-        );
+        let sidecar = if is_stated { ", each with a sidecar (.toml)" } else { "" };
+        let what = format!("no runs: put one log per run there, as CSV, Parquet or MCAP with {channels}{sidecar}");
         return Err(MethodError::input(folder, what));
     }
     let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };
@@ -73,7 +76,10 @@ pub(crate) fn read_averaging(
     let readings = long_logs::readings(&paths, lengths);
     for (path, reading) in paths.into_iter().zip(readings) {
         let mut log = imported(&path, reading, progress)?;
-        let meta = &log.log.meta;
+        let meta = &mut log.log.meta;
+        if !is_stated && (meta.method.is_empty() || meta.method == method) {
+            (meta.method, meta.role) = (method.to_owned(), roles[0]);
+        }
         if meta.method != method {
             let found = if meta.method.is_empty() {
                 "states no method".to_owned()
@@ -81,7 +87,7 @@ pub(crate) fn read_averaging(
                 format!("is a run of {}", meta.method)
             };
             let what = format!(
-                "{found}; write method = \"{method}\", role = \"{}\" and [mounted] configuration at the head of {}",
+                "{found}; write method = \"{method}\", role = \"{}\" and [mounted] configuration at the head of {}, or give its folder a source of its own",
                 roles.first().map_or("test", |role| role.name()),
                 path.with_extension("toml").display()
             );
@@ -150,6 +156,25 @@ fn once(of_logs: Vec<(PathBuf, Finding)>) -> Vec<Finding> {
 
 /// Logs from which on one finding stands for all; so many are named.
 const MANY_LOGS: usize = 4;
+
+/// Refuses runs of different configurations, which have different coefficients.
+pub(crate) fn one_body(logs: &[TankLog]) -> Result<(), MethodError> {
+    let name = |log: &TankLog| log.log.meta.configuration.clone();
+    let of_body = || logs.iter().filter(|log| log.log.meta.role != Role::Tare);
+    let Some(first) = of_body().next() else { return Ok(()) };
+    match of_body().find(|log| name(log) != name(first)) {
+        None => Ok(()),
+        Some(other) => {
+            let what = format!(
+                "is of the configuration {:?} where {} is of {:?}; the coefficients are of one body: give each a folder and a [[source]] of its own",
+                name(other),
+                first.log.meta.id,
+                name(first)
+            );
+            Err(MethodError::input(&other.log.path, what))
+        }
+    }
+}
 
 /// That the times of some logs are counted from their first samples, said once.
 pub(crate) fn of_a_calendar(logs: &[TankLog]) -> Option<Finding> {

@@ -36,6 +36,11 @@ pub(crate) struct Lengths {
     pub kept: usize,
 }
 
+impl Lengths {
+    /// Logs are read as they are, however long.
+    pub(crate) const WHOLE: Self = Self { longest: usize::MAX, kept: 0 };
+}
+
 /// Eight channels of a million rows are 64 MB, and a reduction takes some times that; correlation times cost rows times lags.
 pub(crate) const LENGTHS: Lengths = Lengths { longest: 1_000_000, kept: 250_000 };
 
@@ -48,13 +53,11 @@ pub(crate) struct Reading {
     block_rows: usize,
 }
 
-impl Reading {
-    /// A log as it is.
-    pub(crate) const WHOLE: Self = Self { rows: 0, block_rows: 1 };
-}
-
 /// How each log of a folder is read: as it is, or by means over one time, the same for all of them.
 pub(crate) fn readings(paths: &[PathBuf], lengths: Lengths) -> Vec<Reading> {
+    if lengths == Lengths::WHOLE {
+        return vec![Reading { rows: 0, block_rows: 1 }; paths.len()];
+    }
     let rows: Vec<usize> = paths.iter().map(|path| count_rows(path).unwrap_or(0)).collect();
     let whole = |rows: &usize| Reading { rows: *rows, block_rows: 1 };
     if rows.iter().sum::<usize>() <= lengths.longest {

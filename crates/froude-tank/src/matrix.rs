@@ -43,9 +43,16 @@ pub(crate) struct Plan {
     pub roles: (&'static str, &'static [Role]),
     /// How many runs a point is, and how long each lasts, s.
     pub asks: fn(&Point) -> (usize, f64),
+    /// What no key states for itself.
+    pub check: fn(&Values) -> Result<(), RecordError>,
 }
 
 impl Plan {
+    /// One run a point, of the role test.
+    pub(crate) const fn of(keys: &'static [Key], lasts_s: fn(&Point) -> (usize, f64)) -> Self {
+        Self { keys, roles: ("", &[Role::Test]), asks: lasts_s, check: |_| Ok(()) }
+    }
+
     /// The runs that a source plans for a method, by their number.
     pub(crate) fn points(self, source: &Source, method: &str) -> Result<Vec<Point>, RecordError> {
         let asks = |points: &Vec<Point>| {
@@ -65,6 +72,7 @@ impl Plan {
     fn block(self, s: &Section<'_>) -> Result<Vec<Point>, RecordError> {
         let values = Values::read(s, self.keys)?;
         values.at_most(MOST_RUNS)?;
+        (self.check)(&values)?;
         let (role, mut repeats) = (self.roles.1[0], 1);
         let mut points =
             vec![Point { id: String::new(), role, configuration: String::new(), conditions: IndexMap::new() }];
@@ -74,6 +82,10 @@ impl Plan {
                 Kind::Texts if name == CONFIGURATIONS => {
                     let each = configurations(&values);
                     points = with_each(&points, &each, |point, own| point.configuration.clone_from(own));
+                }
+                Kind::Text => {
+                    let own = values.text(name).unwrap_or_default();
+                    points.iter_mut().for_each(|point| own.clone_into(&mut point.configuration));
                 }
                 Kind::Word(_) if name == self.roles.0 => {
                     let role = values.need(name, values.word(name, self.roles.1))?;

@@ -12,18 +12,22 @@ use rand_pcg::Pcg64Mcg;
 use crate::channel::Channel;
 use crate::error::undeclared;
 
-/// Draws that a seed determines, each after the last.
+/// Draws that a seed determines, each after the last; without one, of twins that do not err, all are zero.
 #[derive(Debug)]
-pub(crate) struct Draws(Pcg64Mcg);
+pub(crate) struct Draws(Option<Pcg64Mcg>);
 
 impl Draws {
     pub(crate) fn of(seed: u64) -> Self {
-        Self(Pcg64Mcg::seed_from_u64(seed))
+        Self(Some(Pcg64Mcg::seed_from_u64(seed)))
+    }
+
+    pub(crate) const fn none() -> Self {
+        Self(None)
     }
 
     /// Of the standard normal distribution.
     pub(crate) fn normal(&mut self) -> f64 {
-        self.0.sample(StandardNormal)
+        self.0.as_mut().map_or(0.0, |draws| draws.sample(StandardNormal))
     }
 
     /// Draws from N(value, standard²).
@@ -119,18 +123,30 @@ impl Logged<'_> {
     }
 }
 
-/// The true coefficients of `[simulate]`; `instead` states that a record is not enough.
-pub(crate) fn truths(campaign: &Campaign, instead: String) -> Result<(&str, &IndexMap<String, f64>), MethodError> {
-    let place = || campaign.path.display();
-    match campaign.simulate.as_ref().map(|simulate| &simulate.truth) {
-        Some(Truth::Coefficients { model, values }) => Ok((model.as_str(), values)),
-        Some(_) => Err(undeclared(place(), instead)),
-        None => Err(undeclared(place(), "a twin needs [simulate]: seed, model, and the true coefficients")),
-    }
+/// The model of `[simulate]` and its true coefficients, for the twin of a method.
+pub(crate) fn truths<'c>(
+    campaign: &'c Campaign,
+    method: &str,
+) -> Result<(&'c str, &'c IndexMap<String, f64>), MethodError> {
+    let what = match campaign.simulate.as_ref().map(|simulate| &simulate.truth) {
+        Some(Truth::Coefficients { model, values }) => return Ok((model, values)),
+        Some(_) => format!(
+            "the twin of {method} takes its truth from [simulate] model and [simulate.coefficients]; a record is not enough"
+        ),
+        None => "a twin needs [simulate]: seed, model, and the true coefficients".to_owned(),
+    };
+    Err(undeclared(campaign.path.display(), what))
 }
 
-/// One of them.
-pub(crate) fn true_value(values: &IndexMap<String, f64>, name: &str) -> Result<f64, MethodError> {
-    let missing = || undeclared("[simulate.coefficients]", format!("{name} is missing; the truth needs it"));
-    values.get(name).copied().ok_or_else(missing)
+/// Those of these names.
+pub(crate) fn true_values<const N: usize>(
+    values: &IndexMap<String, f64>,
+    names: [&str; N],
+) -> Result<[f64; N], MethodError> {
+    let mut out = [0.0; N];
+    for (out, name) in out.iter_mut().zip(names) {
+        let missing = || format!("{name} is missing; the truth needs {}", names.join(", "));
+        *out = *values.get(name).ok_or_else(|| undeclared("[simulate.coefficients]", missing()))?;
+    }
+    Ok(out)
 }

@@ -154,6 +154,12 @@ impl Values {
         self.of(key, |parsed| if let Parsed::Table(x) = parsed { Some(x) } else { None })
     }
 
+    /// Whether the section has a key, rather than its default.
+    #[must_use]
+    pub fn is_stated(&self, key: &str) -> bool {
+        self.places.contains_key(key)
+    }
+
     /// What a required key or one with a default has, which [`Self::read`] has seen to.
     ///
     /// # Errors

@@ -14,7 +14,6 @@ use froude_fit::series::taper;
 use froude_identify::method::{MethodError, Prospect};
 use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, SensorSpec, Source};
-use froude_records::run::Declared;
 use froude_records::text::counted;
 
 use super::law::names;
@@ -22,11 +21,10 @@ use super::reduce::reduce;
 use super::rows::{Rows, row_errors, sample_s, window};
 use super::section;
 use super::setup::{Setup, declared, no_mass, setup_of};
-use super::simulate::senses;
-use super::simulate::{Planned, Simulated, Truths, planned, simulated};
+use super::simulate::{Planned, Simulated, Truths, exactly, planned, senses};
 use crate::error::undeclared;
 use crate::inverted::inverted;
-use crate::joint::conclude::part;
+use crate::joint::part;
 use crate::matrix::of_configurations;
 use crate::noise::correlated;
 use crate::plan::{self, Expected};
@@ -53,8 +51,7 @@ pub fn forecast(
     sensors: &[SensorSpec],
     source: &Source,
 ) -> Result<Forecast, MethodError> {
-    let exact = exactly(setup);
-    let logs = simulated(planned, &exact, truth, &[], 0).ok_or_else(|| no_mass(source, setup))?;
+    let logs = exactly(planned, setup, truth).ok_or_else(|| no_mass(source, setup))?;
     let mounted: Vec<_> = logs.iter().map(Simulated::view).collect();
     let mut reduced = reduce(&mounted, setup).ok_or_else(|| no_mass(source, setup))?;
     if !reduced.left_out.is_empty() {
@@ -239,18 +236,6 @@ fn moved(name: &str, sensitivity: &Mat<f64>, direction: &[f64], dof: f64) -> Par
     let p = sensitivity.nrows();
     let by: Vec<f64> = (0..p).map(|j| (0..direction.len()).map(|i| sensitivity[(j, i)] * direction[i]).sum()).collect();
     part(name, Kind::B, Mat::from_fn(p, p, |i, j| by[i] * by[j]), dof)
-}
-
-/// Everything as declared, without errors: what the twin is driven with.
-fn exactly(setup: &Setup) -> Setup {
-    let exact = |d: Declared| Declared::exact(d.value);
-    let mut out = setup.clone();
-    out.delay_s = exact(setup.delay_s);
-    (out.force_relative, out.motion_relative) = (0.0, 0.0);
-    for body in &mut out.bodies {
-        body.mass_kg = body.mass_kg.map(exact);
-    }
-    out
 }
 
 /// What the plan of a source takes and determines.

@@ -92,7 +92,7 @@ pub(super) fn accelerated_tow(s: &Section<'_>) -> Result<AcceleratedTowSpec, Rec
 /// [`RecordError`] with its place.
 pub fn plan(source: &Source) -> Result<Vec<Point>, RecordError> {
     let roles = ("medium", &[Role::Test, Role::DryAir][..]);
-    Plan { keys: PLAN, roles, asks: |point| (1, profile(point).duration_s()) }.points(source, ACCELERATED_TOW)
+    Plan { roles, ..Plan::of(PLAN, |point| (1, profile(point).duration_s())) }.points(source, ACCELERATED_TOW)
 }
 
 /// How a planned run moves.

@@ -179,7 +179,21 @@ pub fn simulated(
     sensors: &[SensorSpec],
     seed: u64,
 ) -> Option<Vec<Simulated>> {
-    let mut draws = Draws::of(seed);
+    drawn(planned, setup, truth, (sensors, seed), Draws::of(seed))
+}
+
+/// The same without errors of sensors and of what is declared.
+pub(super) fn exactly(planned: &[Planned], setup: &Setup, truth: &Truths) -> Option<Vec<Simulated>> {
+    drawn(planned, setup, truth, (&[], 0), Draws::none())
+}
+
+fn drawn(
+    planned: &[Planned],
+    setup: &Setup,
+    truth: &Truths,
+    (sensors, seed): (&[SensorSpec], u64),
+    mut draws: Draws,
+) -> Option<Vec<Simulated>> {
     let delay_s = draws.about(uncertain(setup.delay_s));
     let [force, motion] = [setup.force_relative, setup.motion_relative].map(|part| draws.gain(part));
     let masses: Vec<f64> =

@@ -23,7 +23,7 @@ use crate::between_runs::FEWEST_RUNS;
 use crate::declared::check;
 use crate::findings::{note, warning};
 use crate::log::TankLog;
-use crate::logs::{self, Logs, no_run};
+use crate::logs::{self, Logs, Wanted, no_run};
 use crate::method::TankMethod;
 
 const WHY: &str = "drag and added mass are wrong by its size or its sign where one is guessed";
@@ -54,13 +54,9 @@ pub const ACCELERATED: TankMethod = TankMethod {
 fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Result<Found, MethodError> {
     let spec = declared(source)?;
     progress("reading the runs");
-    let Logs { runs: logs, files, mut findings } = logs::read(
-        source.input.path(),
-        ACCELERATED_TOW,
-        &[Role::Test, Role::DryAir],
-        "time, position or speed, and force",
-        progress,
-    )?;
+    let roles = [Role::Test, Role::DryAir];
+    let wanted = Wanted::of(ACCELERATED_TOW, &roles, "time, position or speed, and force");
+    let Logs { runs: logs, files, mut findings } = logs::read(source.input.path(), &wanted, progress)?;
     let mut setup = setup_of(campaign, source, &spec, &logs::configurations(&logs))?;
     let late = |log: &TankLog| {
         let of = ["position", "y/position", "speed"].map(|motion| logs::stamps_standard_s(log, [motion, "force"]));

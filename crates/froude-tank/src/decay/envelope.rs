@@ -18,7 +18,7 @@
 
 use super::error::DecayError;
 use super::findings;
-use super::fit::{DecayFit, Method, RunSummary};
+use super::fit::{DecayFit, Method, RunSummary, declared};
 use super::run::{DecayRun, DecaySetup};
 use super::swings::Swings;
 use crate::decay::reduced::Reduced;
@@ -46,7 +46,6 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
     let undetermined = || DecayError::undetermined("linear and quadratic damping");
     let pooled = reduced.pooled.ok_or_else(undetermined)?;
     let values = pooled.values;
-    let [by_inertia, by_stiffness] = DecayFit::by_declared(setup, values);
     let rows = reduced.rows(setup, values);
     let summary = |(run, swings): &(DecayRun<'_>, Swings)| {
         let [first, end] = swings.samples;
@@ -71,8 +70,7 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
         type_a: reduced.scatter(setup),
         inertia: setup.inertia,
         restoring: setup.restoring,
-        by_inertia,
-        by_stiffness,
+        errors: declared(setup, values),
         range: reduced.range(pooled.omega_n),
         runs: reduced.runs.iter().map(summary).collect(),
         rows,

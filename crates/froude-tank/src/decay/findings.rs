@@ -5,15 +5,17 @@ use std::f64::consts::TAU;
 use froude_fit::Report;
 use froude_fit::budget::jackknife_of_one;
 use froude_fit::distribution::coverage_factor;
+use froude_fit::faer::{Col, Mat};
 use froude_records::finding::Finding;
 use froude_records::text::counted;
 
 use super::fit::{DecayFit, HalfCycle};
-use super::pool::{EIGHT_OVER_3_PI, inverse_2};
+use super::pool::EIGHT_OVER_3_PI;
 use super::run::DecaySetup;
 use super::swings::Swings;
 use crate::decay::reduced::{FEWEST_RUNS, Reduced, all_but};
 use crate::findings::{note, warning};
+use crate::inverted::inverted;
 
 /// Below this ratio of largest to smallest speed, u and u² are correlated by 0.986 and more.
 const APART: f64 = 2.0;
@@ -108,10 +110,10 @@ fn negative(fit: &DecayFit, j: usize) -> Option<Finding> {
 /// A part of the decrement that does not depend on the amplitude.
 fn coulomb(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) -> Option<Finding> {
     let pooled = reduced.pooled?;
-    let [force, classical, classical_dof] = all_but(&reduced.sums, None).coulomb(&pooled)?;
+    let [force, classical, classical_dof] = all_but(&reduced.sums, None)?.coulomb(&pooled)?;
     let n = reduced.sums.len();
     let (standard, dof) = if n >= FEWEST_RUNS {
-        jackknife_of_one(n, |g| all_but(&reduced.sums, Some(g)).coulomb(&pooled).map(|c| c[0]))?
+        jackknife_of_one(n, |g| all_but(&reduced.sums, Some(g))?.coulomb(&pooled).map(|c| c[0]))?
     } else {
         (classical, classical_dof)
     };
@@ -132,26 +134,19 @@ fn coulomb(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) -> Option<
 fn first_half_cycles(fit: &DecayFit) -> Option<Finding> {
     let x = |r: &HalfCycle| [r.speed_amplitude, EIGHT_OVER_3_PI * r.speed_amplitude * r.speed_amplitude];
     let (first, others): (Vec<&HalfCycle>, Vec<&HalfCycle>) = fit.rows.iter().partition(|r| r.half_cycle == 0);
-    let (mut normal, mut right, mut square) = ([[0.0; 2]; 2], [0.0; 2], 0.0);
-    for r in &others {
-        let x = x(r);
-        for i in 0..2 {
-            right[i] += x[i] * r.force_amplitude;
-            (0..2).for_each(|j| normal[i][j] += x[i] * x[j]);
-        }
-        square += r.force_amplitude * r.force_amplitude;
-    }
-    let inverse = inverse_2(normal)?;
-    let law: [f64; 2] = std::array::from_fn(|i| inverse[i][0] * right[0] + inverse[i][1] * right[1]);
+    let design = Mat::from_fn(others.len(), 2, |i, j| x(others[i])[j]);
+    let forces = Col::from_fn(others.len(), |i| others[i].force_amplitude);
+    let inverse = inverted(&(design.transpose() * &design))?;
+    let law = &inverse * (design.transpose() * &forces);
     // Each release has a rest position of its own.
     let dof = others.len() as f64 - 2.0 - first.len() as f64;
     let n = first.len() as f64;
     let mean = |of: &dyn Fn(&HalfCycle) -> f64| first.iter().map(|r| of(r)).sum::<f64>() / n;
-    let at = [mean(&|r| x(r)[0]), mean(&|r| x(r)[1])];
-    let force = law[0] * at[0] + law[1] * at[1];
+    let at = Col::from_fn(2, |j| mean(&|r| x(r)[j]));
+    let force = at.transpose() * &law;
     let off = mean(&|r| r.force_amplitude) - force;
-    let reach: f64 = (0..2).map(|i| at[i] * (inverse[i][0] * at[0] + inverse[i][1] * at[1])).sum();
-    let variance = (square - law[0] * right[0] - law[1] * right[1]).max(0.0) / dof;
+    let reach = at.transpose() * (&inverse * &at);
+    let variance = (forces - design * law).squared_norm_l2() / dof;
     let chance = (variance * (1.0 / n + reach)).sqrt();
     (dof > 0.0 && off.abs() > BEYOND_CHANCE * chance && off.abs() > FIRST_OFF * force.abs()).then(|| {
         warning(

@@ -7,7 +7,7 @@ use froude_records::finding::Finding;
 
 use super::run::{DecaySetup, Restoring};
 use crate::findings::warning;
-use crate::joint::conclude::part;
+use crate::joint::{DeclaredError, part};
 
 /// How the coefficients were got.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -144,10 +144,8 @@ pub struct DecayFit {
     pub inertia: Uncertain,
     /// What drives the body back, as declared.
     pub restoring: Restoring,
-    /// ∂values/∂M.
-    pub by_inertia: [f64; 3],
-    /// ∂values/∂C, exact: the motion knows only ratios to C.
-    pub by_stiffness: [f64; 3],
+    /// What M and the restoring force err by, and what that does.
+    pub errors: Vec<DeclaredError>,
     /// Where the coefficients hold.
     pub range: Range,
     /// Half cycles as rows.
@@ -158,13 +156,21 @@ pub struct DecayFit {
     pub findings: Vec<Finding>,
 }
 
-impl DecayFit {
-    /// (∂values/∂M, ∂values/∂C): A = C/ω² − M, and damping is C times what the motion shows.
-    pub(super) fn by_declared(setup: &DecaySetup, [added, linear, quadratic]: [f64; 3]) -> [[f64; 3]; 2] {
-        let c = setup.restoring.stiffness();
-        [[-1.0, 0.0, 0.0], [(setup.inertia.value + added) / c, linear / c, quadratic / c]]
-    }
+/// What M and the restoring force do to the coefficients, exactly: A = C/ω² − M, and damping is C times what the motion shows, which knows only ratios to C.
+pub(super) fn declared(setup: &DecaySetup, [added, linear, quadratic]: [f64; 3]) -> Vec<DeclaredError> {
+    let c = setup.restoring.stiffness();
+    let by_stiffness = [(setup.inertia.value + added) / c, linear / c, quadratic / c];
+    let of = |name: &str, known: Uncertain, by: [f64; 3]| DeclaredError {
+        name: name.to_owned(),
+        standard: known.standard,
+        dof: known.dof,
+        sensitivity: by.to_vec(),
+    };
+    let restoring = setup.restoring.parts().into_iter().map(|(name, u, by)| of(name, u, by_stiffness.map(|d| d * by)));
+    std::iter::once(of("dry inertia", setup.inertia, [-1.0, 0.0, 0.0])).chain(restoring).collect()
+}
 
+impl DecayFit {
     /// The budget: scatter (where known), dry inertia, and what is declared of the restoring force.
     #[must_use]
     pub fn budget(&self) -> Vec<Part> {
@@ -172,15 +178,7 @@ impl DecayFit {
             let dof = a.dof.to_vec();
             Part { shared: a.shared, dof, ..part(&a.kind, Kind::A, a.covariance.clone(), 0.0) }
         });
-        let declared = |name: &str, by: [f64; 3], u: Uncertain| {
-            part(name, Kind::B, Mat::from_fn(3, 3, |i, j| by[i] * by[j] * u.standard * u.standard), u.dof)
-        };
-        let restoring = self
-            .restoring
-            .parts()
-            .into_iter()
-            .map(|(name, u, by)| declared(name, self.by_stiffness.map(|d| d * by), u));
-        scatter.chain([declared("dry inertia", self.by_inertia, self.inertia)]).chain(restoring).collect()
+        scatter.chain(self.errors.iter().map(DeclaredError::part)).collect()
     }
 
     /// Uncertainty of coefficient `j` (0 added mass, 1 linear, 2 quadratic); `None` without a type A or such a coefficient.

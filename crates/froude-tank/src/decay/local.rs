@@ -5,6 +5,9 @@
 //! half-widths). The top of the fitted curve is still above the true one, by half the variance of the slope over the
 //! curvature; that is subtracted. What a sine keeps beyond the fourth power moves a peak by 3e-5 of its height.
 
+use froude_fit::faer::linalg::solvers::Solve;
+use froude_fit::faer::{Mat, Side};
+
 /// Half-width of the fit, rad of phase.
 pub const REACH_RAD: f64 = 1.0;
 /// Fewest samples that a quartic is put through.
@@ -45,24 +48,15 @@ impl Quartic {
         if leaves || end < first + FEWEST {
             return None;
         }
-        let mut moments = [0.0; 9];
-        let mut right = [0.0; 5];
-        for i in first..end {
-            let x = (time_s[i] - centre_s) / half_s;
-            let mut power = 1.0;
-            for k in 0..9 {
-                moments[k] += power;
-                if k < 5 {
-                    right[k] += power * position[i];
-                }
-                power *= x;
-            }
-        }
-        let normal: [[f64; 5]; 5] = std::array::from_fn(|i| std::array::from_fn(|j| moments[i + j]));
-        let c = solve(normal, right)?;
-        let value_variance = solve(normal, [1.0, 0.0, 0.0, 0.0, 0.0])?[0];
-        let slope_variance = solve(normal, [0.0, 1.0, 0.0, 0.0, 0.0])?[1];
-        Some(Self { centre_s, half_s, c, value_variance, slope_variance })
+        let x = Mat::from_fn(end - first, 5, |i, k| ((time_s[first + i] - centre_s) / half_s).powi(k as i32));
+        // The position, and units of which value and slope at the middle are the solution.
+        let right = Mat::from_fn(5, 3, |k, j| match j {
+            0 => (first..end).map(|i| x[(i - first, k)] * position[i]).sum(),
+            _ => f64::from(u8::from(k + 1 == j)),
+        });
+        let solved = (x.transpose() * &x).llt(Side::Lower).ok()?.solve(right);
+        let c = std::array::from_fn(|k| solved[(k, 0)]);
+        Some(Self { centre_s, half_s, c, value_variance: solved[(0, 1)], slope_variance: solved[(1, 2)] })
     }
 
     fn at(&self, x: f64) -> [f64; 3] {
@@ -127,30 +121,6 @@ pub fn passage(time_s: &[f64], position: &[f64], guess_s: f64, half_s: f64, leve
     let of = |q: Quartic| q.root(0, level).map(|x| q.spot(x));
     let once = of(Quartic::about(time_s, position, guess_s, half_s)?)?;
     of(Quartic::about(time_s, position, once.time_s, half_s)?)
-}
-
-/// Gauss's elimination with pivots; `None` for a singular matrix.
-fn solve(mut a: [[f64; 5]; 5], mut b: [f64; 5]) -> Option<[f64; 5]> {
-    for k in 0..5 {
-        let pivot = (k..5).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()))?;
-        a.swap(k, pivot);
-        b.swap(k, pivot);
-        if a[k][k].abs() < 1e-12 {
-            return None;
-        }
-        for i in k + 1..5 {
-            let factor = a[i][k] / a[k][k];
-            for j in k..5 {
-                a[i][j] -= factor * a[k][j];
-            }
-            b[i] -= factor * b[k];
-        }
-    }
-    let mut x = [0.0; 5];
-    for k in (0..5).rev() {
-        x[k] = (b[k] - (k + 1..5).map(|j| a[k][j] * x[j]).sum::<f64>()) / a[k][k];
-    }
-    Some(x)
 }
 
 /// Standard deviation of the noise of a sample, from fourth differences: a sine of 20 samples a cycle leaves 1 % of its

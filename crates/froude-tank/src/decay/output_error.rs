@@ -17,7 +17,7 @@ use froude_records::text::counted;
 
 use super::error::DecayError;
 use super::findings;
-use super::fit::{DecayFit, Method, RunSummary, Scatter};
+use super::fit::{DecayFit, Method, RunSummary, Scatter, declared};
 use super::local::Quartic;
 use super::motion::Motion;
 use super::pool::EIGHT_OVER_3_PI;
@@ -149,7 +149,6 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
     let parameters = start(&reduced, setup, &model);
     let found = minimise(&model, &parameters, &Settings::default()).map_err(|e| DecayError::of_fit(&e.to_string()))?;
     let values = model.sought(&found.values);
-    let [by_inertia, by_stiffness] = DecayFit::by_declared(setup, values);
     let summary = |(i, (run, swings)): (usize, &(DecayRun<'_>, Swings))| {
         let [first, end] = swings.samples;
         let [q, v, rest] = model.start(i, &found.values);
@@ -174,8 +173,7 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
         type_a: scatter(&model, &parameters, &found),
         inertia: setup.inertia,
         restoring: setup.restoring,
-        by_inertia,
-        by_stiffness,
+        errors: declared(setup, values),
         range: reduced.range((setup.restoring.stiffness() / (setup.inertia.value + values[0])).sqrt()),
         rows: reduced.rows(setup, values),
         runs: reduced.runs.iter().enumerate().map(summary).collect(),

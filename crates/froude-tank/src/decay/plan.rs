@@ -8,10 +8,10 @@ use froude_records::text::counted;
 use super::fit::Method;
 use super::forecast::{Forecast, forecast, peaks_of};
 use super::record::LAW;
-use super::releases::senses;
-use super::releases::{Planned, planned, truth_of};
+use super::releases::{senses, truth_of};
 use super::run::DecaySetup;
-use super::section::DecayPlan;
+use super::section::{duration_s, release};
+use crate::matrix::Point;
 use crate::plan::{self, minutes};
 use crate::sensors::seed_and_sensors;
 
@@ -23,13 +23,12 @@ use crate::sensors::seed_and_sensors;
 pub fn prospect(
     campaign: &Campaign,
     source: &Source,
-    blocks: &[DecayPlan],
+    planned: &[Point],
     setup: &DecaySetup,
 ) -> Result<Prospect, MethodError> {
     let truth = truth_of(campaign, setup.axis)?;
-    let planned = planned(blocks);
     let (_, sensors) = seed_and_sensors(campaign, &senses(setup.axis))?;
-    let found = forecast(&planned, setup, truth, sensors).map_err(MethodError::refused)?;
+    let found = forecast(planned, setup, truth, sensors).map_err(MethodError::refused)?;
     let duration_s = planned.iter().map(duration_s).sum();
     let few = planned.iter().filter(|run| peaks_of(&found, &run.id) < Method::Envelope.fewest_peaks()).count();
     let of_envelope = match few {
@@ -48,15 +47,11 @@ pub fn prospect(
     )];
     paragraphs.extend(found.left_out.iter().map(|why| format!("Of no use: {why}.")));
     let law = format!(", with the law {LAW} of [simulate]");
-    let tables = [matrix(&planned, &found, setup), plan::intervals(&found.expected, &law)];
+    let tables = [matrix(planned, &found, setup), plan::intervals(&found.expected, &law)];
     Ok(plan::prospect(source, (planned.len(), duration_s), tables, paragraphs))
 }
 
-fn duration_s(run: &Planned) -> f64 {
-    run.release.held_s + run.release.free_s
-}
-
-fn matrix(planned: &[Planned], found: &Forecast, setup: &DecaySetup) -> ResultTable {
+fn matrix(planned: &[Point], found: &Forecast, setup: &DecaySetup) -> ResultTable {
     let caption = format!(
         "Run matrix; a peak is the extreme of a half cycle that is further from rest than {} times the noise of a sample.",
         setup.window.smallest_over_noise
@@ -67,7 +62,7 @@ fn matrix(planned: &[Planned], found: &Forecast, setup: &DecaySetup) -> ResultTa
     t.build(vec![
         t.text("run", "run", |run| run.id.clone()),
         t.text("configuration", "configuration", |run| run.configuration.clone()),
-        t.number(key, head, |run| run.release.displacement).plain(4),
+        t.number(key, head, |run| release(run).displacement).plain(4),
         t.count("peaks", "peaks", |run| peaks_of(found, &run.id)),
         t.number("duration_s", "duration [s]", duration_s).places(1),
     ])

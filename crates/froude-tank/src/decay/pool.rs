@@ -15,8 +15,11 @@
 
 use std::f64::consts::{FRAC_1_PI, PI};
 
+use froude_fit::faer::Mat;
+
 use super::run::DecaySetup;
 use super::swings::Swings;
+use crate::inverted::inverted;
 
 /// 8/3π of the equivalent linearisation.
 pub const EIGHT_OVER_3_PI: f64 = 8.0 / (3.0 * PI);
@@ -25,18 +28,18 @@ const THIRD: [f64; 4] = [0.5 * PI - PI * PI * PI / 12.0, 32.0 / 27.0 - PI * PI /
 /// Rounds of putting the coefficients into their own corrections; each gains two orders of the damping.
 const ROUNDS: usize = 12;
 
-/// Columns of the passages: number, Σ a, Σ a², a, and the time.
-const PASSAGE: usize = 5;
+/// Where the time stands among the columns of the passages: number, Σ a, Σ a², a, and the time.
+const TIME: usize = 4;
 /// Columns of the half cycles: a, a², 1, a³, a⁴, and F.
 const ROW: usize = 6;
 
 /// Sums of products of one run, or of several.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone)]
 pub struct Sums {
-    passages: [[f64; PASSAGE]; PASSAGE],
+    passages: Mat<f64>,
     /// Passages less the run's own parameters.
     passages_dof: f64,
-    rows: [[f64; ROW]; ROW],
+    rows: Mat<f64>,
     /// Half cycles less the run's own parameter.
     rows_dof: f64,
 }
@@ -64,24 +67,24 @@ impl Sums {
         };
         let passage_times = (0..count).map(|k| swings.passages[k].time_s - swings.passages[0].time_s).collect();
         let of_passages = [summed(0), summed(1), summed(2), (0..count).map(about).collect(), passage_times];
-        let own = vec![vec![1.0; count], (0..count).map(|k| alternate(k) / about(k)).collect()];
+        let own = [vec![1.0; count], (0..count).map(|k| alternate(k) / about(k)).collect()];
         let weights: Vec<f64> = (0..count).map(about).collect();
 
         let power = |k: i32| amplitudes.iter().map(|a| a.powi(k)).collect::<Vec<f64>>();
         let forces = (0..n).map(|k| force_amplitude(swings, k, swings.rest, stiffness)).collect();
         let of_rows = [power(1), power(2), power(0), power(3), power(4), forces];
         Self {
-            passages: products(of_passages, own, &weights),
+            passages: products(&of_passages, &own, &weights),
             passages_dof: count as f64 - 2.0,
-            rows: products(of_rows, vec![(0..n).map(alternate).collect()], &vec![1.0; n]),
+            rows: products(&of_rows, &[(0..n).map(alternate).collect()], &vec![1.0; n]),
             rows_dof: n as f64 - 1.0,
         }
     }
 
     /// Both together.
     pub fn and(mut self, other: &Self) -> Self {
-        self.passages.as_flattened_mut().iter_mut().zip(other.passages.as_flattened()).for_each(|(a, b)| *a += b);
-        self.rows.as_flattened_mut().iter_mut().zip(other.rows.as_flattened()).for_each(|(a, b)| *a += b);
+        self.passages += &other.passages;
+        self.rows += &other.rows;
         self.passages_dof += other.passages_dof;
         self.rows_dof += other.rows_dof;
         self
@@ -94,19 +97,24 @@ impl Sums {
     }
 
     /// Sum of products of two combinations of the columns.
-    fn product<const N: usize>(of: &[[f64; N]; N], x: [f64; N], y: [f64; N]) -> f64 {
-        (0..N).map(|i| x[i] * (0..N).map(|j| of[i][j] * y[j]).sum::<f64>()).sum()
+    fn product<const N: usize>(of: &Mat<f64>, x: [f64; N], y: [f64; N]) -> f64 {
+        (0..N).map(|i| x[i] * (0..N).map(|j| of[(i, j)] * y[j]).sum::<f64>()).sum()
+    }
+
+    /// Inverse of the products of the first `n` columns of the half cycles; `None` where they are one.
+    fn inverse(&self, n: usize) -> Option<Mat<f64>> {
+        inverted(&self.rows.submatrix(0, 0, n, n).to_owned())
     }
 
     /// The coefficients from these sums; `None` where they do not determine them.
     pub fn estimate(&self, setup: &DecaySetup) -> Option<Estimate> {
         let (m, c) = (setup.inertia.value, setup.restoring.stiffness());
         let g = &self.rows;
-        let inverse = inverse_2([[g[0][0], g[0][1]], [g[1][0], g[1][1]]])?;
+        let inverse = self.inverse(2)?;
         let fitted = |third| {
             let force = Self::force(third);
             let right: [f64; 2] = std::array::from_fn(|i| Self::product(g, unit(i), force));
-            let pq: [f64; 2] = std::array::from_fn(|i| inverse[i][0] * right[0] + inverse[i][1] * right[1]);
+            let pq: [f64; 2] = std::array::from_fn(|i| inverse[(i, 0)] * right[0] + inverse[(i, 1)] * right[1]);
             (pq, (Self::product(g, force, force) - pq[0] * right[0] - pq[1] * right[1]).max(0.0))
         };
         let mut damping = Damping::default();
@@ -120,14 +128,14 @@ impl Sums {
         }
         let phase = damping.phase();
         let xx = Self::product(&self.passages, phase, phase);
-        let xt = Self::product(&self.passages, phase, unit(PASSAGE - 1));
+        let xt = Self::product(&self.passages, phase, unit(TIME));
         let half_period_s = xt / xx;
         let omega_n = PI / half_period_s;
         let to_linear = 1.0 / omega_n;
         let to_quadratic = 1.0 / (EIGHT_OVER_3_PI * omega_n * omega_n);
         let moving = c / (omega_n * omega_n);
         let (rows_dof, passages_dof) = (self.rows_dof - 2.0, self.passages_dof - 1.0);
-        let late = (self.passages[PASSAGE - 1][PASSAGE - 1] - half_period_s * xt).max(0.0);
+        let late = (self.passages[(TIME, TIME)] - half_period_s * xt).max(0.0);
         let variance = |sum: f64, dof: f64| if dof > 0.0 { sum / dof } else { f64::NAN };
         let s2 = variance(residual, rows_dof);
         Some(Estimate {
@@ -136,10 +144,10 @@ impl Sums {
             third,
             variances: [
                 variance(late, passages_dof) / xx * (2.0 * moving / half_period_s).powi(2),
-                s2 * inverse[0][0] * to_linear.powi(2),
-                s2 * inverse[1][1] * to_quadratic.powi(2),
+                s2 * inverse[(0, 0)] * to_linear.powi(2),
+                s2 * inverse[(1, 1)] * to_quadratic.powi(2),
             ],
-            damping_covariance: s2 * inverse[0][1] * to_linear * to_quadratic,
+            damping_covariance: s2 * inverse[(0, 1)] * to_linear * to_quadratic,
             dof: [passages_dof, rows_dof, rows_dof],
         })
         .filter(|e| e.values.iter().all(|v| v.is_finite()))
@@ -148,15 +156,14 @@ impl Sums {
     /// Coulomb friction beside both dampings, N or N m: F has 4/π of it in each half cycle. With its classical standard
     /// uncertainty and degrees of freedom.
     pub fn coulomb(&self, with: &Estimate) -> Option<[f64; 3]> {
-        let normal = std::array::from_fn(|i| std::array::from_fn(|j| self.rows[i][j]));
-        let inverse = inverse_3(normal)?;
+        let inverse = self.inverse(3)?;
         let force = Self::force(with.third);
         let right: [f64; 3] = std::array::from_fn(|i| Self::product(&self.rows, unit(i), force));
-        let x: [f64; 3] = std::array::from_fn(|i| (0..3).map(|j| inverse[i][j] * right[j]).sum());
+        let x: [f64; 3] = std::array::from_fn(|i| (0..3).map(|j| inverse[(i, j)] * right[j]).sum());
         let dof = self.rows_dof - 3.0;
         let square = Self::product(&self.rows, force, force);
         let rest = (square - (0..3).map(|i| x[i] * right[i]).sum::<f64>()).max(0.0);
-        let standard = if dof > 0.0 { (rest / dof * inverse[2][2]).sqrt() } else { f64::NAN };
+        let standard = if dof > 0.0 { (rest / dof * inverse[(2, 2)]).sqrt() } else { f64::NAN };
         Some([0.25 * PI * x[2], 0.25 * PI * standard, dof])
     }
 }
@@ -182,7 +189,7 @@ impl Damping {
     }
 
     /// θ as a combination of the passages' columns.
-    fn phase(self) -> [f64; PASSAGE] {
+    fn phase(self) -> [f64; TIME + 1] {
         let Self { gamma, epsilon } = self;
         [
             (1.0 - gamma * gamma).powf(-0.5),
@@ -244,15 +251,11 @@ fn force_amplitude(swings: &Swings, k: usize, rest: f64, stiffness: f64) -> f64 
 }
 
 /// Sums of products of weighted columns, less what a run's own columns explain.
-fn products<const N: usize>(mut columns: [Vec<f64>; N], mut own: Vec<Vec<f64>>, weights: &[f64]) -> [[f64; N]; N] {
-    for column in columns.iter_mut().chain(&mut own) {
-        column.iter_mut().zip(weights).for_each(|(x, w)| *x *= w);
-    }
-    let own = orthonormal(own);
-    for column in &mut columns {
-        project_out(&own, column);
-    }
-    std::array::from_fn(|i| std::array::from_fn(|j| dot(&columns[i], &columns[j])))
+fn products(columns: &[Vec<f64>], own: &[Vec<f64>], weights: &[f64]) -> Mat<f64> {
+    let weighted = |of: &[Vec<f64>]| Mat::from_fn(weights.len(), of.len(), |i, j| weights[i] * of[j][i]);
+    let (columns, own) = (weighted(columns), weighted(own).qr().compute_thin_Q());
+    let left = &columns - &own * (own.transpose() * &columns);
+    left.transpose() * &left
 }
 
 fn unit<const N: usize>(k: usize) -> [f64; N] {
@@ -261,45 +264,4 @@ fn unit<const N: usize>(k: usize) -> [f64; N] {
 
 fn alternate(k: usize) -> f64 {
     if k.is_multiple_of(2) { 1.0 } else { -1.0 }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-/// Gram and Schmidt.
-fn orthonormal(mut columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    for k in 0..columns.len() {
-        let (done, rest) = columns.split_at_mut(k);
-        project_out(done, &mut rest[0]);
-        let length = dot(&rest[0], &rest[0]).sqrt();
-        rest[0].iter_mut().for_each(|x| *x /= length);
-    }
-    columns
-}
-
-fn project_out(columns: &[Vec<f64>], of: &mut [f64]) {
-    for column in columns {
-        let part = dot(column, of);
-        of.iter_mut().zip(column).for_each(|(x, c)| *x -= part * c);
-    }
-}
-
-/// Determinants below this part of the product of their diagonal: the columns are one.
-const SAME: f64 = 1e-10;
-
-/// Inverse of a symmetric matrix; `None` where its columns are one.
-pub fn inverse_2([[a, b], [_, d]]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
-    let determinant = a * d - b * b;
-    (determinant > SAME * a * d).then(|| [[d / determinant, -b / determinant], [-b / determinant, a / determinant]])
-}
-
-fn inverse_3(a: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
-    let minor = |i: usize, j: usize| {
-        let at = |di: usize, dj: usize| a[(i + di) % 3][(j + dj) % 3];
-        at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1)
-    };
-    let determinant = (0..3).map(|j| a[0][j] * minor(0, j)).sum::<f64>();
-    (determinant > SAME * a[0][0] * a[1][1] * a[2][2])
-        .then(|| std::array::from_fn(|i| std::array::from_fn(|j| minor(j, i) / determinant)))
 }

@@ -4,8 +4,7 @@ use std::f64::consts::PI;
 
 use froude_records::campaign::{BoundsSpec, Campaign, Identify, Source};
 use froude_records::estimate::{
-    Clusters, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, Output, Range as Stated, ReferencePoint,
-    SharedError, Status, TypeA,
+    Clusters, Diagnostics, Estimate, Law, Measured, Output, Range as Stated, ReferencePoint, Status,
 };
 use froude_records::finding::Finding;
 use froude_records::texts::Texts;
@@ -14,7 +13,8 @@ use indexmap::IndexMap;
 
 use super::fit::{DecayFit, HalfCycle};
 use crate::findings::warning;
-use crate::joint::record::{by_part, coefficient, shared_error};
+use crate::joint::DeclaredError;
+use crate::joint::record::{about, by_part, coefficient, errors, type_a};
 use froude_identify::IdentifyError;
 use froude_identify::dataset::Dataset;
 use froude_identify::law::ForceLaw;
@@ -135,27 +135,24 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
     .map(|dimension| Unit::si(dimension).text);
     let formula = format!("-{added}*{velocity}_dot - {linear}*{velocity} - {quadratic}*{velocity}*abs({velocity})");
     let named: Vec<(&str, &str)> = fit.names.iter().map(String::as_str).zip(units).collect();
-    let notes = by_part(&fit.budget(), &named, 3);
-    let refers_to =
-        campaign.fluid.density_kg_m3.map(|value| ("density".to_owned(), Measured { value, unit: "kg/m^3".to_owned() }));
+    let budget = fit.budget();
+    let notes = by_part(&budget, &named, 3);
     let range = |[low, high]: [f64; 2], unit: &str| Stated { low, high, unit: unit.to_owned() };
-    // A rotation is about its own axis, wherever the body's reference point is.
     let is_rotation = fit.axis.is_rotation();
-    let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone()).filter(|_| !is_rotation);
-    let point = if is_rotation {
-        ReferencePoint { words: "the axis that it turned about".to_owned(), stated: false }
-    } else {
-        ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() }
-    };
     let [inertia, stiffness] = if is_rotation { ["kg*m^2", "N*m"] } else { ["kg", "N/m"] };
     let constant = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
+    let names = fit.names.each_ref().map(String::as_str);
+    let type_a = fit.type_a.as_ref().map(|a| type_a(&names, &budget, a.kind.clone()));
+    let declared: Vec<DeclaredError> = fit.errors.iter().filter(|error| error.standard > 0.0).cloned().collect();
+    let method = fit.method.name();
+    let about = about((campaign, source), [method, method], fit.method.words().to_owned());
     Estimate {
-        id: format!("{}/{}", source.name, fit.method.name()),
-        source: source.name.clone(),
-        kind: source.kind.name().to_owned(),
-        method: MethodUsed { name: fit.method.name().to_owned(), version: 1, words: fit.method.words().to_owned() },
-        frame: Frame::body(),
-        point,
+        // A rotation is about its own axis, wherever the body's reference point is.
+        point: if is_rotation {
+            ReferencePoint { words: "the axis that it turned about".to_owned(), stated: false }
+        } else {
+            about.point.clone()
+        },
         law: Law {
             name: LAW.to_owned(),
             version: 1,
@@ -166,18 +163,12 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
                 ("stiffness".to_owned(), constant(fit.restoring.stiffness(), stiffness)),
             ]),
         },
-        refers_to: refers_to.into_iter().collect(),
         n_observations: fit.rows.len(),
         clusters: Some(Clusters { by: "run".to_owned(), n: fit.runs.len() }),
-        dof: fit.type_a.iter().map(|a| (load.clone(), Some(a.dof[1]).filter(|d| d.is_finite()))).collect(),
+        dof: type_a.iter().map(|a| (load.clone(), a.dof[1])).collect(),
         coefficients: coefficients.collect(),
-        type_a: fit.type_a.as_ref().map(|a| TypeA {
-            names: fit.names.to_vec(),
-            matrix: (0..3).map(|i| (0..3).map(|j| a.covariance[(i, j)]).collect()).collect(),
-            dof: a.dof.iter().map(|d| Some(*d).filter(|d| d.is_finite())).collect(),
-            kind: a.kind.clone(),
-        }),
-        errors: if fit.type_a.is_some() { errors(fit, campaign) } else { IndexMap::new() },
+        errors: type_a.as_ref().map(|_| errors(&declared, campaign)).unwrap_or_default(),
+        type_a,
         validity: IndexMap::from([
             ("speed".to_owned(), range(fit.range.speed, if fit.axis.is_rotation() { "rad/s" } else { "m/s" })),
             ("amplitude".to_owned(), range(fit.range.amplitude, fit.axis.position_unit())),
@@ -186,18 +177,6 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
         diagnostics: Diagnostics { notes, ..Diagnostics::default() },
         recommended,
         reason: recommended.then(|| fit.method.words().to_owned()),
-        ..Estimate::default()
+        ..about
     }
-}
-
-/// Inertia and restoring force as declared: sources of the campaign that declare them alike have them in common.
-fn errors(fit: &DecayFit, campaign: &Campaign) -> IndexMap<String, SharedError> {
-    let of = |name: &str, declared: froude_fit::budget::Uncertain, by: [f64; 3]| {
-        let key = format!("{}/{name} {:e} {:e}", campaign.key, declared.value, declared.standard);
-        let error = shared_error(name, declared.standard, declared.dof, &by);
-        (declared.standard > 0.0).then_some((key, error))
-    };
-    let restoring =
-        fit.restoring.parts().into_iter().map(|(name, u, by)| of(name, u, fit.by_stiffness.map(|d| d * by)));
-    [of("dry inertia", fit.inertia, fit.by_inertia)].into_iter().chain(restoring).flatten().collect()
 }

@@ -50,7 +50,7 @@ impl<'a> Reduced<'a> {
         let is_long = |s: &Swings| is_spring && s.turns.len() >= Method::Envelope.fewest_peaks();
         let c = setup.restoring.stiffness();
         let sums: Vec<Sums> = used.iter().filter(|(_, s)| is_long(s)).map(|(_, s)| Sums::of(s, c)).collect();
-        let pooled = all_but(&sums, None).estimate(setup);
+        let pooled = all_but(&sums, None).and_then(|all| all.estimate(setup));
         Ok(Self { runs: used, sums, pooled, left_out })
     }
 
@@ -114,7 +114,7 @@ impl<'a> Reduced<'a> {
     pub(crate) fn scatter(&self, setup: &DecaySetup) -> Option<Scatter> {
         let n = self.sums.len();
         if n >= FEWEST_RUNS {
-            let without = |g: usize| all_but(&self.sums, Some(g)).estimate(setup).map(|e| e.values.to_vec());
+            let without = |g: usize| all_but(&self.sums, Some(g))?.estimate(setup).map(|e| e.values.to_vec());
             let (covariance, dof) = jackknife(n, without)?;
             return Some(Scatter {
                 covariance,
@@ -143,7 +143,8 @@ fn force_of_energy(setup: &DecaySetup, swings: &Swings, k: usize) -> f64 {
     2.0 / (PI * swings.amplitude(k)) * (at(k) - at(k + 1))
 }
 
-/// Sums of all runs, or of all but one.
-pub(super) fn all_but(sums: &[Sums], without: Option<usize>) -> Sums {
-    sums.iter().enumerate().filter(|(i, _)| Some(*i) != without).fold(Sums::default(), |all, (_, s)| all.and(s))
+/// Sums of all runs, or of all but one; `None` of none.
+pub(super) fn all_but(sums: &[Sums], without: Option<usize>) -> Option<Sums> {
+    let others = sums.iter().enumerate().filter(|(i, _)| Some(*i) != without).map(|(_, sums)| sums.clone());
+    others.reduce(|all, sums| all.and(&sums))
 }

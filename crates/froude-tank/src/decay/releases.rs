@@ -5,32 +5,20 @@
 use crate::decay::axis::Motion;
 use crate::names::FREE_DECAY;
 use froude_identify::method::{Export, MethodError};
-use froude_records::campaign::{Campaign, SensorSpec, Truth};
+use froude_records::campaign::{Campaign, SensorSpec};
 use froude_records::run::Role;
-use froude_rig::decay::{DecayRig, DecaySensor, Release};
+use froude_rig::decay::{DecayRig, DecaySensor};
 
 use super::record::LAW;
 use super::run::{DecayRun, DecaySetup, Restoring};
-use super::section::DecayPlan;
+use super::section::release;
 use crate::error::undeclared;
-use crate::sensors::{Senses, seed_and_sensors};
-use crate::twin::{self, Column, Draws, seed_of};
+use crate::matrix::Point;
+use crate::sensors::{Senses, reading, seed_and_sensors};
+use crate::twin::{self, Column, Draws, seed_of, true_values, truths};
 
 /// Standard deviation of the zero of a release, as part of its displacement.
 const ZERO: f64 = 0.02;
-
-/// One planned release.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Planned {
-    /// Its name.
-    pub id: String,
-    /// What is mounted; empty where the campaign does not say.
-    pub configuration: String,
-    /// How it is released.
-    pub release: Release,
-    /// Samples a second.
-    pub rate_hz: f64,
-}
 
 /// A release that owns its columns.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,59 +39,25 @@ impl Logged {
     }
 }
 
-/// The run matrix of a plan.
-#[must_use]
-pub fn planned(blocks: &[DecayPlan]) -> Vec<Planned> {
-    let mut out = Vec::new();
-    for block in blocks {
-        for &displacement in &block.displacement {
-            for _ in 0..block.repeats {
-                out.push(Planned {
-                    id: format!("{:03}", out.len() + 1),
-                    configuration: block.configuration.clone(),
-                    release: Release { displacement, held_s: block.held_s, free_s: block.free_s },
-                    rate_hz: block.rate_hz,
-                });
-            }
-        }
-    }
-    out
-}
-
 /// A, D_I and D_II of `[simulate.coefficients]`.
 ///
 /// # Errors
 ///
 /// No `[simulate]`, a record or another law instead of them, one that is not stated.
 pub fn truth_of(campaign: &Campaign, axis: Motion) -> Result<[f64; 3], MethodError> {
-    let place = campaign.path.display();
     let names = axis.decay_names();
-    let all = names.join(", ");
-    let Some(simulate) = &campaign.simulate else {
-        let what = format!(
-            "a twin needs [simulate] with seed, model = \"{LAW}\" and the true {all} in [simulate.coefficients]"
-        );
-        return Err(undeclared(&place, what));
-    };
-    let Truth::Coefficients { model, values } = &simulate.truth else {
-        let what =
-            format!("the twin of a free decay takes its truth from [simulate.coefficients] ({all}), not from a record");
-        return Err(undeclared(&place, what));
-    };
+    let (model, values) = truths(campaign, FREE_DECAY)?;
     if model != LAW {
+        let all = names.join(", ");
         let what =
             format!("the truth of a free decay is model = \"{LAW}\" with {all}, and [simulate] states {model:?}");
-        return Err(undeclared(&place, what));
+        return Err(undeclared(campaign.path.display(), what));
     }
-    let mut out = [0.0; 3];
-    for (out, name) in out.iter_mut().zip(&names) {
-        let missing = || undeclared("[simulate.coefficients]", format!("{name} is missing; the truth needs {all}"));
-        *out = values.get(name).copied().ok_or_else(missing)?;
-    }
-    Ok(out)
+    true_values(values, names.each_ref().map(String::as_str))
 }
 
-const fn names(axis: Motion) -> &'static [&'static str] {
+/// Names of the position in `[[simulate.sensor]]`.
+pub(super) const fn names(axis: Motion) -> &'static [&'static str] {
     if axis.is_rotation() { &["angle", "phi"] } else { &["position", "displacement"] }
 }
 
@@ -112,29 +66,38 @@ pub(super) fn senses(axis: Motion) -> [Senses<'static>; 1] {
     [Senses::with_memory(names(axis).iter().copied())]
 }
 
-/// The sensor of the position among those of `[[simulate.sensor]]`.
-pub(super) fn sensor_of(sensors: &[SensorSpec], axis: Motion) -> Option<&SensorSpec> {
-    sensors.iter().find(|s| names(axis).contains(&s.quantity.as_str()))
-}
-
 /// The logs of all planned releases; the same seed gives the same logs.
 #[must_use]
 pub fn simulated(
-    planned: &[Planned],
+    points: &[Point],
     setup: &DecaySetup,
-    [added, linear, quadratic]: [f64; 3],
+    truth: [f64; 3],
     sensors: &[SensorSpec],
     seed: u64,
 ) -> Vec<Logged> {
-    let mut draws = Draws::of(seed);
+    drawn(points, setup, truth, (sensors, seed), Draws::of(seed))
+}
+
+/// The same without errors of sensors and of what is declared.
+pub(super) fn exactly(points: &[Point], setup: &DecaySetup, truth: [f64; 3]) -> Vec<Logged> {
+    drawn(points, setup, truth, (&[], 0), Draws::none())
+}
+
+fn drawn(
+    points: &[Point],
+    setup: &DecaySetup,
+    [added, linear, quadratic]: [f64; 3],
+    (sensors, seed): (&[SensorSpec], u64),
+    mut draws: Draws,
+) -> Vec<Logged> {
     let inertia = draws.about(setup.inertia);
     let stiffness = match setup.restoring {
         Restoring::Spring(c) => draws.about(c),
         Restoring::Buoyancy { force_n, radius_m } => draws.about(force_n) * draws.about(radius_m),
     };
-    let sensor = sensor_of(sensors, setup.axis);
-    let of = |part: Option<f64>| part.unwrap_or(0.0);
-    let one = |(i, run): (usize, &Planned)| {
+    let of = reading(sensors, names(setup.axis), 0.0, 1.0);
+    let one = |(i, point): (usize, &Point)| {
+        let release = release(point);
         let rig = DecayRig {
             inertia,
             added,
@@ -143,19 +106,19 @@ pub fn simulated(
             stiffness,
             is_pendulum: setup.restoring.is_pendulum(),
             coulomb: 0.0,
-            rest: of(sensor.and_then(|s| s.bias)) + ZERO * run.release.displacement * draws.normal(),
+            rest: of.zero + ZERO * release.displacement * draws.normal(),
         };
         let sensor = DecaySensor {
-            rate_hz: run.rate_hz,
-            noise: of(sensor.and_then(|s| s.noise)),
-            correlation_s: sensor.and_then(|s| s.correlation_s),
-            step: of(sensor.and_then(|s| s.resolution)),
-            drift_per_s: 0.0,
+            rate_hz: point.condition("rate"),
+            noise: of.noise,
+            correlation_s: of.correlation_s,
+            step: of.step,
+            drift_per_s: of.drift_per_s,
         };
-        let trace = rig.release(sensor, run.release, seed_of(seed, i));
-        Logged { id: run.id.clone(), time_s: trace.time_s, position: trace.position }
+        let trace = rig.release(sensor, release, seed_of(seed, i));
+        Logged { id: point.id.clone(), time_s: trace.time_s, position: trace.position }
     };
-    planned.iter().enumerate().map(one).collect()
+    points.iter().enumerate().map(one).collect()
 }
 
 /// The files of all planned releases: a log and its sidecar each.
@@ -163,12 +126,11 @@ pub fn simulated(
 /// # Errors
 ///
 /// What the campaign does not declare.
-pub fn files(campaign: &Campaign, blocks: &[DecayPlan], setup: &DecaySetup) -> Result<Vec<Export>, MethodError> {
+pub fn files(campaign: &Campaign, points: &[Point], setup: &DecaySetup) -> Result<Vec<Export>, MethodError> {
     let truth = truth_of(campaign, setup.axis)?;
-    let planned = planned(blocks);
     let (seed, sensors) = seed_and_sensors(campaign, &senses(setup.axis))?;
-    let logs = simulated(&planned, setup, truth, sensors, seed);
-    Ok(planned.iter().zip(&logs).flat_map(|(run, log)| files_of(run, log, setup.axis)).collect())
+    let logs = simulated(points, setup, truth, sensors, seed);
+    Ok(points.iter().zip(&logs).flat_map(|(point, log)| files_of(point, log, setup.axis)).collect())
 }
 
 /// Name of the column that moves, with its unit.
@@ -176,14 +138,14 @@ const fn column(axis: Motion) -> [&'static str; 2] {
     if axis.is_rotation() { ["angle", "rad"] } else { ["position", "m"] }
 }
 
-fn files_of(run: &Planned, log: &Logged, axis: Motion) -> [Export; 2] {
+fn files_of(point: &Point, log: &Logged, axis: Motion) -> [Export; 2] {
     let [name, unit] = column(axis);
     let logged = twin::Logged {
-        id: &run.id,
+        id: &point.id,
         said: "A release of the twin.",
         method: FREE_DECAY,
         role: Role::Decay,
-        configuration: &run.configuration,
+        configuration: &point.configuration,
         conditions: &[],
         time: ("time", &log.time_s),
         columns: &[Column { described: [name, name, unit, "sensor", ""], places: 8, values: &log.position }],

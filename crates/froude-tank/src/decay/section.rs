@@ -22,34 +22,19 @@ use crate::decay::axis::Motion;
 use froude_identify::declare::{Key, Kind, Range, Values, optional, required, usual};
 use froude_records::RecordError;
 use froude_records::campaign::Source;
+use froude_records::run::Role;
 use froude_records::section::Section;
-use froude_records::section_values::{Asks, MOST_RUNS};
 use froude_records::units::Dimension;
+use froude_rig::decay::Release;
 
 use super::run::{DecaySetup, DecayWindow, Restoring};
-use crate::declared::{INERTIA, RATE, REPEATS, STIFFNESS, runs_of, uncertain};
+use crate::declared::{INERTIA, RATE, REPEATS, STIFFNESS, uncertain};
+use crate::matrix::Plan;
+
+pub use crate::matrix::Point;
 
 /// Most samples of a planned release.
 const MOST_SAMPLES: f64 = 1e7;
-
-/// One block of planned releases.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DecayPlan {
-    /// What is mounted; empty where the campaign does not say.
-    pub configuration: String,
-    /// Displacements from rest, m or rad.
-    pub displacement: Vec<f64>,
-    /// Whether they are angles.
-    pub is_angle: bool,
-    /// How often each is released.
-    pub repeats: usize,
-    /// Time held before the release, s.
-    pub held_s: f64,
-    /// Time free after it, s.
-    pub free_s: f64,
-    /// Samples a second.
-    pub rate_hz: f64,
-}
 
 const fn by_axis(along: Kind, about: Kind) -> [Kind; Motion::ALL.len()] {
     [along, along, along, about, about, about]
@@ -169,27 +154,34 @@ fn restoring(values: &Values, axis: Motion) -> Result<Restoring, RecordError> {
 /// # Errors
 ///
 /// [`RecordError`] with its place.
-pub fn plan(source: &Source) -> Result<Vec<DecayPlan>, RecordError> {
+pub fn plan(source: &Source) -> Result<Vec<Point>, RecordError> {
     // Both reductions plan alike.
     let method = source.methods.iter().find(|method| method.starts_with("decay")).map_or("", String::as_str);
-    runs_of(source, method, block, |p| {
-        let count = p.displacement.len() * p.repeats;
-        Asks { count, samples: count as f64 * (p.held_s + p.free_s) * p.rate_hz }
-    })
+    let roles = ("", &[Role::Decay][..]);
+    Plan { roles, check: consistent, ..Plan::of(PLAN, |point| (1, duration_s(point))) }.points(source, method)
 }
 
-/// Reads a `[[source.plan]]` of releases.
-fn block(s: &Section<'_>) -> Result<DecayPlan, RecordError> {
-    let values = Values::read(s, PLAN)?;
-    let number = |key: &str| values.need(key, values.number(key));
-    let (angle, displacement) = (values.numbers("angle"), values.numbers("displacement"));
-    let is_angle = !angle.is_empty();
-    match (is_angle, displacement.is_empty()) {
-        (true, false) => {
+/// How a planned release is let go.
+#[must_use]
+pub fn release(point: &Point) -> Release {
+    let displacement = point.condition(if point.conditions.contains_key("angle") { "angle" } else { "displacement" });
+    Release { displacement, held_s: point.condition("held"), free_s: point.condition("duration") }
+}
+
+/// How long it takes on the log, s.
+pub(super) fn duration_s(point: &Point) -> f64 {
+    point.condition("held") + point.condition("duration")
+}
+
+/// Checks the keys of a block against each other.
+fn consistent(values: &Values) -> Result<(), RecordError> {
+    let angle = values.numbers("angle");
+    match (angle.is_empty(), values.numbers("displacement").is_empty()) {
+        (false, false) => {
             let problem = "stands beside angle: a release is from one or the other";
             return Err(values.wrong("displacement", problem));
         }
-        (false, true) => {
+        (true, true) => {
             let write =
                 "write what it is released from: angle = \"30 deg\" about an axis, displacement = \"0.1 m\" along one";
             return Err(values.missing("angle", write));
@@ -200,22 +192,12 @@ fn block(s: &Section<'_>) -> Result<DecayPlan, RecordError> {
         let problem = format!("is {} deg; a release is away from rest by less than half a turn", turned.to_degrees());
         return Err(values.wrong("angle", problem));
     }
-    let out = DecayPlan {
-        configuration: values.text("configuration").unwrap_or_default().to_owned(),
-        displacement: if is_angle { angle } else { displacement },
-        is_angle,
-        repeats: values.need("repeats", values.count("repeats"))?,
-        held_s: number("held")?,
-        free_s: number("duration")?,
-        rate_hz: number("rate")?,
-    };
-    let samples = (out.held_s + out.free_s) * out.rate_hz;
+    let number = |key: &str| values.need(key, values.number(key));
+    let samples = (number("held")? + number("duration")?) * number("rate")?;
     if samples > MOST_SAMPLES {
-        let key = if s.get("duration").is_none() && s.get("rate").is_some() { "rate" } else { "duration" };
-        return Err(
-            values.wrong(key, format!("makes {samples:.0} samples of a release; {MOST_SAMPLES:.0} are the most"))
-        );
+        let key = if values.is_stated("rate") && !values.is_stated("duration") { "rate" } else { "duration" };
+        let problem = format!("makes {samples:.0} samples of a release; {MOST_SAMPLES:.0} are the most");
+        return Err(values.wrong(key, problem));
     }
-    values.at_most(MOST_RUNS)?;
-    Ok(out)
+    Ok(())
 }

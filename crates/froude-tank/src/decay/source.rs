@@ -1,10 +1,7 @@
 //! Free decay as a source of a campaign: a folder of logs, one release each.
 
-use std::path::Path;
-
-use crate::conditioning::{condition, of_one_rig};
 use crate::decay::axis::Motion;
-use crate::decay::section::{self, DecayPlan};
+use crate::decay::section;
 use crate::decay::{DecayFit, DecayRun, DecaySetup, Method as DecayMethod, RunSummary};
 use crate::decay::{envelope, output_error, plan, record, releases};
 use crate::declared::{check, needed};
@@ -12,15 +9,14 @@ use crate::drawn::{self, first_of, over_time, series};
 use crate::error::undeclared;
 use crate::findings::warning;
 use crate::log::TankLog;
-use crate::logs::{self, Logs};
-use crate::long_logs::Reading;
+use crate::logs::{self, Logs, Wanted};
+use crate::long_logs::Lengths;
+use crate::matrix::Point;
 use crate::method::TankMethod;
 use crate::names::FREE_DECAY;
 use froude_identify::method::{Declares, Found, MethodError, Need};
-use froude_identify::runs::{recorded_in, refuse_others};
 use froude_records::block::{Section, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
-use froude_records::finding::Severity;
 use froude_records::page::{ChartPanel, Mark};
 use froude_records::run::{Channel, Role};
 use froude_records::units::Dimension;
@@ -44,12 +40,12 @@ pub const DECAY: TankMethod = TankMethod {
     takes: &["plan", "decay"],
     identify,
     simulate: |campaign, source| {
-        let (setup, blocks) = planning(source)?;
-        releases::files(campaign, &blocks, &setup)
+        let (setup, points) = planning(source)?;
+        releases::files(campaign, &points, &setup)
     },
     plan: |campaign, source| {
-        let (setup, blocks) = planning(source)?;
-        plan::prospect(campaign, source, &blocks, &setup)
+        let (setup, points) = planning(source)?;
+        plan::prospect(campaign, source, &points, &setup)
     },
     declares: Declares { section: "decay", keys: section::KEYS, plan: section::PLAN },
     check: |source| check(source, "decay", section::decay, section::plan),
@@ -63,7 +59,13 @@ fn identify(
 ) -> Result<Found, MethodError> {
     let setup = declared(source)?;
     progress("reading the releases");
-    let Logs { runs: logs, files, mut findings } = read(source.input.path())?;
+    let wanted = Wanted {
+        is_stated: false,
+        lengths: Lengths::WHOLE,
+        ..Wanted::of(FREE_DECAY, &[Role::Decay], "`time [s]` and `position [m]` (or `angle [deg]`)")
+    };
+    let Logs { runs: logs, files, mut findings } = logs::read(source.input.path(), &wanted, progress)?;
+    logs::one_body(&logs)?;
     let runs = logs.iter().map(|log| release(log, setup.axis)).collect::<Result<Vec<_>, _>>()?;
     let methods: Vec<DecayMethod> = asked.iter().filter_map(|name| named(name)).collect();
     let (mut out, mut fits) = (Vec::new(), Vec::new());
@@ -115,15 +117,15 @@ pub fn declared(source: &Source) -> Result<DecaySetup, MethodError> {
 }
 
 /// The same with its plan, which has displacements of its axis.
-fn planning(source: &Source) -> Result<(DecaySetup, Vec<DecayPlan>), MethodError> {
-    let (setup, blocks) = (declared(source)?, section::plan(source)?);
+fn planning(source: &Source) -> Result<(DecaySetup, Vec<Point>), MethodError> {
+    let (setup, points) = (declared(source)?, section::plan(source)?);
     let is_angle = setup.axis.is_rotation();
     let [needed, found] = if is_angle { ["angle", "displacement"] } else { ["displacement", "angle"] };
-    if blocks.iter().any(|block| block.is_angle != is_angle) {
+    if points.iter().any(|point| !point.conditions.contains_key(needed)) {
         let what = format!("[[source.plan]] states {found}, but the axis is {}: write {needed}", setup.axis.name());
         return Err(undeclared(&source.place, what));
     }
-    Ok((setup, blocks))
+    Ok((setup, points))
 }
 
 /// Releases whose motion is drawn; more would be a page of the same.
@@ -168,48 +170,6 @@ fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> Section {
     let caption = format!("Position of {of}the releases as measured, and the fitted motion where it was used.");
     let chart = (!panels.is_empty()).then(|| over_time(["releases", "Motion and fit"], caption, panels).into());
     Section::new("Releases", std::iter::once(table.into()).chain(chart))
-}
-
-/// Every log in a folder, in the order of the names, with its sidecar where it has one.
-fn read(folder: &Path) -> Result<Logs, MethodError> {
-    if folder.is_file() {
-        let what = "`runs` is a folder with one log a release; put the logs that are meant into a folder of their own";
-        return Err(MethodError::input(folder, what));
-    }
-    let paths = logs::paths_in(folder, FREE_DECAY)?;
-    if paths.is_empty() {
-        refuse_others(folder, FREE_DECAY, &recorded_in(folder)?)?;
-        let what = "no releases: put one log per release there, as CSV or Parquet with `time [s]` and `position [m]` (or `angle [deg]`)";
-        return Err(MethodError::input(folder, what));
-    }
-    let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };
-    let mut mounted: Option<String> = None;
-    for path in paths {
-        let mut log = logs::imported(&path, Reading::WHOLE, &|_| ())?;
-        let own = log.log.meta.configuration.clone();
-        if let Some(first) = mounted.replace(own.clone()).filter(|first| *first != own) {
-            let what = format!(
-                "is of {own:?}, and the log before it of {first:?}; inertia and restoring force are those of one body: give each a folder and a source of its own"
-            );
-            return Err(MethodError::input(path, what));
-        }
-        if !log.log.meta.method.is_empty() && log.log.meta.method != FREE_DECAY {
-            let what = format!(
-                "is a run of {}, and releases are read here; give its folder a source of its own",
-                log.log.meta.method
-            );
-            return Err(MethodError::input(path, what));
-        }
-        (log.log.meta.method, log.log.meta.role) = (FREE_DECAY.to_owned(), Role::Decay);
-        condition(&mut log, FREE_DECAY)?;
-        // Steps that are not even are refused by the methods; that they are is no news.
-        out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
-        out.files.extend(logs::files_of(path, RELEASE, &log));
-        out.runs.push(log);
-    }
-    of_one_rig(&out.runs)?;
-    out.findings.extend(logs::of_a_calendar(&out.runs));
-    Ok(out)
 }
 
 /// A log as a release: its time and the channel that moves.

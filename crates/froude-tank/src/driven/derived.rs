@@ -4,7 +4,7 @@ use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Uncertain, combine};
 use froude_fit::faer::Mat;
 
 use crate::joint::JointFit;
-use crate::joint::conclude::part;
+use crate::joint::part;
 
 /// A number that follows linearly from the coefficients.
 #[derive(Debug, Clone, PartialEq)]

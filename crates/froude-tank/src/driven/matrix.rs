@@ -41,7 +41,7 @@ impl From<Point> for Planned {
 /// [`RecordError`] with its place.
 pub fn planned<M: MotorDriven>(source: &Source) -> Result<Vec<Planned>, RecordError> {
     let (keys, roles) = (M::SPEC.plan, M::SPEC.roles);
-    let points = Plan { keys, roles, asks }.points(source, M::SPEC.name)?;
+    let points = Plan { roles, ..Plan::of(keys, asks) }.points(source, M::SPEC.name)?;
     Ok(points.into_iter().map(Planned::from).collect())
 }
 

@@ -115,8 +115,7 @@ pub trait MotorDriven: Clone + std::fmt::Debug + Send + Sync + 'static {
 
     /// The reference point.
     fn reference_point(&self, campaign: &Campaign) -> ReferencePoint {
-        let words = campaign.body.as_ref().and_then(|body| body.reference_point.clone());
-        ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() }
+        crate::joint::record::reference_point(campaign)
     }
 
     /// Findings about the runs, whichever the law.

@@ -2,7 +2,7 @@
 
 use froude_fit::select::aicc;
 use froude_records::campaign::{Campaign, Source};
-use froude_records::estimate::{self, Clusters, Diagnostics, Estimate, Frame, MethodUsed, Range};
+use froude_records::estimate::{self, Clusters, Diagnostics, Estimate, Range};
 use froude_records::run::Role;
 use indexmap::IndexMap;
 
@@ -74,17 +74,10 @@ pub fn estimate<M: MotorDriven>(
     });
     let mut notes = record::notes(fit, spec.loads);
     notes.extend(setup.method.notes(fitted));
+    let names: Vec<&str> = fit.unknowns.iter().map(|u| u.name.as_str()).collect();
+    let words = record::words(fit, setup.cycles, setup.harmonics, (&spec.motion, spec.loads), &setup.method.held());
     let named = if law == spec.law { String::new() } else { format!(" {law}") };
     Estimate {
-        id: format!("{}/{}{named}", source.name, spec.name),
-        source: source.name.clone(),
-        kind: source.kind.name().to_owned(),
-        method: MethodUsed {
-            name: spec.name.to_owned(),
-            version: 1,
-            words: record::words(fit, setup.cycles, setup.harmonics, (&spec.motion, spec.loads), &setup.method.held()),
-        },
-        frame: Frame::body(),
         point: setup.method.reference_point(campaign),
         law: setup.method.law_of_record(setup),
         refers_to: setup.method.refers_to(setup, &points),
@@ -93,13 +86,13 @@ pub fn estimate<M: MotorDriven>(
         dof: spec.loads.iter().map(|load: &Channel| (load.load.to_owned(), dof)).collect(),
         coefficients: record::coefficients(fit, &|name| !is_wanted(name)),
         derived: derived.iter().map(of_derived).collect(),
-        type_a: Some(record::type_a(fit)),
-        errors: record::errors(fit, campaign),
+        type_a: Some(record::type_a(&names, &fit.parts, record::scatter_of(fit))),
+        errors: record::errors(&fit.errors, campaign),
         validity: validity(fitted),
         diagnostics: Diagnostics { notes, ..Diagnostics::default() },
         recommended: of.is_some(),
         reason,
-        ..Estimate::default()
+        ..record::about((campaign, source), [&format!("{}{named}", spec.name), spec.name], words)
     }
 }
 

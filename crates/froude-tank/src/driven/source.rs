@@ -6,7 +6,6 @@ use froude_identify::method::{Declares, Found, MethodError, Need};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::significant;
-use froude_records::run::Role;
 use indexmap::IndexMap;
 
 use super::derived::{Derived, derived};
@@ -22,7 +21,7 @@ use crate::findings::warning;
 use crate::joint::JointFit;
 use crate::joint::findings::{contradicted, few_runs, misfit, of_motion, undetermined};
 use crate::log::TankLog;
-use crate::logs::{self, Logs, distinct};
+use crate::logs::{self, Logs, Wanted, distinct};
 use crate::long_logs::{self, LENGTHS, Lengths};
 use crate::matrix::CONFIGURATIONS;
 use crate::method::TankMethod;
@@ -63,11 +62,10 @@ pub(crate) fn identified<M: MotorDriven>(
         std::iter::once(spec.motion.name).chain(spec.loads.iter().map(|load| load.name)).collect();
     let words =
         channels.split_last().map_or_else(String::new, |(last, rest)| format!("time, {} and {last}", rest.join(", ")));
-    let roles = spec.roles.1;
-    let Logs { runs: logs, mut files, mut findings } =
-        logs::read_averaging(source.input.path(), spec.name, roles, &words, lengths, progress)?;
+    let wanted = Wanted { lengths, ..Wanted::of(spec.name, spec.roles.1, &words) };
+    let Logs { runs: logs, mut files, mut findings } = logs::read(source.input.path(), &wanted, progress)?;
     if spec.plan.iter().all(|key| key.name != CONFIGURATIONS) {
-        one_body(&logs)?;
+        logs::one_body(&logs)?;
     }
     let mut setups = setups::<M>(campaign, source, &logs::configurations(&logs), None)?;
     let stamps = |log, load: &Channel| logs::stamps_standard_s(log, [spec.motion.name, load.name]);
@@ -177,25 +175,6 @@ pub fn of_fit<M: MotorDriven>(fitted: &Fitted<'_, M>) -> Vec<Finding> {
     out.extend(setup.method.about_fit(fitted));
     out.extend(few_runs(fit));
     out
-}
-
-/// Refuses runs of different configurations, which have different coefficients.
-fn one_body(logs: &[TankLog]) -> Result<(), MethodError> {
-    let name = |log: &TankLog| log.log.meta.configuration.clone();
-    let of_body = || logs.iter().filter(|log| log.log.meta.role != Role::Tare);
-    let Some(first) = of_body().next() else { return Ok(()) };
-    match of_body().find(|log| name(log) != name(first)) {
-        None => Ok(()),
-        Some(other) => {
-            let what = format!(
-                "is of the configuration {:?} where {} is of {:?}; the coefficients are of one body: give each a folder and a [[source]] of its own",
-                name(other),
-                first.log.meta.id,
-                name(first)
-            );
-            Err(MethodError::input(&other.log.path, what))
-        }
-    }
 }
 
 /// A log as a run: its motion and loads, and the conditions that it was done in.

@@ -5,7 +5,7 @@
 
 use froude_identify::method::{Export, MethodError};
 use froude_identify::simulate::check_stated;
-use froude_records::campaign::{Campaign, SensorSpec, Source, Truth as Stated};
+use froude_records::campaign::{Campaign, SensorSpec, Source};
 use froude_records::run::Role;
 use froude_rig::steady::Reading;
 use froude_rig::swung::{SwungSensor, SwungTrace, log};
@@ -20,7 +20,7 @@ use super::spec::{Channel, Condition, Constant, Enters, Factor, Point};
 use crate::error::{TankError, undeclared};
 use crate::matrix::of_configurations;
 use crate::sensors::{Senses, of_sensor, seed_and_sensors};
-use crate::twin::{Column, Draws, Logged, seed_of, true_value};
+use crate::twin::{Column, Draws, Logged, seed_of, true_values, truths};
 
 /// Natural frequency of the twin's servo, rad/s, and its damping ratio: a joint module that overshoots a little.
 const SERVO: (f64, f64) = (30.0, 0.6);
@@ -56,13 +56,17 @@ impl Truth {
         setup.check(points).map_err(MethodError::refused)?;
         let coefficients = all.iter().map(|c| {
             let is_needed = points.iter().any(|point| point.role == c.role);
-            if is_needed { true_value(values, &c.name) } else { Ok(values.get(&c.name).copied().unwrap_or(0.0)) }
+            if is_needed {
+                true_values(values, [&c.name]).map(|[value]| value)
+            } else {
+                Ok(values.get(&c.name).copied().unwrap_or(0.0))
+            }
         });
         let constants = setup.constants.iter().map(|constant| {
             let stated = name_of(constant).and_then(|name| values.get(&name).copied());
             match constant.looked_for(points.iter().copied()) {
                 Some(unknown) if constant.known.is_none() && constant.otherwise.is_err() => {
-                    true_value(values, &unknown.name).map(Some)
+                    true_values(values, [&unknown.name]).map(|[value]| Some(value))
                 }
                 _ => Ok(stated),
             }
@@ -105,19 +109,8 @@ impl<M: MotorDriven> Twin<M> {
     pub fn of(campaign: &Campaign, source: &Source) -> Result<Self, MethodError> {
         let spec = M::SPEC;
         let planned = planned::<M>(source)?;
-        let (model, values, stated) = match campaign.simulate.as_ref().map(|s| (&s.truth, &s.stated)) {
-            Some((Stated::Coefficients { model, values }, stated)) => (model, values, stated),
-            found => {
-                let what = match found {
-                    None => "a twin needs [simulate]: seed, model, and the true coefficients".to_owned(),
-                    Some(_) => format!(
-                        "the twin of {} takes its truth from [simulate] model and [simulate.coefficients]; a record is not enough",
-                        spec.name
-                    ),
-                };
-                return Err(undeclared(campaign.path.display(), what));
-            }
-        };
+        let (model, values) = truths(campaign, spec.name)?;
+        let stated = campaign.simulate.as_ref().map_or(&[][..], |simulate| &simulate.stated);
         if !spec.law.is_empty() && model != spec.name {
             let what =
                 format!("[simulate] has model = {model:?}; {} has one law: write model = {:?}", spec.called, spec.name);

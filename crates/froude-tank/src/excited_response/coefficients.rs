@@ -24,7 +24,7 @@ use super::setup::{Setup, Shows, WaveRun};
 use super::wave::{ALIKE, Wave, turn};
 use super::window::window;
 use crate::error::TankError;
-use crate::joint::conclude;
+use crate::joint::{DeclaredError, part};
 
 /// Names of the two.
 pub const NAMES: [&str; 2] = ["A33", "B33"];
@@ -42,19 +42,6 @@ pub struct Used {
     pub wave: Wave,
     /// Its signal against that.
     pub response: Response,
-}
-
-/// A declared error of both coefficients.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DeclaredError {
-    /// What errs.
-    pub name: &'static str,
-    /// Its standard uncertainty.
-    pub standard: f64,
-    /// Degrees of freedom of that.
-    pub dof: f64,
-    /// What a unit of it does to A33 and B33.
-    pub sensitivity: [f64; 2],
 }
 
 /// What the runs of one wave give.
@@ -238,7 +225,12 @@ pub fn errors(x: c64, omega_rad_s: f64, setup: &Setup, shows: Shows) -> Vec<Decl
         Shows::Position => ("gain of the position", setup.position_relative),
         _ => ("gain of the acceleration", setup.acceleration_relative),
     };
-    let one = |name, standard, dof, sensitivity| DeclaredError { name, standard, dof, sensitivity };
+    let one = |name: &str, standard, dof, by: [f64; 2]| DeclaredError {
+        name: name.to_owned(),
+        standard,
+        dof,
+        sensitivity: by.to_vec(),
+    };
     let infinite = f64::INFINITY;
     [
         one("mass", setup.mass_kg.standard, setup.mass_kg.dof, [-1.0, 0.0]),
@@ -257,22 +249,15 @@ pub fn errors(x: c64, omega_rad_s: f64, setup: &Setup, shows: Shows) -> Vec<Decl
 pub fn scatter(is_held: bool, relative: f64, x: c64, omega_rad_s: f64, dof: f64) -> Part {
     let name = if is_held { "scatter of the force, body held" } else { "scatter of the motion, body free" };
     let size = relative * x.norm_sqr() / omega_rad_s.powi(2);
-    part(name, Kind::A, [[size / omega_rad_s.powi(2), 0.0], [0.0, size]], dof)
+    let variances = [size / omega_rad_s.powi(2), size];
+    let covariance = Mat::from_fn(2, 2, |i, j| if i == j { variances[i] } else { 0.0 });
+    Part { shared: "run", ..part(name, Kind::A, covariance, dof) }
 }
 
 /// The budget: scatter of held and of free runs, and what is declared.
 #[must_use]
 pub fn budget(scatter: [Part; 2], errors: &[DeclaredError]) -> Vec<Part> {
-    let declared = |e: &DeclaredError| {
-        let s = e.sensitivity.map(|s| s * e.standard);
-        part(e.name, Kind::B, [[s[0] * s[0], s[0] * s[1]], [s[1] * s[0], s[1] * s[1]]], e.dof)
-    };
-    scatter.into_iter().chain(errors.iter().map(declared)).collect()
-}
-
-fn part(name: &str, kind: Kind, covariance: [[f64; 2]; 2], dof: f64) -> Part {
-    let shared = if kind == Kind::A { "run" } else { "campaign" };
-    Part { shared, ..conclude::part(name, kind, Mat::from_fn(2, 2, |i, j| covariance[i][j]), dof) }
+    scatter.into_iter().chain(errors.iter().map(DeclaredError::part)).collect()
 }
 
 /// Mean response of some runs, with the variance of each of its components.

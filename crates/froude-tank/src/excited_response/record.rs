@@ -3,8 +3,7 @@
 use crate::names::EXCITED_RESPONSE;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{
-    Clusters, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, NamedCorrelation, Output, Range, ReferencePoint,
-    Status, TypeA,
+    Clusters, Diagnostics, Estimate, Law, Measured, NamedCorrelation, Output, Range, Status,
 };
 use froude_records::number;
 use indexmap::IndexMap;
@@ -12,7 +11,8 @@ use indexmap::IndexMap;
 use super::coefficients::{AtPeriod, NAMES, UNITS};
 use super::response::DOF;
 use super::setup::{Setup, WaveRun};
-use crate::joint::record::{by_part, coefficient, shared_error};
+use crate::joint::DeclaredError;
+use crate::joint::record::{about, by_part, coefficient, errors, type_a};
 
 /// What an estimate is made from beside its numbers.
 #[derive(Debug, Clone, Copy)]
@@ -46,19 +46,13 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
         let (value, combined) = (is_stated.then_some(at.values[j]), is_stated.then_some(at.combined[j]));
         (NAMES[j].to_owned(), coefficient(value, UNITS[j], status, combined))
     };
-    let scatter = || at.parts.iter().filter(|p| p.kind == froude_fit::budget::Kind::A);
-    let type_a = |i: usize, j: usize| scatter().map(|p| p.covariance[(i, j)]).sum::<f64>();
-    let dof = |j: usize| {
-        let entries: Vec<(f64, f64)> = scatter().map(|p| (p.covariance[(j, j)], p.dof[j])).collect();
-        Some(froude_fit::propagate::effective_dof(&entries)).filter(|d| d.is_finite())
-    };
+    let declared: Vec<DeclaredError> = at
+        .errors
+        .clone()
+        .into_iter()
+        .map(|error| DeclaredError { sensitivity: error.sensitivity[..stated].to_vec(), ..error })
+        .collect();
     let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
-    let refers_to = campaign.fluid.density_kg_m3.map(|value| ("density".to_owned(), measured(value, "kg/m^3")));
-    let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
-    let errors = at.errors.iter().map(|e| {
-        let key = format!("{}/{} {:e}", campaign.key, e.name, e.standard);
-        (key, shared_error(e.name, e.standard, e.dof, &e.sensitivity[..stated]))
-    });
     let samples = at.used().map(|used| used.response.rows.len()).sum();
     let period = format!("{:.3} s", at.period_s);
     let largest_correlation = at.is_declared.then(|| NamedCorrelation {
@@ -66,13 +60,10 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
         second: NAMES[1].to_owned(),
         value: at.correlation(),
     });
+    let lines = format!("power at {} lines beside the wave's frequency, and scatter of repeated runs", DOF / 2.0);
+    let type_a = type_a(&NAMES[..stated], &at.parts, lines);
+    let id = format!("{EXCITED_RESPONSE} at {period}");
     Estimate {
-        id: format!("{}/{EXCITED_RESPONSE} at {period}", source.name),
-        source: source.name.clone(),
-        kind: source.kind.name().to_owned(),
-        method: MethodUsed { name: EXCITED_RESPONSE.to_owned(), version: 1, words: method_words(at, setup) },
-        frame: Frame::body(),
-        point: ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() },
         law: Law {
             name: format!("added_mass_damping at {period}"),
             version: 1,
@@ -87,24 +78,18 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
                 ("restoring".to_owned(), measured(setup.restoring_n_m.value, "N/m")),
             ]),
         },
-        refers_to: refers_to.into_iter().collect(),
         n_observations: samples,
         clusters: Some(Clusters { by: "run".to_owned(), n: at.used().count() }),
-        dof: IndexMap::from([("f_z".to_owned(), dof(0))]),
+        dof: IndexMap::from([("f_z".to_owned(), type_a.dof[0])]),
         coefficients: [0, 1].map(of).into_iter().collect(),
-        type_a: Some(TypeA {
-            names: NAMES[..stated].iter().map(|name| (*name).to_owned()).collect(),
-            matrix: (0..stated).map(|i| (0..stated).map(|j| type_a(i, j)).collect()).collect(),
-            dof: (0..stated).map(dof).collect(),
-            kind: format!("power at {} lines beside the wave's frequency, and scatter of repeated runs", DOF / 2.0),
-        }),
-        errors: errors.collect(),
+        type_a: Some(type_a),
+        errors: errors(&declared, campaign),
         validity: validity(at, runs),
         diagnostics: Diagnostics { largest_correlation, notes: notes(at, stated), ..Diagnostics::default() },
         recommended: is_recommended,
         reason: is_recommended
             .then(|| "the period whose A33 is known best; each period has an estimate of its own".to_owned()),
-        ..Estimate::default()
+        ..about((campaign, source), [&id, EXCITED_RESPONSE], method_words(at, setup))
     }
 }
 

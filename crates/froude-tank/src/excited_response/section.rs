@@ -21,7 +21,6 @@ use froude_identify::declare::{Key, Kind, Range, Values, optional, required, usu
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
 use froude_records::campaign::Source;
-use froude_records::run::Role;
 use froude_records::section::Section;
 use froude_records::section_values::MOST_RUNS;
 use froude_records::units::Dimension;
@@ -159,7 +158,7 @@ pub fn setup_of(source: &Source) -> Result<Setup, MethodError> {
 ///
 /// [`RecordError`] with its place.
 pub fn plan(source: &Source) -> Result<Vec<Point>, RecordError> {
-    Plan { keys: PLAN, roles: ("", &[Role::Test]), asks }.points(source, EXCITED_RESPONSE)
+    Plan::of(PLAN, asks).points(source, EXCITED_RESPONSE)
 }
 
 /// Runs of a wave, and how long each lasts, s.

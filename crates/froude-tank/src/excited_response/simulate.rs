@@ -16,7 +16,7 @@ use super::section::{self, setup_of};
 use super::setup::{Setup, Shows, WaveRun};
 use crate::matrix::Point;
 use crate::sensors::{Senses, reading, seed_and_sensors};
-use crate::twin::{Column, Draws, Logged, seed_of, true_value, truths};
+use crate::twin::{Column, Draws, Logged, seed_of, true_values, truths};
 
 /// Speed of the twin's waves for the phase between wavemaker and body: they have come in by so many turns and a part, whose size does not matter.
 const PHASE_RAD: f64 = -0.7;
@@ -98,11 +98,8 @@ pub fn planned(waves: &[Point], setup: &Setup, [added_kg, damping_n_s_m]: [f64; 
 ///
 /// No `[simulate]`, a record instead of coefficients, a coefficient that is not stated.
 pub fn truth(campaign: &Campaign) -> Result<[f64; 2], MethodError> {
-    let instead = format!(
-        "the twin of {EXCITED_RESPONSE} takes its truth, A33 and B33, from [simulate.coefficients]; a record is not enough"
-    );
-    let (_, values) = truths(campaign, instead)?;
-    Ok([true_value(values, NAMES[0])?, true_value(values, NAMES[1])?])
+    let (_, values) = truths(campaign, EXCITED_RESPONSE)?;
+    true_values(values, NAMES)
 }
 
 /// Quantities of the sensors: wavemaker, force, acceleration.

@@ -14,7 +14,7 @@ use super::setup::{ACCELERATION, FORCE, POSITION, REFERENCE, Shows, WaveRun};
 use super::{findings, fit, page, plan, record, section, simulate};
 use crate::declared::check;
 use crate::log::TankLog;
-use crate::logs::{self, Logs, distinct};
+use crate::logs::{self, Logs, Wanted, distinct};
 use crate::method::TankMethod;
 
 const WORDS: &str =
@@ -39,8 +39,8 @@ fn identify(campaign: &Campaign, source: &Source, progress: &dyn Fn(&str)) -> Re
     let mut setup = setup_of(source)?;
     progress("reading the runs");
     let channels = "time, wavemaker, and force or acceleration";
-    let Logs { runs: logs, files, findings: mut said } =
-        logs::read(source.input.path(), EXCITED_RESPONSE, &[Role::Held, Role::Free], channels, progress)?;
+    let wanted = Wanted::of(EXCITED_RESPONSE, &[Role::Held, Role::Free], channels);
+    let Logs { runs: logs, files, findings: mut said } = logs::read(source.input.path(), &wanted, progress)?;
     // A camera beside accelerometers is compared, and its clock is no part of the result.
     let late = |log: &TankLog| {
         let is_compared = log.log.channels.keys().any(|name| name.starts_with(ACCELERATION));

@@ -14,14 +14,14 @@
 //!
 //! Bell & McCaffrey (2002) and MacKinnon, Nielsen & Webb (2023) (CR3); JCGM 100:2008 (GUM), 5.1 and G.4.
 
-use froude_fit::budget::{Kind, OUTSIDE_95, Part, Shape, combine};
+use froude_fit::budget::{Kind, OUTSIDE_95, Part, combine};
 use froude_fit::faer::Mat;
 use froude_fit::jackknife::{AtEqualErrors, at_equal_errors};
 use froude_fit::propagate::effective_dof;
 use froude_fit::{self as ls, Status};
 
 use super::solve::{Solved, values};
-use super::{DeclaredError, Equation, JointFit, Problem, Unknown};
+use super::{DeclaredError, Equation, JointFit, Problem, Unknown, part};
 use crate::between_runs::{BetweenRuns, between_runs};
 use crate::error::TankError;
 use crate::inverted::inverted;
@@ -48,7 +48,7 @@ impl<E: Equation> Problem<'_, E> {
             let sensitivity = (0..p).map(|j| moved(j) / standard).collect();
             errors.push(DeclaredError { name: input.name.clone(), standard, dof: input.declared.dof, sensitivity });
         }
-        let declared: Vec<Part> = errors.iter().map(part_of).collect();
+        let declared: Vec<Part> = errors.iter().map(DeclaredError::part).collect();
         // The regression takes priors at their stated variance; here they are lines of their own.
         let of_prior =
             |i: usize, j: usize| declared[..of_priors].iter().map(|part| part.covariance[(i, j)]).sum::<f64>();
@@ -186,27 +186,6 @@ fn together(first: &Part, other: &Part) -> Part {
 fn gram(design: &Mat<f64>, rows: std::ops::Range<usize>, columns: &[usize]) -> Mat<f64> {
     let product = |a: usize, b: usize| rows.clone().map(|i| design[(i, columns[a])] * design[(i, columns[b])]).sum();
     Mat::from_fn(columns.len(), columns.len(), product)
-}
-
-/// A line of the budget that all coefficients share.
-pub(crate) fn part(name: &str, kind: Kind, covariance: Mat<f64>, dof: f64) -> Part {
-    let p = covariance.nrows();
-    Part {
-        name: name.to_owned(),
-        shared: "campaign",
-        kind,
-        covariance,
-        dof: vec![dof; p],
-        shape: Shape::Normal,
-        in_scatter: false,
-        origin: None,
-    }
-}
-
-fn part_of(error: &DeclaredError) -> Part {
-    let p = error.sensitivity.len();
-    let moves = |j: usize| error.sensitivity[j] * error.standard;
-    part(&error.name, Kind::B, Mat::from_fn(p, p, |i, j| moves(i) * moves(j)), error.dof)
 }
 
 /// Coefficients without bounds.

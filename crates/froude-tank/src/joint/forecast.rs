@@ -17,9 +17,8 @@ use froude_fit::faer::Mat;
 use froude_fit::jackknife::{AtEqualErrors, at_equal_errors};
 use froude_records::campaign::SensorSpec;
 
-use super::conclude::part;
 use super::solve::over_first;
-use super::{Equation, Problem};
+use super::{Equation, Problem, part};
 use crate::error::TankError;
 use crate::inverted::inverted;
 use crate::noise::correlated;

@@ -1,10 +1,12 @@
 //! The parts of a record that follow from a joint fit alone.
 
 use froude_fit::Status as Found;
-use froude_fit::budget::{Combined, Part};
-use froude_fit::faer::Mat;
-use froude_records::campaign::Campaign;
-use froude_records::estimate::{Coefficient, ErrorKind, SharedError, Status, TypeA};
+use froude_fit::budget::{Combined, Kind, Part};
+use froude_fit::propagate::effective_dof;
+use froude_records::campaign::{Campaign, Source};
+use froude_records::estimate::{
+    Coefficient, ErrorKind, Estimate, Frame, Measured, MethodUsed, ReferencePoint, SharedError, Status, TypeA,
+};
 use froude_records::number;
 use indexmap::IndexMap;
 
@@ -39,35 +41,50 @@ pub(crate) fn coefficient(value: Option<f64>, unit: &str, status: Status, combin
     }
 }
 
-/// A declared error of one quantity as a record has it.
-pub(crate) fn shared_error(name: &str, standard: f64, dof: f64, sensitivity: &[f64]) -> SharedError {
-    SharedError {
-        name: name.to_owned(),
-        quantity: name.to_owned(),
-        kind: ErrorKind::B,
-        covariance: vec![vec![standard * standard]],
-        dof: Some(dof).filter(|d| d.is_finite()),
-        limits: None,
-        sensitivity: sensitivity.iter().map(|s| vec![*s]).collect(),
+/// The scatter of `names`, the first coefficients of a budget, with the degrees of freedom of its parts together.
+pub(crate) fn type_a(names: &[&str], budget: &[Part], kind: String) -> TypeA {
+    let scatter: Vec<&Part> = budget.iter().filter(|part| part.kind == Kind::A).collect();
+    let sum = |i: usize, j: usize| scatter.iter().map(|part| part.covariance[(i, j)]).sum::<f64>();
+    let dof = |j: usize| match scatter[..] {
+        [only] => only.dof[j],
+        _ => effective_dof(&scatter.iter().map(|part| (part.covariance[(j, j)], part.dof[j])).collect::<Vec<_>>()),
+    };
+    let all = || 0..names.len();
+    TypeA {
+        names: names.iter().map(|name| (*name).to_owned()).collect(),
+        matrix: all().map(|i| all().map(|j| sum(i, j)).collect()).collect(),
+        dof: all().map(|j| Some(dof(j)).filter(|dof| dof.is_finite())).collect(),
+        kind,
     }
 }
 
-/// Their scatter.
-pub(crate) fn type_a(fit: &JointFit) -> TypeA {
-    let (scatter, n) = (&fit.parts[0], fit.unknowns.len());
+/// What the scatter of a joint fit is that of.
+pub(crate) fn scatter_of(fit: &JointFit) -> String {
     let scaled = if fit.is_scaled { " over its mean at equal errors" } else { "" };
-    let rows = |m: &Mat<f64>| (0..n).map(|i| (0..n).map(|j| m[(i, j)]).collect()).collect();
-    TypeA {
-        names: fit.unknowns.iter().map(|u| u.name.clone()).collect(),
-        matrix: rows(&scatter.covariance),
-        dof: scatter.dof.iter().map(|d| Some(*d).filter(|d| d.is_finite())).collect(),
-        kind: format!(
-            "CR3{scaled}, {} {}s{}",
-            fit.clusters,
-            fit.by,
-            if fit.by == "cycle" && fit.has_runs { ", and variation of the drag from run to run" } else { "" }
-        ),
+    let runs = if fit.by == "cycle" && fit.has_runs { ", and variation of the drag from run to run" } else { "" };
+    format!("CR3{scaled}, {} {}s{runs}", fit.clusters, fit.by)
+}
+
+/// What every estimate of a method says of campaign and source; `of` is the end of its id, the name of the method, and what it did.
+pub(crate) fn about((campaign, source): (&Campaign, &Source), of: [&str; 2], words: String) -> Estimate {
+    let [id, method] = of;
+    let density = campaign.fluid.density_kg_m3.map(|value| Measured { value, unit: "kg/m^3".to_owned() });
+    Estimate {
+        id: format!("{}/{id}", source.name),
+        source: source.name.clone(),
+        kind: source.kind.name().to_owned(),
+        method: MethodUsed { name: method.to_owned(), version: 1, words },
+        frame: Frame::body(),
+        point: reference_point(campaign),
+        refers_to: density.map(|density| ("density".to_owned(), density)).into_iter().collect(),
+        ..Estimate::default()
     }
+}
+
+/// Where on the body the campaign says that loads act.
+pub(crate) fn reference_point(campaign: &Campaign) -> ReferencePoint {
+    let words = campaign.body.as_ref().and_then(|body| body.reference_point.clone());
+    ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() }
 }
 
 fn status(found: Found) -> Status {
@@ -83,12 +100,21 @@ fn status(found: Found) -> Status {
 }
 
 /// Declared errors by key: sources of the campaign that declare them alike have them in common.
-pub(crate) fn errors(fit: &JointFit, campaign: &Campaign) -> IndexMap<String, SharedError> {
+pub(crate) fn errors(errors: &[DeclaredError], campaign: &Campaign) -> IndexMap<String, SharedError> {
     let one = |error: &DeclaredError| {
         let key = format!("{}/{} {:e}", campaign.key, error.name, error.standard);
-        (key, shared_error(&error.name, error.standard, error.dof, &error.sensitivity))
+        let shared = SharedError {
+            name: error.name.clone(),
+            quantity: error.name.clone(),
+            kind: ErrorKind::B,
+            covariance: vec![vec![error.standard * error.standard]],
+            dof: Some(error.dof).filter(|dof| dof.is_finite()),
+            limits: None,
+            sensitivity: error.sensitivity.iter().map(|s| vec![*s]).collect(),
+        };
+        (key, shared)
     };
-    fit.errors.iter().map(one).collect()
+    errors.iter().map(one).collect()
 }
 
 /// The budget of each coefficient, in sentences, and what the samples are worth.

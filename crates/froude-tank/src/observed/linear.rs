@@ -16,7 +16,7 @@ use froude_records::campaign::{BudgetEntry, SensorSpec, Shared};
 use super::settings::{Plan, loads_at};
 use crate::error::undeclared;
 use crate::inverted::inverted;
-use crate::joint::conclude::part;
+use crate::joint::part;
 use crate::plan::Expected;
 
 /// What a taper over a window costs in independent samples ([`froude_fit::series`]).

@@ -14,7 +14,7 @@ use super::read::{check, read, reduced, run};
 use super::reduced::Reduced;
 use super::{plan, twin};
 use crate::error::{TankError, undeclared};
-use crate::logs::{self, Logs};
+use crate::logs::{self, Logs, Wanted};
 use crate::method::TankMethod;
 use crate::steady::row::{Row, table};
 use crate::steady::walls::Walls;
@@ -53,7 +53,7 @@ fn identified<M: Observed>(
     let method = read::<M>(campaign, source)?;
     progress("reading the runs");
     let Logs { runs: logs, mut files, mut findings } =
-        logs::read(source.input.path(), spec.name, spec.roles, spec.reads, progress)?;
+        logs::read(source.input.path(), &Wanted::of(spec.name, spec.roles, spec.reads), progress)?;
     let method = method.beside(&logs)?;
     progress("reducing the runs");
     let (mut rows, mut observed, mut others) = (Vec::new(), Vec::new(), Vec::new());

@@ -47,7 +47,7 @@ pub struct Spec {
 impl Spec {
     /// Its plan: what is simulated is as long as its rig makes it.
     pub(super) const fn planned(&self) -> Plan {
-        Plan { keys: self.plan, roles: ("", &[Role::Test]), asks: |_| (1, 0.0) }
+        Plan::of(self.plan, |_| (1, 0.0))
     }
 
     /// Texts that fit most methods; the others have to be stated.

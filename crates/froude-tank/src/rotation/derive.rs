@@ -157,7 +157,7 @@ mod tests {
 
     use super::*;
     use crate::driven::derived::derived;
-    use crate::joint::conclude::part;
+    use crate::joint::part;
     use crate::joint::{JointFit, Unknown};
     use froude_fit::budget::{Kind, OUTSIDE_95, combine};
 

@@ -5,7 +5,7 @@ use froude_fit::budget::{OUTSIDE_95, Uncertain, combine};
 use froude_fit::coverage::{Count, z_limit};
 use froude_tank::decay::axis::Motion;
 use froude_tank::decay::releases::Logged;
-use froude_tank::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method, Restoring, envelope, output_error};
+use froude_tank::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method, envelope, output_error};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
@@ -113,7 +113,9 @@ fn what_inertia_and_stiffness_do_is_exact() {
     let first = both(&logged, &setup());
     let (dm, dc) = (0.3, 2.0);
     for (fit, base) in both(&logged, &declared(12.0 + dm, 180.0 + dc)).iter().zip(&first) {
-        let expected = std::array::from_fn(|j| base.values[j] + base.by_inertia[j] * dm + base.by_stiffness[j] * dc);
+        let expected = std::array::from_fn(|j| {
+            base.values[j] + base.errors[0].sensitivity[j] * dm + base.errors[1].sensitivity[j] * dc
+        });
         assert_near(fit.values, expected, 1e-7, fit.method.name());
     }
 }
@@ -313,12 +315,9 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
                 means[m][j] += error / n as f64;
                 squares[m][j] += error * error / n as f64;
                 // To first order; `what_inertia_and_stiffness_do_is_exact` says that this is all.
-                let off = error + fit.by_inertia[j] * dm + fit.by_stiffness[j] * dc;
-                let with = DecayFit {
-                    inertia: Uncertain::new(12.0, 0.06),
-                    restoring: Restoring::Spring(Uncertain::new(180.0, 0.54)),
-                    ..fit.clone()
-                };
+                let off = error + fit.errors[0].sensitivity[j] * dm + fit.errors[1].sensitivity[j] * dc;
+                let mut with = fit.clone();
+                (with.errors[0].standard, with.errors[1].standard) = (0.06, 0.54);
                 for (b, (fit, error)) in [(&fit, error), (&with, off)].into_iter().enumerate() {
                     let [low, high] = combine(&fit.budget(), j, OUTSIDE_95).arms;
                     counts[b][m][j].add(-high <= error && error <= low);

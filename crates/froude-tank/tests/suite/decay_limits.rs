@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use froude_fit::budget::Uncertain;
 use froude_records::campaign::SensorSpec;
-use froude_rig::decay::Release;
+use froude_records::run::Role;
 use froude_tank::decay::axis::Motion;
 use froude_tank::decay::forecast::{forecast, peaks_of};
-use froude_tank::decay::releases::Logged;
-use froude_tank::decay::releases::{Planned, simulated};
+use froude_tank::decay::releases::{Logged, simulated};
+use froude_tank::decay::section::Point;
 use froude_tank::decay::{DecayError, DecayRun, DecaySetup, DecayWindow, Restoring, envelope, output_error};
 
 /// The snake robot Mamba, H1LT on a rod of 0.476 m: A = 1.277 · 1025 · 1.2723e-3 r², the drag of the paper's f4 in the circulation tank.
@@ -41,9 +41,14 @@ fn sensors(times: f64) -> Vec<SensorSpec> {
     vec![SensorSpec { quantity, noise, ..SensorSpec::default() }]
 }
 
-fn plan(releases: usize) -> Vec<Planned> {
-    let release = Release { displacement: 30.0_f64.to_radians(), held_s: 1.0, free_s: 20.0 };
-    let one = |i| Planned { id: format!("{:03}", i + 1), configuration: "H1LT".to_owned(), release, rate_hz: 100.0 };
+fn plan(releases: usize) -> Vec<Point> {
+    let conditions = [("angle", 30.0_f64.to_radians()), ("held", 1.0), ("duration", 20.0), ("rate", 100.0)];
+    let one = |i| Point {
+        id: format!("{:03}", i + 1),
+        role: Role::Decay,
+        configuration: "H1LT".to_owned(),
+        conditions: conditions.into_iter().collect(),
+    };
     (0..releases).map(one).collect()
 }
 

@@ -9,7 +9,7 @@ use froude::fit::coverage::Count;
 use froude::methods::tank::decay::axis::Motion;
 use froude::methods::tank::decay::forecast::{Forecast, forecast, peaks_of};
 use froude::methods::tank::decay::releases::Logged;
-use froude::methods::tank::decay::releases::{planned, simulated, truth_of};
+use froude::methods::tank::decay::releases::{simulated, truth_of};
 use froude::methods::tank::decay::section::plan;
 use froude::methods::tank::decay::source::declared;
 use froude::methods::tank::decay::{DecayFit, DecayRun, DecaySetup, Method, envelope, output_error};
@@ -107,7 +107,7 @@ pub fn mamba(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<d
     let source = &campaign.sources[0];
     let setup = declared(source)?;
     let truth = truth_of(&campaign, setup.axis)?;
-    let planned = planned(&plan(source)?);
+    let planned = plan(source)?;
     let sensors = campaign.simulate.as_ref().map_or(&[] as &[_], |s| s.sensors.as_slice());
     let loud = |times: f64, correlation_s: Option<f64>| -> (DecaySetup, Vec<SensorSpec>) {
         let mut setup = setup;
