@@ -96,7 +96,11 @@ impl Plan {
                 Kind::Count(_) if name == "repeats" => repeats = values.need(name, values.count(name))?,
                 Kind::Axis(_) | Kind::Frequency => {
                     let put = |point: &mut Point, value: &f64| point.conditions.extend([(name, *value)]);
-                    points = with_each(&points, &values.numbers(name), put);
+                    let numbers = values.numbers(name);
+                    // Of two axes that exclude each other one is missing.
+                    if !numbers.is_empty() {
+                        points = with_each(&points, &numbers, put);
+                    }
                 }
                 Kind::Count(_) | Kind::Whole | Kind::Quantity(_) | Kind::Number => {
                     let is_count = matches!(key.kind, Kind::Count(_) | Kind::Whole);

@@ -32,7 +32,7 @@ use froude_identify::declare::Values;
 use froude_identify::method::{MethodError, Need};
 use froude_records::RecordError;
 use froude_records::block::{Digits, ResultColumn, TableBuilder};
-use froude_records::estimate::{Law, Measured, Output};
+use froude_records::estimate::{Law, Measured};
 use froude_records::finding::Finding;
 use froude_records::run::Role;
 use froude_records::table::links_of_configuration;
@@ -327,22 +327,17 @@ impl MotorDriven for Oscillation {
     fn law_of_record(&self, _: &Setup<Self>) -> Law {
         let formula = self.drag.law.texts.get(LOAD).map(|text| format!("{text} - {ADDED}*density*volume*v_y_dot"));
         let channels = self.drag.law.channels().into_iter().chain(["v_y_dot", "density", "volume"]);
-        let constants = self.bodies.iter().map(|body| {
-            let volume = Measured { value: body.reference_volume_m3, unit: "m^3".to_owned() };
-            (of_body("volume", "_", &body.name), volume)
-        });
-        Law {
-            name: format!("added_mass_{}", self.law()),
-            version: 1,
-            inputs: channels.map(|name| (name.to_owned(), unit_of(name).to_owned())).collect(),
-            outputs: IndexMap::from([(LOAD.to_owned(), Output { unit: "N".to_owned(), formula })]),
-            constants: constants.collect(),
-        }
+        let constants = self
+            .bodies
+            .iter()
+            .map(|body| (of_body("volume", "_", &body.name), Measured::of(body.reference_volume_m3, "m^3")));
+        let inputs = channels.map(|name| (name, unit_of(name)));
+        let law = Law::of(format!("added_mass_{}", self.law()), inputs).giving(LOAD, "N", formula);
+        Law { constants: constants.collect(), ..law }
     }
 
     fn refers_to(&self, setup: &Setup<Self>, _: &[&Point]) -> IndexMap<String, Measured> {
-        let measured =
-            |name: &str, value: f64, unit: &str| (name.to_owned(), Measured { value, unit: unit.to_owned() });
+        let measured = |name: &str, value: f64, unit: &str| (name.to_owned(), Measured::of(value, unit));
         let density = setup.known("density").map(|known| measured("density", known.value, "kg/m^3"));
         let volume = match (self.link_volume_m3, self.bodies.as_slice()) {
             (Some(volume), _) => Some(measured("link_volume", volume, "m^3")),

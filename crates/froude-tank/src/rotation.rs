@@ -33,7 +33,7 @@ use froude_identify::method::{MethodError, Need};
 use froude_records::RecordError;
 use froude_records::block::{Block, Digits, ResultColumn, TableBuilder};
 use froude_records::campaign::Campaign;
-use froude_records::estimate::{Law, Measured, Output, ReferencePoint};
+use froude_records::estimate::{Law, Measured, ReferencePoint};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::significant;
 use froude_records::run::Role;
@@ -283,16 +283,9 @@ impl MotorDriven for Rotation {
         let unit = |dimension| Unit::si(dimension).text;
         let [l1, l2, l3] = LAMBDAS;
         let formula = Some(format!("-{l1}*w_z_dot - {l2}*w_z - {l3}*w_z*abs(w_z)"));
-        Law {
-            name: LAW.to_owned(),
-            version: 1,
-            inputs: IndexMap::from([
-                ("w_z".to_owned(), unit(Dimension::ANGULAR_SPEED)),
-                ("w_z_dot".to_owned(), unit(Dimension::ANGULAR_ACCELERATION)),
-            ]),
-            outputs: IndexMap::from([("m_z".to_owned(), Output { unit: unit(Dimension::MOMENT), formula })]),
-            constants: IndexMap::new(),
-        }
+        let inputs = [("w_z", Dimension::ANGULAR_SPEED), ("w_z_dot", Dimension::ANGULAR_ACCELERATION)];
+        let inputs = inputs.map(|(name, dimension)| (name, unit(dimension)));
+        Law::of(LAW, inputs).giving("m_z", unit(Dimension::MOMENT), formula)
     }
 
     fn refers_to(&self, setup: &Setup<Self>, _: &[&Point]) -> IndexMap<String, Measured> {
@@ -305,8 +298,7 @@ impl MotorDriven for Rotation {
                 ("v_ref", derive::V_REF_M_S, "m/s"),
             ]
         });
-        let measured =
-            |(name, value, unit): (&str, f64, &str)| (name.to_owned(), Measured { value, unit: unit.to_owned() });
+        let measured = |(name, value, unit): (&str, f64, &str)| (name.to_owned(), Measured::of(value, unit));
         density.into_iter().chain(of_link).map(measured).collect()
     }
 

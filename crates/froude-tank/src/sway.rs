@@ -20,7 +20,7 @@ mod keys;
 
 use froude_identify::method::{MethodError, Need};
 use froude_records::block::{Block, Digits, ResultColumn, TableBuilder};
-use froude_records::estimate::{Law, Measured, Output};
+use froude_records::estimate::{Law, Measured};
 use froude_records::finding::Finding;
 use froude_records::run::Role;
 use froude_records::units::{Dimension, Unit};
@@ -244,31 +244,20 @@ impl MotorDriven for Sway {
 
     fn law_of_record(&self, _: &Setup<Self>) -> Law {
         let unit = |dimension| Unit::si(dimension).text;
-        let output = |dimension, added: &str, damping: &str| Output {
-            unit: unit(dimension),
-            formula: Some(format!("{added}*v_y_dot + {damping}*v_y")),
-        };
-        Law {
-            name: SWAY.to_owned(),
-            version: 1,
-            inputs: IndexMap::from([
-                ("v_y".to_owned(), unit(Dimension::SPEED)),
-                ("v_y_dot".to_owned(), unit(Dimension::ACCELERATION)),
-            ]),
-            outputs: IndexMap::from([
-                ("f_y".to_owned(), output(Dimension::FORCE, "Y_v_dot", "Y_v")),
-                ("m_z".to_owned(), output(Dimension::MOMENT, "N_v_dot", "N_v")),
-            ]),
-            constants: IndexMap::new(),
-        }
+        let inputs = [("v_y", unit(Dimension::SPEED)), ("v_y_dot", unit(Dimension::ACCELERATION))];
+        let formula = |letter: &str| Some(format!("{letter}_v_dot*v_y_dot + {letter}_v*v_y"));
+        Law::of(SWAY, inputs).giving("f_y", unit(Dimension::FORCE), formula("Y")).giving(
+            "m_z",
+            unit(Dimension::MOMENT),
+            formula("N"),
+        )
     }
 
     fn refers_to(&self, setup: &Setup<Self>, runs: &[&Point]) -> IndexMap<String, Measured> {
         let speed = Some(("speed", mean_speed(runs), "m/s"));
         let density = setup.known("density").map(|known| ("density", known.value, "kg/m^3"));
         let length = self.length_m.map(|length| ("length", length, "m"));
-        let measured =
-            |(name, value, unit): (&str, f64, &str)| (name.to_owned(), Measured { value, unit: unit.to_owned() });
+        let measured = |(name, value, unit): (&str, f64, &str)| (name.to_owned(), Measured::of(value, unit));
         density.into_iter().chain(length).chain(speed).map(measured).collect()
     }
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use froude_records::campaign::{BoundsSpec, Campaign, Identify, Source};
 use froude_records::estimate::{
-    Clusters, Diagnostics, Estimate, Law, Measured, Output, Range as Stated, ReferencePoint, Status,
+    Clusters, Diagnostics, Estimate, Law, Measured, Range as Stated, ReferencePoint, Status,
 };
 use froude_records::finding::Finding;
 use froude_records::texts::Texts;
@@ -14,10 +14,11 @@ use indexmap::IndexMap;
 use super::fit::{DecayFit, HalfCycle};
 use crate::findings::warning;
 use crate::joint::DeclaredError;
-use crate::joint::record::{about, by_part, coefficient, errors, type_a};
+use crate::joint::record::{about, by_part, errors, type_a};
 use froude_identify::IdentifyError;
 use froude_identify::dataset::Dataset;
 use froude_identify::law::ForceLaw;
+use froude_identify::record::coefficient;
 use froude_identify::regression::{ModelFit, Settings, regress};
 use froude_identify::selection::{Recommendation, leave_one_out};
 use froude_identify::source::SourceResult;
@@ -137,10 +138,14 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
     let named: Vec<(&str, &str)> = fit.names.iter().map(String::as_str).zip(units).collect();
     let budget = fit.budget();
     let notes = by_part(&budget, &named, 3);
-    let range = |[low, high]: [f64; 2], unit: &str| Stated { low, high, unit: unit.to_owned() };
     let is_rotation = fit.axis.is_rotation();
     let [inertia, stiffness] = if is_rotation { ["kg*m^2", "N*m"] } else { ["kg", "N/m"] };
-    let constant = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
+    let constants = [
+        ("inertia", Measured::of(fit.inertia.value, inertia)),
+        ("stiffness", Measured::of(fit.restoring.stiffness(), stiffness)),
+    ];
+    let inputs = [(velocity.clone(), speed), (format!("{velocity}_dot"), acceleration)];
+    let law = Law::of(LAW, inputs).giving(&load, force, Some(formula));
     let names = fit.names.each_ref().map(String::as_str);
     let type_a = fit.type_a.as_ref().map(|a| type_a(&names, &budget, a.kind.clone()));
     let declared: Vec<DeclaredError> = fit.errors.iter().filter(|error| error.standard > 0.0).cloned().collect();
@@ -153,26 +158,17 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
         } else {
             about.point.clone()
         },
-        law: Law {
-            name: LAW.to_owned(),
-            version: 1,
-            inputs: IndexMap::from([(velocity.clone(), speed), (format!("{velocity}_dot"), acceleration)]),
-            outputs: IndexMap::from([(load.clone(), Output { unit: force, formula: Some(formula) })]),
-            constants: IndexMap::from([
-                ("inertia".to_owned(), constant(fit.inertia.value, inertia)),
-                ("stiffness".to_owned(), constant(fit.restoring.stiffness(), stiffness)),
-            ]),
-        },
+        law: Law { constants: constants.into_iter().map(|(name, of)| (name.to_owned(), of)).collect(), ..law },
         n_observations: fit.rows.len(),
-        clusters: Some(Clusters { by: "run".to_owned(), n: fit.runs.len() }),
+        clusters: Some(Clusters::of("run", fit.runs.len())),
         dof: type_a.iter().map(|a| (load.clone(), a.dof[1])).collect(),
         coefficients: coefficients.collect(),
         errors: type_a.as_ref().map(|_| errors(&declared, campaign)).unwrap_or_default(),
         type_a,
         validity: IndexMap::from([
-            ("speed".to_owned(), range(fit.range.speed, if fit.axis.is_rotation() { "rad/s" } else { "m/s" })),
-            ("amplitude".to_owned(), range(fit.range.amplitude, fit.axis.position_unit())),
-            ("period".to_owned(), range([fit.range.period_s; 2], "s")),
+            ("speed".to_owned(), Stated::of(fit.range.speed, if fit.axis.is_rotation() { "rad/s" } else { "m/s" })),
+            ("amplitude".to_owned(), Stated::of(fit.range.amplitude, fit.axis.position_unit())),
+            ("period".to_owned(), Stated::of([fit.range.period_s; 2], "s")),
         ]),
         diagnostics: Diagnostics { notes, ..Diagnostics::default() },
         recommended,

@@ -82,7 +82,7 @@ pub fn estimate<M: MotorDriven>(
         law: setup.method.law_of_record(setup),
         refers_to: setup.method.refers_to(setup, &points),
         n_observations: fit.samples,
-        clusters: Some(Clusters { by: fit.by.to_owned(), n: fit.clusters }),
+        clusters: Some(Clusters::of(fit.by, fit.clusters)),
         dof: spec.loads.iter().map(|load: &Channel| (load.load.to_owned(), dof)).collect(),
         coefficients: record::coefficients(fit, &|name| !is_wanted(name)),
         derived: derived.iter().map(of_derived).collect(),
@@ -101,8 +101,7 @@ fn validity<M: MotorDriven>(fitted: &Fitted<'_, M>) -> IndexMap<String, Range> {
     let spec = M::SPEC;
     let mut out: IndexMap<String, Range> = IndexMap::new();
     let mut take = |name: &str, value: f64, unit: &str| {
-        let range = out.entry(name.to_owned()).or_insert(Range { low: value, high: value, unit: unit.to_owned() });
-        (range.low, range.high) = (range.low.min(value), range.high.max(value));
+        out.entry(name.to_owned()).or_insert_with(|| Range::of([value; 2], unit)).include([value; 2]);
     };
     for (run, motion) in fitted.runs.iter().zip(fitted.motions).filter(|(run, _)| run.point.role == Role::Test) {
         for condition in spec.conditions {

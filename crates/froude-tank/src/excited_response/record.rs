@@ -2,9 +2,7 @@
 
 use crate::names::EXCITED_RESPONSE;
 use froude_records::campaign::{Campaign, Source};
-use froude_records::estimate::{
-    Clusters, Diagnostics, Estimate, Law, Measured, NamedCorrelation, Output, Range, Status,
-};
+use froude_records::estimate::{Clusters, Diagnostics, Estimate, Law, Measured, NamedCorrelation, Range, Status};
 use froude_records::number;
 use indexmap::IndexMap;
 
@@ -12,7 +10,8 @@ use super::coefficients::{AtPeriod, NAMES, UNITS};
 use super::response::DOF;
 use super::setup::{Setup, WaveRun};
 use crate::joint::DeclaredError;
-use crate::joint::record::{about, by_part, coefficient, errors, type_a};
+use crate::joint::record::{about, by_part, errors, type_a};
+use froude_identify::record::coefficient;
 
 /// What an estimate is made from beside its numbers.
 #[derive(Debug, Clone, Copy)]
@@ -52,7 +51,6 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
         .into_iter()
         .map(|error| DeclaredError { sensitivity: error.sensitivity[..stated].to_vec(), ..error })
         .collect();
-    let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
     let samples = at.used().map(|used| used.response.rows.len()).sum();
     let period = format!("{:.3} s", at.period_s);
     let largest_correlation = at.is_declared.then(|| NamedCorrelation {
@@ -63,23 +61,18 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
     let lines = format!("power at {} lines beside the wave's frequency, and scatter of repeated runs", DOF / 2.0);
     let type_a = type_a(&NAMES[..stated], &at.parts, lines);
     let id = format!("{EXCITED_RESPONSE} at {period}");
+    let inputs = [("v_z", "m/s"), ("v_z_dot", "m/s^2")];
+    let formula = Some("-A33*v_z_dot - B33*v_z".to_owned());
+    let law = Law::of(format!("added_mass_damping at {period}"), inputs).giving("f_z", "N", formula);
+    let constants = [
+        ("omega", Measured::of(at.omega_rad_s, "rad/s")),
+        ("mass", Measured::of(setup.mass_kg.value, "kg")),
+        ("restoring", Measured::of(setup.restoring_n_m.value, "N/m")),
+    ];
     Estimate {
-        law: Law {
-            name: format!("added_mass_damping at {period}"),
-            version: 1,
-            inputs: IndexMap::from([("v_z".to_owned(), "m/s".to_owned()), ("v_z_dot".to_owned(), "m/s^2".to_owned())]),
-            outputs: IndexMap::from([(
-                "f_z".to_owned(),
-                Output { unit: "N".to_owned(), formula: Some("-A33*v_z_dot - B33*v_z".to_owned()) },
-            )]),
-            constants: IndexMap::from([
-                ("omega".to_owned(), measured(at.omega_rad_s, "rad/s")),
-                ("mass".to_owned(), measured(setup.mass_kg.value, "kg")),
-                ("restoring".to_owned(), measured(setup.restoring_n_m.value, "N/m")),
-            ]),
-        },
+        law: Law { constants: constants.into_iter().map(|(name, of)| (name.to_owned(), of)).collect(), ..law },
         n_observations: samples,
-        clusters: Some(Clusters { by: "run".to_owned(), n: at.used().count() }),
+        clusters: Some(Clusters::of("run", at.used().count())),
         dof: IndexMap::from([("f_z".to_owned(), type_a.dof[0])]),
         coefficients: [0, 1].map(of).into_iter().collect(),
         type_a: Some(type_a),
@@ -110,16 +103,15 @@ fn method_words(at: &AtPeriod, setup: &Setup) -> String {
 }
 
 fn validity(at: &AtPeriod, runs: &[WaveRun<'_>]) -> IndexMap<String, Range> {
-    let range = |low: f64, high: f64, unit: &str| Range { low, high, unit: unit.to_owned() };
-    let mut out = IndexMap::from([("period".to_owned(), range(at.period_s, at.period_s, "s"))]);
+    let mut out = IndexMap::from([("period".to_owned(), Range::of([at.period_s; 2], "s"))]);
     let w = at.omega_rad_s;
     let amplitudes = at.free.iter().map(|used| {
         let size = used.response.amplitude;
         if runs[used.run].shows == super::setup::Shows::Acceleration { size / (w * w) } else { size }
     });
     let (low, high) = amplitudes.fold((f64::INFINITY, 0.0_f64), |(low, high), z| (low.min(z), high.max(z)));
-    out.insert("amplitude".to_owned(), range(low, high, "m"));
-    out.insert("speed".to_owned(), range(w * low, w * high, "m/s"));
+    out.insert("amplitude".to_owned(), Range::of([low, high], "m"));
+    out.insert("speed".to_owned(), Range::of([w * low, w * high], "m/s"));
     out
 }
 

@@ -1,11 +1,11 @@
 //! The parts of a record that follow from a joint fit alone.
 
-use froude_fit::Status as Found;
-use froude_fit::budget::{Combined, Kind, Part};
+use froude_fit::budget::{Kind, Part};
 use froude_fit::propagate::effective_dof;
+use froude_identify::record::{coefficient, status};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{
-    Coefficient, ErrorKind, Estimate, Frame, Measured, MethodUsed, ReferencePoint, SharedError, Status, TypeA,
+    Coefficient, Estimate, Frame, Measured, MethodUsed, ReferencePoint, SharedError, TypeA,
 };
 use froude_records::number;
 use indexmap::IndexMap;
@@ -23,24 +23,6 @@ pub(crate) fn coefficients(fit: &JointFit, is_nuisance: &dyn Fn(&str) -> bool) -
     fit.unknowns.iter().map(one).collect()
 }
 
-/// A coefficient as a record has it.
-pub(crate) fn coefficient(value: Option<f64>, unit: &str, status: Status, combined: Option<Combined>) -> Coefficient {
-    Coefficient {
-        label: None,
-        value,
-        unit: unit.to_owned(),
-        status,
-        nuisance: false,
-        standard_uncertainty: combined.map(|c| c.standard),
-        type_a: combined.map(|c| c.type_a),
-        type_b: combined.map(|c| c.type_b),
-        interval_95: value.zip(combined).map(|(value, c)| c.interval(value)),
-        effective_dof: combined.map(|c| c.dof).filter(|d| d.is_finite()),
-        unconstrained: None,
-        range_95: None,
-    }
-}
-
 /// The scatter of `names`, the first coefficients of a budget, with the degrees of freedom of its parts together.
 pub(crate) fn type_a(names: &[&str], budget: &[Part], kind: String) -> TypeA {
     let scatter: Vec<&Part> = budget.iter().filter(|part| part.kind == Kind::A).collect();
@@ -50,12 +32,9 @@ pub(crate) fn type_a(names: &[&str], budget: &[Part], kind: String) -> TypeA {
         _ => effective_dof(&scatter.iter().map(|part| (part.covariance[(j, j)], part.dof[j])).collect::<Vec<_>>()),
     };
     let all = || 0..names.len();
-    TypeA {
-        names: names.iter().map(|name| (*name).to_owned()).collect(),
-        matrix: all().map(|i| all().map(|j| sum(i, j)).collect()).collect(),
-        dof: all().map(|j| Some(dof(j)).filter(|dof| dof.is_finite())).collect(),
-        kind,
-    }
+    let matrix = all().map(|i| all().map(|j| sum(i, j)).collect()).collect();
+    let dof: Vec<f64> = all().map(dof).collect();
+    TypeA::of(names.iter().map(|name| (*name).to_owned()).collect(), matrix, &dof, kind)
 }
 
 /// What the scatter of a joint fit is that of.
@@ -68,12 +47,12 @@ pub(crate) fn scatter_of(fit: &JointFit) -> String {
 /// What every estimate of a method says of campaign and source; `of` is the end of its id, the name of the method, and what it did.
 pub(crate) fn about((campaign, source): (&Campaign, &Source), of: [&str; 2], words: String) -> Estimate {
     let [id, method] = of;
-    let density = campaign.fluid.density_kg_m3.map(|value| Measured { value, unit: "kg/m^3".to_owned() });
+    let density = campaign.fluid.density_kg_m3.map(|value| Measured::of(value, "kg/m^3"));
     Estimate {
         id: format!("{}/{id}", source.name),
         source: source.name.clone(),
         kind: source.kind.name().to_owned(),
-        method: MethodUsed { name: method.to_owned(), version: 1, words },
+        method: MethodUsed::of(method, words),
         frame: Frame::body(),
         point: reference_point(campaign),
         refers_to: density.map(|density| ("density".to_owned(), density)).into_iter().collect(),
@@ -83,36 +62,15 @@ pub(crate) fn about((campaign, source): (&Campaign, &Source), of: [&str; 2], wor
 
 /// Where on the body the campaign says that loads act.
 pub(crate) fn reference_point(campaign: &Campaign) -> ReferencePoint {
-    let words = campaign.body.as_ref().and_then(|body| body.reference_point.clone());
-    ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() }
-}
-
-fn status(found: Found) -> Status {
-    match found {
-        Found::Free => Status::Free,
-        Found::AtBound => Status::AtBound,
-        Found::Fixed => Status::Fixed,
-        Found::Excluded => Status::Excluded,
-        Found::Prior => Status::Prior,
-        Found::Undetermined => Status::Undetermined,
-        Found::BoundContradicted => Status::BoundContradicted,
-    }
+    ReferencePoint::stated(campaign.body.as_ref().and_then(|body| body.reference_point.clone()))
 }
 
 /// Declared errors by key: sources of the campaign that declare them alike have them in common.
 pub(crate) fn errors(errors: &[DeclaredError], campaign: &Campaign) -> IndexMap<String, SharedError> {
     let one = |error: &DeclaredError| {
         let key = format!("{}/{} {:e}", campaign.key, error.name, error.standard);
-        let shared = SharedError {
-            name: error.name.clone(),
-            quantity: error.name.clone(),
-            kind: ErrorKind::B,
-            covariance: vec![vec![error.standard * error.standard]],
-            dof: Some(error.dof).filter(|dof| dof.is_finite()),
-            limits: None,
-            sensitivity: error.sensitivity.iter().map(|s| vec![*s]).collect(),
-        };
-        (key, shared)
+        let slopes = error.sensitivity.iter().copied();
+        (key, SharedError::declared([&error.name, &error.name], error.standard, error.dof, slopes))
     };
     errors.iter().map(one).collect()
 }
