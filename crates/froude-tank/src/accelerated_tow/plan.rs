@@ -14,18 +14,20 @@ use froude_fit::series::taper;
 use froude_identify::method::{MethodError, Prospect};
 use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, SensorSpec, Source};
+use froude_records::run::Role;
 use froude_records::text::counted;
+use froude_rig::accelerated_tow::Profile;
 
 use super::law::names;
 use super::reduce::reduce;
 use super::rows::{Rows, row_errors, sample_s, window};
-use super::section;
-use super::setup::{Setup, declared, no_mass, setup_of};
-use super::simulate::{Planned, Simulated, Truths, exactly, planned, senses};
+use super::section::profile;
+use super::setup::{Setup, no_mass};
+use super::simulate::{Simulated, Truths, Twin, senses};
 use crate::error::undeclared;
 use crate::inverted::inverted;
 use crate::joint::part;
-use crate::matrix::of_configurations;
+use crate::matrix::Point;
 use crate::noise::correlated;
 use crate::plan::{self, Expected};
 use crate::sensors::seed_and_sensors;
@@ -44,14 +46,9 @@ pub struct Forecast {
 /// # Errors
 ///
 /// Runs that give no rows, a body without mass, coefficients that the plan does not determine.
-pub fn forecast(
-    planned: &[Planned],
-    setup: &Setup,
-    truth: &Truths,
-    sensors: &[SensorSpec],
-    source: &Source,
-) -> Result<Forecast, MethodError> {
-    let logs = exactly(planned, setup, truth).ok_or_else(|| no_mass(source, setup))?;
+pub fn forecast(twin: &Twin, sensors: &[SensorSpec], source: &Source) -> Result<Forecast, MethodError> {
+    let Twin { setup, truth, .. } = twin;
+    let logs = twin.exactly().ok_or_else(|| no_mass(source, setup))?;
     let mounted: Vec<_> = logs.iter().map(Simulated::view).collect();
     let mut reduced = reduce(&mounted, setup).ok_or_else(|| no_mass(source, setup))?;
     if !reduced.left_out.is_empty() {
@@ -72,7 +69,7 @@ pub fn forecast(
     let noise = Noise { setup, truth, force, position };
     let mut scatter = Mat::<f64>::zeros(p, p);
     let mut from = 0;
-    let wet: Vec<&Simulated> = logs.iter().filter(|log| !log.planned.is_dry).collect();
+    let wet: Vec<&Simulated> = logs.iter().filter(|log| !log.is_dry()).collect();
     for (log, (_, body, rows)) in wet.iter().zip(&reduced.runs) {
         let own = from..from + rows.middle_s.len();
         let s: Vec<Vec<f64>> = (0..p).map(|j| own.clone().map(|i| sensitivity[(j, i)]).collect()).collect();
@@ -138,7 +135,7 @@ impl Noise<'_> {
         let (p, t) = (s.len(), &log.trace.time_s);
         let samples = t.len();
         let load = |v: f64, a: f64| {
-            if log.planned.is_dry { 0.0 } else { self.truth.load_n(self.setup, log.planned.body, v, a) }
+            if log.is_dry() { 0.0 } else { self.truth.load_n(self.setup, log.body, v, a) }
         };
         let mut of_force = vec![vec![0.0; samples]; p];
         let mut of_position = vec![vec![0.0; samples]; p];
@@ -178,13 +175,13 @@ impl Noise<'_> {
                 }
             }
         }
-        let rate_hz = log.planned.rate_hz;
+        let rate_hz = log.point.condition("rate");
         covariance(&of_force, self.force, rate_hz) + covariance(&of_position, self.position, rate_hz)
     }
 
     /// Standard uncertainty of the mass of a body by its runs in air, kg.
     fn of_mass(&self, logs: &[Simulated], body: usize, mass_kg: f64) -> f64 {
-        let dry = logs.iter().filter(|log| log.planned.is_dry && log.planned.body == body);
+        let dry = logs.iter().filter(|log| log.is_dry() && log.body == body);
         let dry: Vec<(&Simulated, Rows)> = dry
             .filter_map(|log| {
                 let rows = super::rows::rows(&log.view().run, self.setup.window_s, self.setup.delay_s.value).ok()?;
@@ -211,7 +208,7 @@ impl Noise<'_> {
         if run.len() > MOST_ROWS {
             return Some(vec![f64::INFINITY; x.ncols()]);
         }
-        let rate_hz = log.planned.rate_hz;
+        let rate_hz = log.point.condition("rate");
         let own = window(&log.trace.time_s, 0.5 * self.setup.window_s + log.trace.time_s[0], self.setup.window_s);
         let of = |weights: &[f64], sensor| covariance(&[weights.to_vec()], sensor, rate_hz)[(0, 0)].sqrt();
         let rho =
@@ -244,37 +241,39 @@ fn moved(name: &str, sensitivity: &Mat<f64>, direction: &[f64], dof: f64) -> Par
 ///
 /// What the campaign does not declare, and what the plan does not determine.
 pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
-    let (spec, points) = (declared(source)?, section::plan(source)?);
-    let setup = setup_of(campaign, source, &spec, &of_configurations(points.iter()))?;
-    let truth = Truths::of(campaign, source, &setup)?;
-    let planned = planned(&points, &setup);
+    let twin = Twin::of(campaign, source)?;
     let (_, sensors) = seed_and_sensors(campaign, &senses())?;
-    let found = forecast(&planned, &setup, &truth, sensors, source)?;
-    let duration_s: f64 = planned.iter().map(|run| run.profile.duration_s()).sum();
-    let longest_m = planned.iter().map(|run| run.profile.travel_m()).fold(0.0, f64::max);
-    let steady_m: f64 = planned.iter().map(|run| run.profile.speed_m_s.abs() * run.profile.steady_s).sum();
+    let found = forecast(&twin, sensors, source)?;
+    let profiles: Vec<Profile> = twin.points.iter().map(profile).collect();
+    let duration_s: f64 = profiles.iter().map(Profile::duration_s).sum();
+    let longest_m = profiles.iter().map(Profile::travel_m).fold(0.0, f64::max);
+    let steady_m: f64 = profiles.iter().map(steady_distance_m).sum();
     let paragraph = format!(
         "{} of {:.1} min in all on the log, waits between them and the way back not counted; {steady_m:.1} m of steady distance; the longest needs {longest_m:.2} m of travel. The \
          intervals are those of the linearised fit at the true coefficients of [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
-        counted(planned.len(), "run", "runs"),
+        counted(profiles.len(), "run", "runs"),
         duration_s / 60.0
     );
-    let tables = [matrix(&planned, &setup), coefficients(&truth.law.name, &found)];
-    Ok(plan::prospect(source, (planned.len(), duration_s), tables, vec![paragraph]))
+    let tables = [matrix(&twin.points), coefficients(&twin.truth.law.name, &found)];
+    Ok(plan::prospect(source, (profiles.len(), duration_s), tables, vec![paragraph]))
 }
 
-fn matrix(planned: &[Planned], setup: &Setup) -> ResultTable {
-    let t = TableBuilder::new("matrix", "Run matrix.", planned);
+fn steady_distance_m(of: &Profile) -> f64 {
+    of.speed_m_s.abs() * of.steady_s
+}
+
+fn matrix(points: &[Point]) -> ResultTable {
+    let runs: Vec<(&Point, Profile)> = points.iter().map(|point| (point, profile(point))).collect();
+    let t = TableBuilder::new("matrix", "Run matrix.", &runs);
     t.build(vec![
-        t.text("run", "run", |run| run.id.clone()),
-        t.text("configuration", "configuration", |run| setup.bodies[run.body].name.clone()),
-        t.text("in", "medium", |run| if run.is_dry { "air" } else { "water" }.to_owned()),
-        t.number("speed_m_s", "speed [m/s]", |run| run.profile.speed_m_s).significant(3),
-        t.number("acceleration_m_s2", "acceleration [m/s²]", |run| run.profile.acceleration_m_s2).significant(3),
-        t.number("duration_s", "duration [s]", |run| run.profile.duration_s()).places(1),
-        t.number("travel_m", "travel [m]", |run| run.profile.travel_m()).places(2),
-        t.number("steady_distance_m", "steady distance [m]", |run| run.profile.speed_m_s.abs() * run.profile.steady_s)
-            .places(2),
+        t.text("run", "run", |(point, _)| point.id.clone()),
+        t.text("configuration", "configuration", |(point, _)| point.configuration.clone()),
+        t.text("in", "medium", |(p, _)| if p.role == Role::DryAir { "air" } else { "water" }.to_owned()),
+        t.number("speed_m_s", "speed [m/s]", |(_, of)| of.speed_m_s).significant(3),
+        t.number("acceleration_m_s2", "acceleration [m/s²]", |(_, of)| of.acceleration_m_s2).significant(3),
+        t.number("duration_s", "duration [s]", |(_, of)| of.duration_s()).places(1),
+        t.number("travel_m", "travel [m]", |(_, of)| of.travel_m()).places(2),
+        t.number("steady_distance_m", "steady distance [m]", |(_, of)| steady_distance_m(of)).places(2),
     ])
 }
 

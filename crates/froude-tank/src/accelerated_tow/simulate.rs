@@ -10,7 +10,7 @@ use froude_identify::method::{Export, MethodError};
 use froude_identify::simulate::truth;
 use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
 use froude_records::run::Role;
-use froude_rig::accelerated_tow::{AcceleratedTrace, Profile, accelerated};
+use froude_rig::accelerated_tow::{AcceleratedTrace, accelerated};
 
 use super::law::{Channels, data, names, with_acceleration};
 use super::reduce::Mounted;
@@ -31,26 +31,13 @@ pub(super) fn senses() -> [Senses<'static>; 1] {
     [Senses::with_memory(["force", "position"])]
 }
 
-/// One planned run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Planned {
-    /// Its name.
-    pub id: String,
-    /// Which body of the setup.
-    pub body: usize,
-    /// How it moves.
-    pub profile: Profile,
-    /// Samples a second.
-    pub rate_hz: f64,
-    /// Whether it is done in air.
-    pub is_dry: bool,
-}
-
 /// A run with its log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulated {
     /// As it was planned.
-    pub planned: Planned,
+    pub point: Point,
+    /// Which body of the setup.
+    pub body: usize,
     /// What was logged.
     pub trace: AcceleratedTrace,
 }
@@ -60,27 +47,18 @@ impl Simulated {
     #[must_use]
     pub fn view(&self) -> Mounted<'_> {
         let run = TowRun {
-            id: &self.planned.id,
+            id: &self.point.id,
             time_s: &self.trace.time_s,
             way: Way::Position(&self.trace.position_m),
             force_n: &self.trace.force_n,
             marks: &[],
         };
-        Mounted { run, body: self.planned.body, is_dry: self.planned.is_dry }
+        Mounted { run, body: self.body, is_dry: self.is_dry() }
     }
-}
 
-/// Planned runs with the bodies of a setup.
-#[must_use]
-pub fn planned(points: &[Point], setup: &Setup) -> Vec<Planned> {
-    let one = |point: &Point| Planned {
-        id: point.id.clone(),
-        body: setup.bodies.iter().position(|b| b.name == point.configuration).unwrap_or(0),
-        profile: profile(point),
-        rate_hz: point.condition("rate"),
-        is_dry: point.role == Role::DryAir,
-    };
-    points.iter().map(one).collect()
+    pub(super) fn is_dry(&self) -> bool {
+        self.point.role == Role::DryAir
+    }
 }
 
 /// What is true on the twin.
@@ -170,47 +148,72 @@ impl Table {
     }
 }
 
-/// The logs of all planned runs; the same seed gives the same logs. `sensors` are `position` and `force`.
-#[must_use]
-pub fn simulated(
-    planned: &[Planned],
-    setup: &Setup,
-    truth: &Truths,
-    sensors: &[SensorSpec],
-    seed: u64,
-) -> Option<Vec<Simulated>> {
-    drawn(planned, setup, truth, (sensors, seed), Draws::of(seed))
+/// A source's planned runs, what is declared of them, and the truth.
+#[derive(Debug, Clone)]
+pub struct Twin {
+    /// The runs.
+    pub points: Vec<Point>,
+    /// What is declared.
+    pub setup: Setup,
+    /// What is true.
+    pub truth: Truths,
 }
 
-/// The same without errors of sensors and of what is declared.
-pub(super) fn exactly(planned: &[Planned], setup: &Setup, truth: &Truths) -> Option<Vec<Simulated>> {
-    drawn(planned, setup, truth, (&[], 0), Draws::none())
-}
-
-fn drawn(
-    planned: &[Planned],
-    setup: &Setup,
-    truth: &Truths,
-    (sensors, seed): (&[SensorSpec], u64),
-    mut draws: Draws,
-) -> Option<Vec<Simulated>> {
-    let delay_s = draws.about(uncertain(setup.delay_s));
-    let [force, motion] = [setup.force_relative, setup.motion_relative].map(|part| draws.gain(part));
-    let masses: Vec<f64> =
-        (setup.bodies.iter()).map(|body| body.mass_kg.map(|m| draws.about(uncertain(m)))).collect::<Option<_>>()?;
-    let top = planned.iter().fold(0.0_f64, |m, run| m.max(run.profile.speed_m_s.abs()));
-    let tables: Vec<Table> = (0..setup.bodies.len()).map(|b| Table::of(truth, setup, b, 1.01 * top)).collect();
-    let mut out = Vec::new();
-    for (i, run) in planned.iter().enumerate() {
-        let readings = [
-            reading(sensors, &["position"], 0.0, motion),
-            reading(sensors, &["force"], ZERO_N * draws.normal(), force),
-        ];
-        let load = |v: f64, a: f64| if run.is_dry { 0.0 } else { tables[run.body].load_n(v, a) };
-        let trace = accelerated(run.profile, run.rate_hz, masses[run.body], delay_s, readings, &load, seed_of(seed, i));
-        out.push(Simulated { planned: run.clone(), trace });
+impl Twin {
+    /// Of a campaign.
+    ///
+    /// # Errors
+    ///
+    /// What the campaign does not declare.
+    pub fn of(campaign: &Campaign, source: &Source) -> Result<Self, MethodError> {
+        Self::with(campaign, source, section::plan(source)?)
     }
-    Some(out)
+
+    /// Of runs that are stated.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::of`].
+    pub fn with(campaign: &Campaign, source: &Source, points: Vec<Point>) -> Result<Self, MethodError> {
+        let setup = setup_of(campaign, source, &declared(source)?, &of_configurations(points.iter()))?;
+        let truth = Truths::of(campaign, source, &setup)?;
+        Ok(Self { points, setup, truth })
+    }
+
+    /// The logs of all planned runs; the same seed gives the same logs. `sensors` are `position` and `force`. `None` where the mass of a body is not declared.
+    #[must_use]
+    pub fn simulated(&self, sensors: &[SensorSpec], seed: u64) -> Option<Vec<Simulated>> {
+        self.drawn((sensors, seed), Draws::of(seed))
+    }
+
+    /// The same without errors of sensors and of what is declared.
+    pub(super) fn exactly(&self) -> Option<Vec<Simulated>> {
+        self.drawn((&[], 0), Draws::none())
+    }
+
+    fn drawn(&self, (sensors, seed): (&[SensorSpec], u64), mut draws: Draws) -> Option<Vec<Simulated>> {
+        let Self { points, setup, truth } = self;
+        let delay_s = draws.about(uncertain(setup.delay_s));
+        let [force, motion] = [setup.force_relative, setup.motion_relative].map(|part| draws.gain(part));
+        let masses: Vec<f64> =
+            (setup.bodies.iter()).map(|body| body.mass_kg.map(|m| draws.about(uncertain(m)))).collect::<Option<_>>()?;
+        let top = points.iter().fold(0.0_f64, |m, point| m.max(point.condition("speed").abs()));
+        let tables: Vec<Table> = (0..setup.bodies.len()).map(|b| Table::of(truth, setup, b, 1.01 * top)).collect();
+        let mut out = Vec::new();
+        for (i, point) in points.iter().enumerate() {
+            let readings = [
+                reading(sensors, &["position"], 0.0, motion),
+                reading(sensors, &["force"], ZERO_N * draws.normal(), force),
+            ];
+            let body = setup.bodies.iter().position(|b| b.name == point.configuration).unwrap_or(0);
+            let is_dry = point.role == Role::DryAir;
+            let load = |v: f64, a: f64| if is_dry { 0.0 } else { tables[body].load_n(v, a) };
+            let (rate_hz, seed) = (point.condition("rate"), seed_of(seed, i));
+            let trace = accelerated(profile(point), rate_hz, masses[body], delay_s, readings, &load, seed);
+            out.push(Simulated { point: point.clone(), body, trace });
+        }
+        Some(out)
+    }
 }
 
 /// The files of all planned runs of a source: a log and its sidecar each.
@@ -219,23 +222,20 @@ fn drawn(
 ///
 /// What the campaign does not declare.
 pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
-    let (spec, points) = (declared(source)?, section::plan(source)?);
-    let setup = setup_of(campaign, source, &spec, &of_configurations(points.iter()))?;
-    let truth = Truths::of(campaign, source, &setup)?;
-    let planned = planned(&points, &setup);
+    let twin = Twin::of(campaign, source)?;
     let (seed, sensors) = seed_and_sensors(campaign, &senses())?;
-    let runs = simulated(&planned, &setup, &truth, sensors, seed).ok_or_else(|| no_mass(source, &setup))?;
-    Ok(runs.iter().flat_map(|run| files_of(run, &setup)).collect())
+    let runs = twin.simulated(sensors, seed).ok_or_else(|| no_mass(source, &twin.setup))?;
+    Ok(runs.iter().flat_map(files_of).collect())
 }
 
-fn files_of(run: &Simulated, setup: &Setup) -> [Export; 2] {
+fn files_of(run: &Simulated) -> [Export; 2] {
     let column = |described, places, values| Column { described, places, values };
     let logged = Logged {
-        id: &run.planned.id,
+        id: &run.point.id,
         said: "A run of the twin.",
         method: ACCELERATED_TOW,
-        role: if run.planned.is_dry { Role::DryAir } else { Role::Test },
-        configuration: &setup.bodies[run.planned.body].name,
+        role: run.point.role,
+        configuration: &run.point.configuration,
         conditions: &[],
         time: ("time", &run.trace.time_s),
         columns: &[

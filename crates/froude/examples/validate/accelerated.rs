@@ -11,8 +11,8 @@ use froude::methods::tank::accelerated_tow::law::asked;
 use froude::methods::tank::accelerated_tow::plan::{Forecast, forecast};
 use froude::methods::tank::accelerated_tow::reduce::reduce;
 use froude::methods::tank::accelerated_tow::section::plan;
-use froude::methods::tank::accelerated_tow::setup::{Setup, declared, setup_of, without_rig};
-use froude::methods::tank::accelerated_tow::simulate::{Planned, Simulated, Truths, planned, simulated};
+use froude::methods::tank::accelerated_tow::setup::without_rig;
+use froude::methods::tank::accelerated_tow::simulate::{Simulated, Twin};
 use froude::methods::tank::driven::spec::Point;
 use froude::records::campaign::{Campaign, SensorSpec, Source};
 use froude::records::campaign_file::read_campaign;
@@ -27,9 +27,7 @@ const SECTION: &str = "Accelerated tow: drag and added mass in one run, by its t
 struct Case {
     campaign: Campaign,
     source: Source,
-    setup: Setup,
-    truth: Truths,
-    planned: Vec<Planned>,
+    twin: Twin,
 }
 
 impl Case {
@@ -38,10 +36,8 @@ impl Case {
         let source = campaign.sources[0].clone();
         let mut points = plan(&source)?;
         edit(&mut points);
-        let setup = setup_of(&campaign, &source, &declared(&source)?, &[points[0].configuration.clone()])?;
-        let truth = Truths::of(&campaign, &source, &setup)?;
-        let planned = planned(&points, &setup);
-        Ok(Self { campaign, source, setup, truth, planned })
+        let twin = Twin::with(&campaign, &source, points)?;
+        Ok(Self { campaign, source, twin })
     }
 
     fn sensors(&self, factor: f64) -> Vec<SensorSpec> {
@@ -50,14 +46,14 @@ impl Case {
     }
 
     fn forecast(&self, factor: f64) -> Result<Forecast, Box<dyn Error>> {
-        Ok(forecast(&self.planned, &self.setup, &self.truth, &self.sensors(factor), &self.source)?)
+        Ok(forecast(&self.twin, &self.sensors(factor), &self.source)?)
     }
 
     fn one(&self, factor: f64, seed: u64) -> Result<Fitted, Box<dyn Error + Send + Sync>> {
-        let logs = simulated(&self.planned, &self.setup, &self.truth, &self.sensors(factor), seed).ok_or("no mass")?;
+        let logs = self.twin.simulated(&self.sensors(factor), seed).ok_or("no mass")?;
         let mounted: Vec<_> = logs.iter().map(Simulated::view).collect();
-        let reduced = reduce(&mounted, &self.setup).ok_or("no mass")?;
-        let laws = asked(&self.campaign, &self.source, &reduced.data, &self.setup.axis)?;
+        let reduced = reduce(&mounted, &self.twin.setup).ok_or("no mass")?;
+        let laws = asked(&self.campaign, &self.source, &reduced.data, &self.twin.setup.axis)?;
         let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial(reduced.of_rows.clone()) };
         let observations = Observations {
             n_read: reduced.data.rows,
