@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_added_mass::files::{AddedMassFile, FileError, read_wamit};
+use froude_added_mass::files::{AddedMassFile, read_wamit};
 use froude_records::csv_table::read_csv;
 use froude_records::units::Dimension;
 use netcdf3::FileReader;
@@ -181,10 +181,8 @@ fn what_no_format_can_hold_is_refused_and_the_old_file_stays() {
     );
     assert_eq!(told(&AddedMassFile { length_m: 0.0, ..good }), "reference length is 0; it must be finite and above 0");
     assert_eq!(told(&AddedMassFile { bodies: &[], ..good }), "0 bodies; a file holds 1 to 999");
-    assert!(matches!(
-        AddedMassFile { bodies: &names(&["a", "a"]), ..good }.netcdf(),
-        Err(FileError::BodyName { body: 2, problem: "appears twice", .. })
-    ));
+    let twice = AddedMassFile { bodies: &names(&["a", "a"]), ..good }.netcdf().unwrap_err();
+    assert_eq!(twice.to_string(), "the name \"a\" of body 2 appears twice");
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("hull.csv");

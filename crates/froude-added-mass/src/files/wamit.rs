@@ -83,7 +83,7 @@ pub struct AddedMassLimits {
 pub fn read_wamit(path: &Path, density_kg_m3: f64, length_m: f64) -> Result<AddedMassLimits, RecordError> {
     for (what, value) in [("density", density_kg_m3), ("reference length", length_m)] {
         if !(value > 0.0 && value.is_finite()) {
-            let reason = FileError::Scale { what, value }.to_string();
+            let reason = FileError::scale(what, value).to_string();
             return Err(RecordError::Read { path: path.to_owned(), reason });
         }
     }
