@@ -2,7 +2,7 @@
 //!
 //! | file | text or binary | read by | method |
 //! |------|----------------|---------|--------|
-//! | WAMIT `.1`         | text   | OpenFAST, BEMIO, BEMRosetta, OrcaFlex …    | [`AddedMassFile::wamit`], [`read_wamit`] |
+//! | WAMIT `.1`         | text   | OpenFAST, BEMIO, BEMRosetta, OrcaFlex …    | [`AddedMassFile::wamit`] |
 //! | NetCDF-3 classic   | binary | xarray, Capytaine's readers, BEMRosetta    | [`AddedMassFile::netcdf`] |
 //! | CSV                | text   | [`csv_table`](froude_records::csv_table), anything | [`AddedMassFile::csv`] |
 //!
@@ -29,7 +29,6 @@ use froude_records::write::write_atomically;
 use crate::AddedMassError;
 pub use error::FileError;
 use error::MOST_BODIES;
-pub use wamit::{AddedMassLimits, read_wamit};
 
 /// Degrees of freedom of a body, in the order and with the names of wave programs.
 pub const DEGREES_OF_FREEDOM: [&str; 6] = ["Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw"];
