@@ -18,8 +18,6 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 # ours, peer, bar at one thread (times faster), what, name of the peer
 CASES = [
     ("columns", "gelsy", 15.0, "10^7 x 10 from memory (QR)", "scipy lstsq gelsy"),
-    ("gaussian", "gaussian", 12.0, "Gaussian, 161 taps, 10^7", "scipy gaussian_filter1d"),
-    ("savitzky-golay", "savitzky-golay", 12.0, "Savitzky-Golay derivative, 41", "scipy savgol_filter"),
     ("forward-backward", "forward-backward", 1.7, "forward-backward, order 4", "scipy sosfiltfilt"),
     ("harmonics", "harmonics", None, "harmonic fit, 3 of 0.2 Hz, 10^6", "numpy Gram"),
     ("resample", "resample", None, "cubic spline, another clock, 10^6", "scipy CubicSpline"),

@@ -42,12 +42,8 @@ def shown(y):
     return np.concatenate([y[:50], y[:-51:-1], y[::1009]])
 
 
-def filtered(case, x):
-    from scipy import ndimage, signal
-    if case == "gaussian":
-        return lambda: shown(ndimage.gaussian_filter1d(x, 20.0))
-    if case == "savitzky-golay":
-        return lambda: shown(signal.savgol_filter(x, 41, 3, deriv=1, delta=1e-3))
+def filtered(x):
+    from scipy import signal
     sections = signal.butter(4, 10.0, fs=1000.0, output="sos")
     return lambda: shown(signal.sosfiltfilt(sections, x))
 
@@ -102,8 +98,8 @@ def hour(path, rate_hz=10_000.0, factor=10, trim_s=0.2, lag_s=1.0):
 
 def main(case, folder):
     runs = 5
-    if case in ("gaussian", "savitzky-golay", "forward-backward"):
-        call = filtered(case, np.fromfile(os.path.join(folder, "u.f64")))
+    if case == "forward-backward":
+        call = filtered(np.fromfile(os.path.join(folder, "u.f64")))
     elif case in ("harmonics", "resample"):
         t, x = shorter(np.fromfile(os.path.join(folder, "u.f64"), count=1_000_000))
         call = harmonics(t, x) if case == "harmonics" else resampled(t, x)

@@ -56,7 +56,7 @@ pub fn table(
     }
     if let Some(Shape::Cylinder { length_m, section }) = shape
         && section.major_m == section.minor_m
-        && let Ok(across) = circular_cylinder_added_mass_m3(section.major_m, *length_m)
+        && let Some(across) = circular_cylinder_added_mass_m3(section.major_m, *length_m)
     {
         let name = "circular cylinder (DNV-RP-C205)".to_owned();
         rows.push((name, [None, Some(across), Some(across), None, None, None]));

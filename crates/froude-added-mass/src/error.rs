@@ -1,6 +1,7 @@
 //! Why there is no added mass.
 
-use std::path::{Path, PathBuf};
+use std::fmt::Display;
+use std::path::Path;
 
 use froude_hydro::fluid::FluidError;
 use froude_identify::IdentifyError;
@@ -11,8 +12,6 @@ use froude_panel::chain::ChainError;
 use froude_panel::refine::RefineError;
 use froude_records::RecordError;
 use froude_records::given_option::GivenOption;
-
-use crate::files::FileError;
 
 /// Why there is no added mass; each message says what to do.
 #[derive(Debug, thiserror::Error)]
@@ -39,50 +38,20 @@ pub enum AddedMassError {
     /// There is no such water.
     #[error("[fluid]: {0}")]
     Water(#[from] FluidError),
-
-    /// An option that says nothing sensible.
-    #[error("{given}: {why}")]
-    Option {
-        /// The option.
-        given: GivenOption,
-        /// What it takes.
-        why: String,
-    },
-    /// Options that say nothing without another, or beside it.
-    #[error("{why}")]
-    Together {
-        /// Which, and what to do.
-        why: String,
-    },
-    /// A body or a mesh that is not what is needed, or the target of a repair.
-    #[error("{}: {why}", .path.display())]
-    Input {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it and what to do.
-        why: String,
-    },
-
-    /// An added mass that its format cannot hold.
-    #[error("cannot write {}: {reason}; nothing was changed", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: FileError,
-    },
-    /// A repair into a file that is there.
-    #[error("{} exists, and a repair writes over nothing; name another file, or delete that one", .path.display())]
-    RepairExists {
-        /// The target.
-        path: PathBuf,
-    },
+    /// What is asked for does not go, with what to do; the file or the option stands in front.
+    #[error("{0}")]
+    Refused(String),
 }
 
 impl AddedMassError {
     /// What is wrong with a body, a mesh or the target of a repair, and what to do.
-    pub(crate) fn input(path: &Path, why: impl Into<String>) -> Self {
-        Self::Input { path: path.to_owned(), why: why.into() }
+    pub(crate) fn input(path: &Path, why: impl Display) -> Self {
+        Self::Refused(format!("{}: {why}", path.display()))
+    }
+
+    /// An option that says nothing sensible, and what it takes.
+    pub(crate) fn option(given: &GivenOption, why: impl Display) -> Self {
+        Self::Refused(format!("{given}: {why}"))
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! | file | text or binary | read by | method |
 //! |------|----------------|---------|--------|
-//! | WAMIT `.1`         | text   | OpenFAST, BEMIO, BEMRosetta, OrcaFlex …    | [`AddedMassFile::wamit`], [`read_wamit`] |
+//! | WAMIT `.1`         | text   | OpenFAST, BEMIO, BEMRosetta, OrcaFlex …    | [`AddedMassFile::wamit`] |
 //! | NetCDF-3 classic   | binary | xarray, Capytaine's readers, BEMRosetta    | [`AddedMassFile::netcdf`] |
 //! | CSV                | text   | [`csv_table`](froude_records::csv_table), anything | [`AddedMassFile::csv`] |
 //!
@@ -29,7 +29,6 @@ use froude_records::write::write_atomically;
 use crate::AddedMassError;
 pub use error::FileError;
 use error::MOST_BODIES;
-pub use wamit::{AddedMassLimits, read_wamit};
 
 /// Degrees of freedom of a body, in the order and with the names of wave programs.
 pub const DEGREES_OF_FREEDOM: [&str; 6] = ["Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw"];
@@ -56,7 +55,7 @@ impl<'a> AddedMassFile<'a> {
     ///
     /// # Errors
     ///
-    /// [`AddedMassError::File`] for content that cannot be written, [`AddedMassError::Record`] for a disk that does not take it.
+    /// [`AddedMassError::Refused`] for content that cannot be written, [`AddedMassError::Record`] for a disk that does not take it.
     pub fn write(&self, path: &Path) -> Result<(), AddedMassError> {
         Ok(write_atomically(path, &self.bytes(path)?)?)
     }
@@ -65,15 +64,17 @@ impl<'a> AddedMassFile<'a> {
     ///
     /// # Errors
     ///
-    /// [`AddedMassError::File`] for content that cannot be written.
+    /// [`AddedMassError::Refused`] for content that cannot be written.
     pub fn bytes(&self, path: &Path) -> Result<Vec<u8>, AddedMassError> {
         let content = match path.extension().and_then(|e| e.to_str()) {
             Some("1") => self.wamit().map(String::into_bytes),
             Some("csv") => self.csv().map(String::into_bytes),
             Some("nc") => self.netcdf(),
-            _ => Err(FileError::Format),
+            _ => Err(FileError("the name of the file ends in none of .1 (WAMIT), .nc (NetCDF), .csv".to_owned())),
         };
-        content.map_err(|reason| AddedMassError::File { path: path.to_owned(), reason })
+        content.map_err(|reason| {
+            AddedMassError::Refused(format!("cannot write {}: {reason}; nothing was changed", path.display()))
+        })
     }
 
     /// The limits that are there, zero first, with their names.
@@ -89,11 +90,11 @@ impl<'a> AddedMassFile<'a> {
             [("density", self.density_kg_m3), ("gravity", self.gravity_m_s2), ("reference length", self.length_m)]
         {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(FileError::Scale { what, value });
+                return Err(FileError::scale(what, value));
             }
         }
         if !(1..=MOST_BODIES).contains(&self.bodies.len()) {
-            return Err(FileError::BodyCount { count: self.bodies.len() });
+            return Err(FileError::body_count(self.bodies.len()));
         }
         let mut seen = std::collections::BTreeSet::new();
         for (index, name) in self.bodies.iter().enumerate() {
@@ -107,23 +108,26 @@ impl<'a> AddedMassFile<'a> {
             } else {
                 continue;
             };
-            return Err(FileError::BodyName { body: index + 1, name: name.clone(), problem });
+            return Err(FileError(format!("the name {name:?} of body {} {problem}", index + 1)));
         }
         if self.limits().is_empty() {
-            return Err(FileError::Empty);
+            let none = "there is neither an added mass at zero nor one at infinite frequency; at least one is needed";
+            return Err(FileError(none.to_owned()));
         }
         let expected = 6 * self.bodies.len();
         for (limit, matrix) in self.limits() {
-            let shape = |what, found| FileError::Shape { limit, what, found, expected };
+            let wrong = |what: String| FileError(format!("added mass at {limit} frequency: {what}"));
+            let shape = |what: &str, found: usize| wrong(format!("{what} {found}; {expected} are needed, 6 a body"));
             if matrix.len() != expected {
-                return Err(shape("rows:".to_owned(), matrix.len()));
+                return Err(shape("rows:", matrix.len()));
             }
             for (row, elements) in matrix.iter().enumerate() {
                 if elements.len() != expected {
-                    return Err(shape(format!("elements of row {}:", row + 1), elements.len()));
+                    return Err(shape(&format!("elements of row {}:", row + 1), elements.len()));
                 }
                 if let Some((column, &value)) = elements.iter().enumerate().find(|(_, a)| !a.is_finite()) {
-                    return Err(FileError::NotFinite { limit, row: row + 1, column: column + 1, value });
+                    let (row, column) = (row + 1, column + 1);
+                    return Err(wrong(format!("element {row}, {column} is {value}, not a finite number")));
                 }
             }
         }

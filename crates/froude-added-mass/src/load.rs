@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::body_file::{Shape, read_body};
-use froude_mesh::check::{Trouble, check, extent};
+use froude_mesh::check::{Kind, Trouble, check, extent};
 use froude_mesh::crossing::crossings;
 use froude_mesh::files::{self, Format, MeshFile};
 use froude_mesh::panel::Facet;
@@ -140,14 +140,10 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
         troubles.extend(part_troubles(&mesh));
         troubles.extend(crossings(&mesh));
     }
-    let is_unreadable =
-        |t: &Trouble| matches!(t, Trouble::Empty | Trouble::NotFinite { .. } | Trouble::NoSuchVertex { .. });
     // A repair merges, turns and takes out; bodies that cross must be united where they were drawn.
-    let is_crossing = |t: &Trouble| matches!(t, Trouble::Crossing { .. });
-    let is_nested = |t: &Trouble| matches!(t, Trouble::Nested { .. });
-    let is_repairable = !troubles.iter().any(is_unreadable)
-        && !troubles.iter().all(|t| is_crossing(t) || is_nested(t) || !t.is_fatal());
-    let is_open = troubles.iter().any(|t| matches!(t, Trouble::Open { .. }));
+    let is_left = |t: &Trouble| matches!(t.kind, Kind::Crossing | Kind::Nested | Kind::Slivers);
+    let is_repairable = !troubles.iter().any(|t| t.kind == Kind::Unreadable) && !troubles.iter().all(is_left);
+    let is_open = troubles.iter().any(|t| t.kind == Kind::Open);
     for trouble in troubles {
         if trouble.is_fatal() {
             wrong.push(format!("  {trouble}"));

@@ -16,7 +16,7 @@ use crate::option_list::given;
 const MOST_LINKS: usize = 100;
 
 /// What to compute.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Asked {
     /// A body file (.toml) or a mesh.
     pub input: PathBuf,
@@ -61,29 +61,14 @@ impl Asked {
     /// Nothing but the input.
     #[must_use]
     pub fn of(input: &Path) -> Self {
-        Self {
-            input: input.to_owned(),
-            links: Vec::new(),
-            density_kg_m3: None,
-            axes: Axes::Mesh,
-            at: None,
-            unit_m: None,
-            orientation: None,
-            surface_m: None,
-            tank_m: None,
-            is_polyhedron: false,
-            is_smooth: false,
-            apart: None,
-            wanted: Wanted::default(),
-            export: Vec::new(),
-        }
+        Self { input: input.to_owned(), ..Self::default() }
     }
 
     /// What was given, read.
     ///
     /// # Errors
     ///
-    /// [`AddedMassError::Option`] for a text that says nothing, [`AddedMassError::Together`] for options that do not go with each other.
+    /// [`AddedMassError::Refused`] for a text that says nothing, and for options that do not go with each other.
     pub fn read(input: &Path, given: &[GivenOption]) -> Result<Self, AddedMassError> {
         let mut out = Self::of(input);
         let (mut forward, mut up) = (None, None);
@@ -112,7 +97,7 @@ impl Asked {
                 }
                 Ok(())
             };
-            read().map_err(|why| AddedMassError::Option { given: option.clone(), why })?;
+            read().map_err(|why| AddedMassError::option(option, why))?;
         }
         // A chain goes before parts, wherever it stands.
         if let (Some(Apart::Parts), true) = (out.apart, given.iter().any(|option| option.name == "chain")) {
@@ -148,7 +133,7 @@ impl Asked {
             };
             let option = name.replace('_', "-");
             let why = format!("--{option} is for one body; give one number of links with it: --links 3");
-            return Err(AddedMassError::Together { why });
+            return Err(AddedMassError::Refused(why));
         } else if self.apart.is_some() && self.surface_m.is_some() {
             "--surface goes with one rigid body, not with --chain or --apart"
         } else if self.is_smooth && self.is_polyhedron {
@@ -158,7 +143,7 @@ impl Asked {
         } else {
             return Ok(());
         };
-        Err(AddedMassError::Together { why: why.to_owned() })
+        Err(AddedMassError::Refused(why.to_owned()))
     }
 }
 
@@ -188,10 +173,12 @@ fn positive(text: &str, dimension: Dimension) -> Result<f64, String> {
 ///
 /// # Errors
 ///
-/// [`AddedMassError::Option`].
+/// [`AddedMassError::Refused`].
 pub fn weld_m(text: &str) -> Result<f64, AddedMassError> {
-    let given = || GivenOption { name: "weld".to_owned(), text: text.to_owned(), place: None };
-    positive(text, Dimension::LENGTH).map_err(|why| AddedMassError::Option { given: given(), why })
+    positive(text, Dimension::LENGTH).map_err(|why| {
+        let given = GivenOption { name: "weld".to_owned(), text: text.to_owned(), place: None };
+        AddedMassError::option(&given, why)
+    })
 }
 
 /// A density of water, or 1 kg/m³ for added mass over ρ.
@@ -265,8 +252,10 @@ fn orientation(forward: Option<Direction>, up: Option<Direction>) -> Result<Opti
         return Ok(None);
     }
     let (forward, up) = (forward.unwrap_or(Direction::X), up.unwrap_or(Direction::Z));
-    Orientation::new(forward, up).map(Some).ok_or_else(|| AddedMassError::Together {
-        why: format!("--forward {forward} and --up {up} lie along one axis of the mesh: give both, two different ones"),
+    Orientation::new(forward, up).map(Some).ok_or_else(|| {
+        AddedMassError::Refused(format!(
+            "--forward {forward} and --up {up} lie along one axis of the mesh: give both, two different ones"
+        ))
     })
 }
 

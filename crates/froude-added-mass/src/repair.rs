@@ -48,7 +48,11 @@ pub fn repair(
         return Err(AddedMassError::input(target, "name another file than the input; it stays as it is"));
     }
     if target.symlink_metadata().is_ok() {
-        return Err(AddedMassError::RepairExists { path: target.to_owned() });
+        let why = format!(
+            "{} exists, and a repair writes over nothing; name another file, or delete that one",
+            target.display()
+        );
+        return Err(AddedMassError::Refused(why));
     }
     let MeshFile { mesh, notes, .. } = read_unmerged(input, unit_m)?;
     let (mesh, repairs) = repaired(&mesh, weld_m.unwrap_or_else(|| WELD * extent(&mesh)));
@@ -56,5 +60,5 @@ pub fn repair(
     left.extend(part_troubles(&mesh).iter().chain(&crossings(&mesh)).map(ToString::to_string));
     let content = if extension == "obj" { write_obj(&mesh).into_bytes() } else { write_stl_binary(&mesh) };
     Prepared::new(target, |file| file.write_all(&content))?.take_free_place()?;
-    Ok(Repaired { notes, repairs: repairs.iter().map(ToString::to_string).collect(), left, panels: mesh.panels.len() })
+    Ok(Repaired { notes, repairs, left, panels: mesh.panels.len() })
 }

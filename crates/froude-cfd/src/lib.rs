@@ -97,6 +97,7 @@ mod foam {
     pub mod dictionary;
     pub(crate) mod foam_binary;
     pub mod foam_case;
+    pub mod foam_error;
     pub mod foam_fields;
     pub mod foam_mesh;
     pub mod foam_solver;

@@ -111,15 +111,6 @@ impl Axis {
             Self::Y => 1,
         }
     }
-
-    /// The force component's name in tables: `f_x` or `f_y`.
-    #[must_use]
-    pub const fn load(self) -> &'static str {
-        match self {
-            Self::X => "f_x",
-            Self::Y => "f_y",
-        }
-    }
 }
 
 /// The geometric factor in front of a coefficient, kg/m.
@@ -344,40 +335,6 @@ impl DragModel {
         }
     }
 
-    /// Position of a coefficient, by its name.
-    #[must_use]
-    pub fn index_of(self, name: &str) -> Option<usize> {
-        self.coefficients().iter().position(|c| c.name == name)
-    }
-
-    /// The law of one component, as a line of plain text.
-    ///
-    /// `q(v)` is `v*|v|`; `s(v_x)` is the direction of [`CrossTerm`].
-    #[must_use]
-    pub const fn equation(self, axis: Axis) -> &'static str {
-        match (self, axis) {
-            (Self::F1, X) => "-f_x = n*G_T*C_f*(v_ref*v_x + q(v_x))",
-            (Self::F1, Y) => "-f_y = n*G_N*C_d*(v_ref*v_y + q(v_y))",
-            (Self::F2, X) => "-f_x = n*G_T*(C_f_I*v_x + C_f_II*q(v_x))",
-            (Self::F2, Y) => "-f_y = n*G_N*(C_d_I*v_y + C_d_II*q(v_y))",
-            (Self::F3, X) => "-f_x = k*G_T*(C_f_I*v_x + C_f_II*q(v_x)) + G_HTx*(C_fHT_I*v_x + C_fHT_II*q(v_x))",
-            (Self::F3 | Self::F4, Y) => {
-                "-f_y = k*G_N*(C_d_I*v_y + C_d_II*q(v_y)) + G_HTy*(C_dHT_I*v_y + C_dHT_II*q(v_y))"
-            }
-            (Self::F4, X) => {
-                "-f_x = k*G_T*(C_f_I*v_x + C_f_II*q(v_x)) + G_HTx*(C_fHT_I*v_x + C_fHT_II*q(v_x)) \
-                 + s(v_x)*G_XY*(-C_XY_I*|v_y| + C_XY_II*v_y^2)"
-            }
-            (Self::F5, X) => {
-                "-f_x = k*G_T*(C_f_I*v_x + C_f_II*q(v_x)) + G_HTx*C_fHT_II*q(v_x) \
-                 + s(v_x)*G_XY*C_XY_II*v_y^2"
-            }
-            (Self::F5, Y) => "-f_y = k*G_N*(C_d_I*v_y + C_d_II*q(v_y)) + G_HTy*C_dHT_II*q(v_y)",
-            (Self::F6, X) => "-f_x = 0.5*rho*A_x*C_f*q(v_x)",
-            (Self::F6, Y) => "-f_y = 0.5*rho*A_y*C_d*q(v_y)",
-        }
-    }
-
     /// What a unit of each coefficient contributes to the force, N.
     ///
     /// `out[j]` is the contribution of coefficient `j` along `coefficients()[j].axis`;
@@ -401,15 +358,15 @@ impl DragModel {
     /// Mamba with two links at 0.4 m/s and 30°, tank coefficients (USR Table 9, f6):
     ///
     /// ```
-    /// use froude_hydro::{Body, DragModel, Link, Setting, axes::velocity_when_towed_m_s};
+    /// use froude_hydro::{Body, DragModel, Link, Setting};
     /// let body = Body {
     ///     link: Link { major_semi_axis_m: 0.0588, minor_semi_axis_m: 0.0394, half_length_m: 0.09 },
     ///     head_side_area_m2: 0.011,
     ///     tail_side_area_m2: 0.008,
     /// };
     /// let setting = Setting::as_published(body, 2.0, 1025.0);
-    /// let v = velocity_when_towed_m_s(0.4, 30f64.to_radians());
-    /// let [f_x, f_y] = DragModel::F6.force_n(&setting, v, &[0.3363, 1.6066]);
+    /// let (sin, cos) = 30f64.to_radians().sin_cos();
+    /// let [f_x, f_y] = DragModel::F6.force_n(&setting, [0.4 * cos, -0.4 * sin], &[0.3363, 1.6066]);
     /// assert!((f_x + 0.1505).abs() < 1e-4 && (f_y - 2.0202).abs() < 1e-4);
     /// ```
     #[must_use]
@@ -421,149 +378,5 @@ impl DragModel {
             force_n[info.axis.index()] += unit * c;
         }
         force_n
-    }
-
-    /// The linear restrictions under which `general` becomes `self`.
-    ///
-    /// `None` when `self` is not nested in `general` (and for a model with itself).
-    /// Nested are f1 ⊂ f2 ⊂ f3 ⊂ f4, f6 ⊂ f5 ⊂ f4, f6 ⊂ f3 and what follows from
-    /// these. The rows hold for every number of links; they depend on the geometry
-    /// and on `v_ref`, not on the density.
-    ///
-    /// | pair      | rows |
-    /// |-----------|------|
-    /// | f1 ⊂ f2   | `C^I = v_ref C^II`, per component |
-    /// | f2 ⊂ f3   | `2 G_T C_f = G_HTx C_fHT`, `2 G_N C_d = G_HTy C_dHT`, for I and II |
-    /// | f3 ⊂ f4   | `C_XY^I = C_XY^II = 0` |
-    /// | f6 ⊂ f5   | `C_f^I = C_f^II = C_d^I = C_XY^II = 0`, `C_d^II = C_dHT^II` |
-    /// | f5 ⊂ f4   | `C_fHT^I = C_dHT^I = C_XY^I = 0` |
-    /// | f6 ⊂ f3   | the rows of f6 ⊂ f5 without `C_XY`, and `C_fHT^I = C_dHT^I = 0` |
-    ///
-    /// # Source
-    ///
-    /// Our derivation from USR eq. 9–14.
-    #[must_use]
-    pub fn restrictions_in(self, general: Self, s: &Setting) -> Option<Restrictions> {
-        if !self.is_nested_in(general) {
-            return None;
-        }
-        let mut rows = Restrictions::none(general);
-        let one_link = Setting { n_links: 1.0, ..*s };
-        let tie = |head_tail: Factor, link: Factor| -0.5 * head_tail.value(&one_link) / link.value(&one_link);
-        let has_head_tail = general != Self::F2;
-
-        match self {
-            Self::F1 | Self::F2 => {
-                if has_head_tail {
-                    for (link, end) in [("C_f_I", "C_fHT_I"), ("C_f_II", "C_fHT_II")] {
-                        rows.push(&[(link, 1.0), (end, tie(GHTx, LinksGT))]);
-                    }
-                    for (link, end) in [("C_d_I", "C_dHT_I"), ("C_d_II", "C_dHT_II")] {
-                        rows.push(&[(link, 1.0), (end, tie(GHTy, LinksGN))]);
-                    }
-                }
-                if self == Self::F1 {
-                    rows.push(&[("C_f_I", 1.0), ("C_f_II", -s.v_ref_m_s)]);
-                    rows.push(&[("C_d_I", 1.0), ("C_d_II", -s.v_ref_m_s)]);
-                }
-            }
-            Self::F6 => {
-                for name in ["C_f_I", "C_f_II", "C_d_I", "C_fHT_I", "C_dHT_I"] {
-                    rows.push(&[(name, 1.0)]);
-                }
-                rows.push(&[("C_d_II", 1.0), ("C_dHT_II", -1.0)]);
-            }
-            Self::F5 => {
-                for name in ["C_fHT_I", "C_dHT_I"] {
-                    rows.push(&[(name, 1.0)]);
-                }
-            }
-            Self::F3 | Self::F4 => {}
-        }
-        rows.push(&[("C_XY_I", 1.0)]);
-        if self != Self::F5 {
-            rows.push(&[("C_XY_II", 1.0)]);
-        }
-        Some(rows)
-    }
-
-    /// Whether every force of `self` is also one of `general`, for another model.
-    #[must_use]
-    pub const fn is_nested_in(self, general: Self) -> bool {
-        matches!(
-            (self, general),
-            (Self::F1, Self::F2 | Self::F3 | Self::F4)
-                | (Self::F2, Self::F3 | Self::F4)
-                | (Self::F3 | Self::F5, Self::F4)
-                | (Self::F6, Self::F3 | Self::F5 | Self::F4)
-        )
-    }
-}
-
-/// Homogeneous linear restrictions `R·β = 0` on a model's coefficients.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Restrictions {
-    general: DragModel,
-    rows: [[f64; MAX_COEFFICIENTS]; MAX_COEFFICIENTS],
-    n_rows: usize,
-}
-
-impl Restrictions {
-    const fn none(general: DragModel) -> Self {
-        Self { general, rows: [[0.0; MAX_COEFFICIENTS]; MAX_COEFFICIENTS], n_rows: 0 }
-    }
-
-    /// Adds a row; names that the general model does not have drop out, and a row
-    /// whose every name drops out is no row.
-    fn push(&mut self, weights: &[(&str, f64)]) {
-        let mut new = [0.0; MAX_COEFFICIENTS];
-        let mut is_empty = true;
-        for &(name, weight) in weights {
-            if let Some(j) = self.general.index_of(name) {
-                new[j] = weight;
-                is_empty = false;
-            }
-        }
-        if !is_empty {
-            self.rows[self.n_rows] = new;
-            self.n_rows += 1;
-        }
-    }
-
-    /// The model whose coefficients are restricted.
-    #[must_use]
-    pub const fn general(&self) -> DragModel {
-        self.general
-    }
-
-    /// Number of rows; they are linearly independent.
-    #[must_use]
-    pub const fn len(&self) -> usize {
-        self.n_rows
-    }
-
-    /// Whether there is nothing to restrict.
-    #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        self.n_rows == 0
-    }
-
-    /// The rows, each as long as the general model has coefficients.
-    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        let width = self.general.coefficients().len();
-        self.rows[..self.n_rows].iter().map(move |row| &row[..width])
-    }
-
-    /// The force component a row restricts; no row mixes two.
-    #[must_use]
-    pub fn axis_of(&self, row: &[f64]) -> Option<Axis> {
-        let infos = self.general.coefficients().iter();
-        infos.zip(row).find(|(_, weight)| **weight != 0.0).map(|(info, _)| info.axis)
-    }
-
-    /// Largest `|R·β|` over the rows, in the coefficients' unit.
-    #[must_use]
-    pub fn largest_violation(&self, c: &[f64]) -> f64 {
-        self.rows().map(|row| row.iter().zip(c).map(|(r, c)| r * c).sum::<f64>().abs()).fold(0.0, f64::max)
     }
 }

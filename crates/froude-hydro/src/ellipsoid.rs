@@ -8,13 +8,7 @@
 //! diagonal there: an ellipsoid has three planes of symmetry.
 //! **Units.** SI; an added mass over ρ has m³, an added inertia over ρ m⁵.
 //!
-//! | what | function | source |
-//! |------|----------|--------|
-//! | α₀, β₀, γ₀                | [`lamb_integrals`]         | Lamb 1932, §114 |
-//! | added mass per ρV         | [`ellipsoid_coefficients`] | Lamb 1932, §114 |
-//! | the diagonal, over ρ      | [`ellipsoid_added_mass`]   | Lamb 1932, §114, §115 |
-//!
-//! **Method.** α₀, β₀, γ₀ are Carlson's R_D; with `x, y, z` the squared semi-axes and `Δ² = (x+t)(y+t)(z+t)`,
+//! **Method.** Lamb's α₀, β₀, γ₀ (1932, §114) are Carlson's R_D; with `x, y, z` the squared semi-axes and `Δ² = (x+t)(y+t)(z+t)`,
 //!
 //! ```text
 //! D_x = ∫ dt / ((x+t) Δ)         α₀ = abc D_x = ⅔ abc R_D(y, z, x)
@@ -70,49 +64,6 @@ pub fn ellipsoid_volume_m3(semi_axes_m: [f64; 3]) -> f64 {
     4.0 / 3.0 * PI * a * b * c
 }
 
-/// Lamb's α₀, β₀, γ₀ of an ellipsoid \[-\]: how the potential falls off along each axis; their sum is 2.
-///
-/// Relative error below 1e-14 for semi-axes up to 1e12 apart.
-///
-/// # Errors
-///
-/// [`EllipsoidError`] when a semi-axis is not positive and finite, or they lie further apart.
-///
-/// # Source
-///
-/// Lamb (1932), §114: `α₀ = abc ∫₀^∞ dλ/((a²+λ)Δ)`.
-pub fn lamb_integrals(semi_axes_m: [f64; 3]) -> Result<[f64; 3], EllipsoidError> {
-    let axes = scaled(semi_axes_m)?.0;
-    let product = axes[0] * axes[1] * axes[2];
-    Ok(Integrals::of(axes.map(|a| a * a)).d.map(|d| product * d))
-}
-
-/// Added-mass coefficients of an ellipsoid moving along its axes \[-\], per displaced mass ρV.
-///
-/// From 0 (end-on needle) over 1/2 (sphere) to ∞ (disc, face-on: there [`ellipsoid_added_mass`] stays finite).
-/// Relative error below 1e-14 for semi-axes up to 1e12 apart.
-///
-/// # Errors
-///
-/// [`EllipsoidError`] as for [`lamb_integrals`].
-///
-/// # Source
-///
-/// Lamb (1932), §114: `k₁ = α₀/(2 − α₀)`, with `2 − α₀ = β₀ + γ₀`.
-///
-/// # Example
-///
-/// ```
-/// # use froude_hydro::ellipsoid::{EllipsoidError, ellipsoid_coefficients};
-/// let [surge, sway, heave] = ellipsoid_coefficients([0.09, 0.0394, 0.0588])?; // a snake robot's module, rounded off
-/// assert!(surge < heave && heave < sway);
-/// # Ok::<(), EllipsoidError>(())
-/// ```
-pub fn ellipsoid_coefficients(semi_axes_m: [f64; 3]) -> Result<[f64; 3], EllipsoidError> {
-    let [alpha, beta, gamma] = lamb_integrals(semi_axes_m)?;
-    Ok([alpha / (beta + gamma), beta / (gamma + alpha), gamma / (alpha + beta)])
-}
-
 /// Diagonal of an ellipsoid's added mass over ρ about its centre: surge, sway, heave \[m³\], roll, pitch, yaw \[m⁵\].
 ///
 /// All other elements are 0. Relative error below 1e-13, equal and nearly equal axes included, for semi-axes up to
@@ -120,7 +71,7 @@ pub fn ellipsoid_coefficients(semi_axes_m: [f64; 3]) -> Result<[f64; 3], Ellipso
 ///
 /// # Errors
 ///
-/// [`EllipsoidError`] as for [`lamb_integrals`].
+/// [`EllipsoidError`] when a semi-axis is not positive and finite, or they lie further apart.
 ///
 /// # Source
 ///

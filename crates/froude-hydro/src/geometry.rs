@@ -62,18 +62,6 @@ pub struct Robot {
     pub end_m: f64,
 }
 
-/// A length or an area that no body has.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("{quantity} is {value}; it must be finite and {condition}")]
-pub struct GeometryError {
-    /// Which one, in words.
-    pub quantity: &'static str,
-    /// What was given, SI.
-    pub value: f64,
-    /// What it must be.
-    pub condition: &'static str,
-}
-
 impl Link {
     /// Side area `2a · 2l`, m² (USR eq. 8).
     #[must_use]
@@ -96,32 +84,10 @@ impl Link {
         PI * 0.5 * (self.major_semi_axis_m + self.minor_semi_axis_m) * 2.0 * self.half_length_m
     }
 
-    /// Wetted area of the mantle, m², with Ramanujan's perimeter.
-    ///
-    /// `π(3(a+b) − √((3a+b)(a+3b))) · 2l`; relative error below 1e-4 for `a/b ≤ 3`
-    /// (Ramanujan 1914, first formula).
-    #[must_use]
-    pub fn wetted_area_m2(&self) -> f64 {
-        let (a, b) = (self.major_semi_axis_m, self.minor_semi_axis_m);
-        let perimeter_m = PI * (3.0 * (a + b) - libm::sqrt((3.0 * a + b) * (a + 3.0 * b)));
-        perimeter_m * 2.0 * self.half_length_m
-    }
-
     /// Volume `πab · 2l`, m³.
     #[must_use]
     pub fn volume_m3(&self) -> f64 {
         self.section_area_m2() * 2.0 * self.half_length_m
-    }
-
-    /// Checks that all three lengths are finite and above zero.
-    ///
-    /// # Errors
-    ///
-    /// [`GeometryError`] names the first one that is not.
-    pub fn check(&self) -> Result<(), GeometryError> {
-        positive("the link's major semi-axis", self.major_semi_axis_m)?;
-        positive("the link's minor semi-axis", self.minor_semi_axis_m)?;
-        positive("the link's half-length", self.half_length_m)
     }
 }
 
@@ -182,32 +148,5 @@ impl Body {
     #[must_use]
     pub fn side_area_m2(&self, n_links: f64) -> f64 {
         self.head_tail_side_area_m2() + n_links * self.link.side_area_m2()
-    }
-
-    /// Checks the link and that both side areas are finite and not negative.
-    ///
-    /// # Errors
-    ///
-    /// [`GeometryError`] names the first value that is not.
-    pub fn check(&self) -> Result<(), GeometryError> {
-        self.link.check()?;
-        not_negative("the head's side area", self.head_side_area_m2)?;
-        not_negative("the tail's side area", self.tail_side_area_m2)
-    }
-}
-
-fn positive(quantity: &'static str, value: f64) -> Result<(), GeometryError> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(GeometryError { quantity, value, condition: "above zero" })
-    }
-}
-
-fn not_negative(quantity: &'static str, value: f64) -> Result<(), GeometryError> {
-    if value.is_finite() && value >= 0.0 {
-        Ok(())
-    } else {
-        Err(GeometryError { quantity, value, condition: "not negative" })
     }
 }

@@ -23,7 +23,7 @@
 
 use core::f64::consts::PI;
 
-use crate::geometry::{GeometryError, Link};
+use crate::geometry::Link;
 
 /// Coefficients of one link \[-\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,11 +36,6 @@ pub struct LinkCoefficients {
     pub c_a: f64,
     /// Added inertia; used by [`YawInertia::AsPrinted`] only.
     pub c_m: f64,
-}
-
-impl LinkCoefficients {
-    /// The estimates used for Mamba before identification (USR Remark 1 a).
-    pub const MAMBA_ESTIMATED: Self = Self { c_f: 0.3, c_d: 1.75, c_a: 1.5, c_m: 1.0 };
 }
 
 /// Which `λ₁` is used.
@@ -83,10 +78,6 @@ pub struct LinkParameters {
 impl LinkParameters {
     /// The parameters of a link in water.
     ///
-    /// # Errors
-    ///
-    /// [`GeometryError`] when a length of the link or the density is not above zero.
-    ///
     /// # Source
     ///
     /// USR eq. 8; the variants are described at the top of the module.
@@ -97,25 +88,17 @@ impl LinkParameters {
     /// use froude_hydro::Link;
     /// use froude_hydro::link_parameters::{LinkCoefficients, LinkParameters, YawDrag, YawInertia};
     /// let link = Link { major_semi_axis_m: 0.0588, minor_semi_axis_m: 0.0394, half_length_m: 0.09 };
+    /// // The estimates used for Mamba before identification (USR Remark 1 a).
+    /// let estimated = LinkCoefficients { c_f: 0.3, c_d: 1.75, c_a: 1.5, c_m: 1.0 };
     /// let p = LinkParameters::of(
-    ///     &link, 1025.0, &LinkCoefficients::MAMBA_ESTIMATED, YawInertia::default(), YawDrag::default(),
-    /// )?;
+    ///     &link, 1025.0, &estimated, YawInertia::default(), YawDrag::default(),
+    /// );
     /// assert!((p.c_n_kg_m - 18.985).abs() < 1e-3);
     /// // Strip theory: a slender rod's λ₁ is μ (2l)²/12.
     /// assert!((p.lambda_1_kg_m2 - p.added_mass_kg * 0.18 * 0.18 / 12.0).abs() < 1e-12);
-    /// # Ok::<(), froude_hydro::GeometryError>(())
     /// ```
-    pub fn of(
-        link: &Link,
-        density_kg_m3: f64,
-        c: &LinkCoefficients,
-        inertia: YawInertia,
-        drag: YawDrag,
-    ) -> Result<Self, GeometryError> {
-        link.check()?;
-        if !(density_kg_m3.is_finite() && density_kg_m3 > 0.0) {
-            return Err(GeometryError { quantity: "the density", value: density_kg_m3, condition: "above zero" });
-        }
+    #[must_use]
+    pub fn of(link: &Link, density_kg_m3: f64, c: &LinkCoefficients, inertia: YawInertia, drag: YawDrag) -> Self {
         let (a, b, l) = (link.major_semi_axis_m, link.minor_semi_axis_m, link.half_length_m);
         let rho = density_kg_m3;
         let l3 = l * l * l;
@@ -132,36 +115,13 @@ impl LinkParameters {
             }
             YawDrag::CrossFlow => (2.0 / 3.0 * rho * c.c_d * a * l3, 0.5 * rho * c.c_d * a * l3 * l),
         };
-        Ok(Self {
+        Self {
             c_t_kg_m: 0.5 * rho * c.c_f * link.friction_area_m2(),
             c_n_kg_m: 0.5 * rho * c.c_d * link.side_area_m2(),
             added_mass_kg: rho * PI * c.c_a * a * a * 2.0 * l,
             lambda_1_kg_m2,
             lambda_2_kg_m,
             lambda_3_kg_m2,
-        })
-    }
-
-    /// Drag on the link, N, link axes: `−c (v_ref v + v|v|)` per component.
-    ///
-    /// # Source
-    ///
-    /// USR eq. 2, 3 turned into link axes; `v_ref` = 1 m/s there.
-    #[must_use]
-    pub fn drag_n(&self, v_ref_m_s: f64, v_m_s: [f64; 2]) -> [f64; 2] {
-        let law = |c: f64, v: f64| -c * (v_ref_m_s * v + v * v.abs());
-        [law(self.c_t_kg_m, v_m_s[0]), law(self.c_n_kg_m, v_m_s[1])]
-    }
-
-    /// Fluid torque about the link's centre, N m: `−λ₁θ̈ − λ₂θ̇ − λ₃θ̇|θ̇|`.
-    ///
-    /// # Source
-    ///
-    /// USR eq. 7, with `v_ref` = 1 m/s in the linear term.
-    #[must_use]
-    pub fn torque_n_m(&self, v_ref_m_s: f64, rate_rad_s: f64, acceleration_rad_s2: f64) -> f64 {
-        -self.lambda_1_kg_m2 * acceleration_rad_s2
-            - self.lambda_2_kg_m * v_ref_m_s * rate_rad_s
-            - self.lambda_3_kg_m2 * rate_rad_s * rate_rad_s.abs()
+        }
     }
 }

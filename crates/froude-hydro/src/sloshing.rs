@@ -6,11 +6,6 @@
 //! **Setting.** Rectangular tank with upright walls, level bed, no body in it; small waves, ideal fluid.
 //! **Units.** SI; circular frequency in rad/s.
 //!
-//! | what | function | source |
-//! |------|----------|--------|
-//! | first mode along and across  | [`rectangular_tank_modes_rad_s`] | Faltinsen & Timokha 2009, ch. 4 |
-//! | which limit a test is near   | [`frequency_number`]             | Newman 1977, ch. 6 |
-//!
 //! Not here: surface tension, baffles, other tanks, what the body changes.
 
 use core::f64::consts::PI;
@@ -64,29 +59,4 @@ pub fn rectangular_tank_modes_rad_s(
         libm::sqrt(gravity * k * libm::tanh(k * depth))
     };
     Ok([mode(positive("tank length", length_m)?), mode(positive("tank breadth", breadth_m)?)])
-}
-
-/// Frequency number `ω² d / g` \[-\] of a body oscillating at depth `d`.
-///
-/// In deep water it is `k d` of the waves that the body makes: well below 1 the surface acts as a rigid lid, well above as
-/// φ = 0, and a depth of many body lengths makes both alike.
-///
-/// # Errors
-///
-/// [`TankError`] when a quantity is not positive and finite.
-///
-/// # Source
-///
-/// Newman (1977), Marine Hydrodynamics, ch. 6: `k = ω²/g` in deep water.
-///
-/// # Example
-///
-/// ```
-/// # use froude_hydro::sloshing::{TankError, frequency_number};
-/// assert!((frequency_number(6.28, 0.5, 9.81)? - 2.01).abs() < 0.01); // 1 Hz, 0.5 m deep: neither limit
-/// # Ok::<(), TankError>(())
-/// ```
-pub fn frequency_number(circular_frequency_rad_s: f64, depth_m: f64, gravity_m_s2: f64) -> Result<f64, TankError> {
-    let omega = positive("circular frequency", circular_frequency_rad_s)?;
-    Ok(omega * omega * positive("depth", depth_m)? / positive("gravity", gravity_m_s2)?)
 }

@@ -47,10 +47,6 @@ pub trait Vectors: Copy {
     fn load(self, lane: &Lane, part: usize) -> Self::Vector;
     /// Writes part `part` of a lane.
     fn store(self, lane: &mut Lane, part: usize, value: Self::Vector);
-    /// `a + b`.
-    fn add(self, a: Self::Vector, b: Self::Vector) -> Self::Vector;
-    /// `a − b`.
-    fn subtract(self, a: Self::Vector, b: Self::Vector) -> Self::Vector;
     /// `a·b`.
     fn multiply(self, a: Self::Vector, b: Self::Vector) -> Self::Vector;
     /// `a·b + c`, rounded once where the processor can.
@@ -141,16 +137,6 @@ impl Vectors for Plain {
     #[inline(always)]
     fn store(self, lane: &mut Lane, part: usize, value: [f64; 2]) {
         [lane.0[2 * part], lane.0[2 * part + 1]] = value;
-    }
-
-    #[inline(always)]
-    fn add(self, a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-        [a[0] + b[0], a[1] + b[1]]
-    }
-
-    #[inline(always)]
-    fn subtract(self, a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-        [a[0] - b[0], a[1] - b[1]]
     }
 
     #[inline(always)]

@@ -4,11 +4,11 @@
 #![allow(clippy::inline_always, unsafe_code)]
 
 use std::arch::x86_64::{
-    __m256d, __m512d, _mm_add_pd, _mm_add_sd, _mm_cvtsd_f64, _mm_unpackhi_pd, _mm256_add_pd, _mm256_castpd256_pd128,
+    __m256d, __m512d, _mm_add_pd, _mm_add_sd, _mm_cvtsd_f64, _mm_unpackhi_pd, _mm256_castpd256_pd128,
     _mm256_extractf128_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_permute2f128_pd,
-    _mm256_set1_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm512_add_pd,
-    _mm512_fmadd_pd, _mm512_fnmadd_pd, _mm512_load_pd, _mm512_loadu_pd, _mm512_mul_pd, _mm512_reduce_add_pd,
-    _mm512_set1_pd, _mm512_shuffle_f64x2, _mm512_store_pd, _mm512_sub_pd, _mm512_unpackhi_pd, _mm512_unpacklo_pd,
+    _mm256_set1_pd, _mm256_storeu_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm512_fmadd_pd, _mm512_fnmadd_pd,
+    _mm512_load_pd, _mm512_loadu_pd, _mm512_mul_pd, _mm512_reduce_add_pd, _mm512_set1_pd, _mm512_shuffle_f64x2,
+    _mm512_store_pd, _mm512_unpackhi_pd, _mm512_unpacklo_pd,
 };
 
 use super::{Kernel, LANES, Lane, Vectors};
@@ -79,16 +79,6 @@ impl Vectors for Avx512 {
     }
 
     #[inline(always)]
-    fn add(self, a: __m512d, b: __m512d) -> __m512d {
-        unsafe { _mm512_add_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn subtract(self, a: __m512d, b: __m512d) -> __m512d {
-        unsafe { _mm512_sub_pd(a, b) }
-    }
-
-    #[inline(always)]
     fn multiply(self, a: __m512d, b: __m512d) -> __m512d {
         unsafe { _mm512_mul_pd(a, b) }
     }
@@ -153,16 +143,6 @@ impl Vectors for Avx2 {
     fn store(self, lane: &mut Lane, part: usize, value: __m256d) {
         let half = &mut lane.0[4 * part..4 * part + 4];
         unsafe { _mm256_storeu_pd(half.as_mut_ptr(), value) }
-    }
-
-    #[inline(always)]
-    fn add(self, a: __m256d, b: __m256d) -> __m256d {
-        unsafe { _mm256_add_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn subtract(self, a: __m256d, b: __m256d) -> __m256d {
-        unsafe { _mm256_sub_pd(a, b) }
     }
 
     #[inline(always)]

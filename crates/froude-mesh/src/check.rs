@@ -16,169 +16,41 @@ const SLIVER: f64 = 1e-3;
 /// Area over the square of the mesh's extent below which a panel has none \[-\].
 const NOTHING: f64 = 1e-14;
 
-/// Something wrong with a mesh; numbers of panels and vertices count from 0 in the order of the file.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Trouble {
-    /// Nothing in it.
-    #[error("the mesh has no panel")]
-    Empty,
-    /// A coordinate that is NaN or infinite.
-    #[error("vertex {vertex} has the coordinates {point:?}: each must be a finite number")]
-    NotFinite {
-        /// The vertex.
-        vertex: usize,
-        /// Its coordinates.
-        point: Vec3,
-    },
-    /// A corner that does not exist.
-    #[error("panel {panel} has the vertex {vertex}, and there are {vertices}")]
-    NoSuchVertex {
-        /// The panel.
-        panel: usize,
-        /// The number that it names.
-        vertex: usize,
-        /// How many there are.
-        vertices: usize,
-    },
-    /// A panel without area.
-    #[error("panel {panel} at {at:?} m has no area; take it out, or merge its corners")]
-    NoArea {
-        /// The panel.
-        panel: usize,
-        /// Its first corner.
-        at: Vec3,
-    },
-    /// Two panels over the same corners.
-    #[error("panel {panel} at {at:?} m is there twice (also as {first}); take one out")]
-    Copy {
-        /// The later one.
-        panel: usize,
-        /// The earlier one.
-        first: usize,
-        /// Its centroid.
-        at: Vec3,
-    },
-    /// An edge with one panel only.
-    #[error("{} one panel only, the first from {from:?} to {to:?} m: the surface is open there", counted(*count, "edge has", "edges have"))]
-    Open {
-        /// How many.
-        count: usize,
-        /// One end of the first.
-        from: Vec3,
-        /// Its other end.
-        to: Vec3,
-    },
-    /// Neighbours that run the same way along an edge.
-    #[error(
-        "{} traversed twice in the same direction, the first from {from:?} to {to:?} m: neighbours are oriented against each other", counted(*count, "edge is", "edges are")
-    )]
-    Turned {
-        /// How many.
-        count: usize,
-        /// One end of the first.
-        from: Vec3,
-        /// Its other end.
-        to: Vec3,
-    },
-    /// Three panels or more at an edge.
-    #[error("{} three panels or more, the first from {from:?} to {to:?} m: surfaces touch there", counted(*count, "edge has", "edges have"))]
-    Branched {
-        /// How many.
-        count: usize,
-        /// One end of the first.
-        from: Vec3,
-        /// Its other end.
-        to: Vec3,
-    },
-    /// Normals point into the body.
-    #[error("the surface is inside out (its volume is {volume_m3:.4e} m³): its normals must point into the water")]
-    InsideOut {
-        /// The signed volume, m³.
-        volume_m3: f64,
-    },
-    /// A part that is inside out where others are not.
-    #[error(
-        "part {part} ({panels} panels, at {at:?} m) is inside out (its volume is {volume_m3:.4e} m³), others are \
-         not; turn its panels"
-    )]
-    PartInsideOut {
-        /// The part.
-        part: usize,
-        /// How many panels it has.
-        panels: usize,
-        /// A corner of its first panel.
-        at: Vec3,
-        /// Its signed volume, m³.
-        volume_m3: f64,
-    },
-    /// A closed surface inside another.
-    #[error(
-        "part {part} ({panels} panels, at {at:?} m, volume {volume_m3:.4e} m³) lies inside part {outer}: no water \
-         reaches it; take it out"
-    )]
-    Nested {
-        /// The inner part.
-        part: usize,
-        /// How many panels it has.
-        panels: usize,
-        /// A corner of its first panel.
-        at: Vec3,
-        /// Its signed volume, m³.
-        volume_m3: f64,
-        /// The part around it.
-        outer: usize,
-    },
-    /// Panels through or against one another.
-    #[error(
-        "{} without a common vertex there, the first {first} and {second} at {at:?} m; unite the \
-         bodies, or move them apart", counted(*count, "pair of panels crosses or touches", "pairs of panels cross or touch")
-    )]
-    Crossing {
-        /// How many pairs; counting ends at [`crate::crossing::MOST`].
-        count: usize,
-        /// The smaller number of the first pair.
-        first: usize,
-        /// The larger one.
-        second: usize,
-        /// A point of both.
-        at: Vec3,
-    },
-    /// Neighbours that lie on one another, or a panel that does so with itself.
-    #[error(
-        "{} folded onto one another, the first {first} and {second} at {at:?} m; take one out", counted(*count, "pair of neighbours is", "pairs of neighbours are")
-    )]
-    Folded {
-        /// How many pairs.
-        count: usize,
-        /// The smaller number of the first pair; for a quadrilateral that crosses itself, both are one.
-        first: usize,
-        /// The larger one.
-        second: usize,
-        /// The middle of their common edge.
-        at: Vec3,
-    },
-    /// Thin panels: the result may lose digits.
-    #[error(
-        "{}, the thinnest is {panel} at {at:?} m with {ratio:.1e} of its longest edge squared", counted(*count, "panel is a sliver", "panels are slivers")
-    )]
-    Slivers {
-        /// How many.
-        count: usize,
-        /// The thinnest.
-        panel: usize,
-        /// Its centroid.
-        at: Vec3,
-        /// Its area over its longest edge squared.
-        ratio: f64,
-    },
+/// What is wrong with a mesh, and where.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{words}")]
+pub struct Trouble {
+    /// What sort it is of.
+    pub kind: Kind,
+    words: String,
+}
+
+/// What sort of trouble a mesh has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Its numbers are none of a mesh.
+    Unreadable,
+    /// Edges with one panel only.
+    Open,
+    /// A part inside another.
+    Nested,
+    /// Parts that cross or touch.
+    Crossing,
+    /// Slivers: the accuracy suffers, the solution does not fail.
+    Slivers,
+    /// Any other, which a repair may take away.
+    Other,
 }
 
 impl Trouble {
-    /// Whether nothing can be computed with it; slivers only cost digits.
+    pub(crate) fn new(kind: Kind, words: impl Into<String>) -> Self {
+        Self { kind, words: words.into() }
+    }
+
+    /// Whether potential flow cannot be computed on the mesh; slivers only cost accuracy.
     #[must_use]
-    pub const fn is_fatal(&self) -> bool {
-        !matches!(self, Self::Slivers { .. })
+    pub fn is_fatal(&self) -> bool {
+        self.kind != Kind::Slivers
     }
 }
 
@@ -200,7 +72,9 @@ pub fn check(mesh: &Mesh) -> Vec<Trouble> {
         let edge = |i: usize| norm(sub(corners[(i + 1) % corners.len()], corners[i]));
         let longest = (0..corners.len()).map(edge).fold(0.0, f64::max);
         if facet.area <= NOTHING * extent * extent {
-            out.push(Trouble::NoArea { panel: number, at: corners[0] });
+            let at = corners[0];
+            let words = format!("panel {number} at {at:?} m has no area; take it out, or merge its corners");
+            out.push(Trouble::new(Kind::Other, words));
             continue;
         }
         let ratio = facet.area / (longest * longest);
@@ -213,17 +87,26 @@ pub fn check(mesh: &Mesh) -> Vec<Trouble> {
         let mut key = panel.corners().to_vec();
         key.sort_unstable();
         if let Some(first) = seen.insert(key, number) {
-            out.push(Trouble::Copy { panel: number, first, at: facet.centroid });
+            let at = facet.centroid;
+            let words = format!("panel {number} at {at:?} m is there twice (also as {first}); take one out");
+            out.push(Trouble::new(Kind::Other, words));
         }
     }
     out.extend(edges(mesh));
     let volume_m3 = Measure::of(mesh).volume_m3;
     if out.is_empty() && volume_m3 <= 0.0 {
-        out.push(Trouble::InsideOut { volume_m3 });
+        let words = format!(
+            "the surface is inside out (its volume is {volume_m3:.4e} m³): its normals must point into the water"
+        );
+        out.push(Trouble::new(Kind::Other, words));
     }
     if let Some((panel, ratio)) = thinnest {
         let at = Facet::of(mesh, mesh.panels[panel]).centroid;
-        out.push(Trouble::Slivers { count: slivers, panel, at, ratio });
+        let words = format!(
+            "{}, the thinnest is {panel} at {at:?} m with {ratio:.1e} of its longest edge squared",
+            counted(slivers, "panel is a sliver", "panels are slivers")
+        );
+        out.push(Trouble::new(Kind::Slivers, words));
     }
     out
 }
@@ -246,13 +129,17 @@ pub(crate) fn has_no_area(mesh: &Mesh, panel: Panel, extent: f64) -> bool {
 fn unreadable(mesh: &Mesh) -> Vec<Trouble> {
     let vertices = mesh.vertices.len();
     if mesh.panels.is_empty() {
-        return vec![Trouble::Empty];
+        return vec![Trouble::new(Kind::Unreadable, "the mesh has no panel")];
     }
     let wild = mesh.vertices.iter().enumerate().filter(|(_, v)| v.iter().any(|x| !x.is_finite()));
-    let mut out: Vec<Trouble> = wild.map(|(vertex, point)| Trouble::NotFinite { vertex, point: *point }).collect();
+    let unreadable = |words| Trouble::new(Kind::Unreadable, words);
+    let mut out: Vec<Trouble> = wild
+        .map(|(vertex, point)| format!("vertex {vertex} has the coordinates {point:?}: each must be a finite number"))
+        .map(unreadable)
+        .collect();
     for (panel, p) in mesh.panels.iter().enumerate() {
         if let Some(&vertex) = p.corners().iter().find(|v| **v as usize >= vertices) {
-            out.push(Trouble::NoSuchVertex { panel, vertex: vertex as usize, vertices });
+            out.push(unreadable(format!("panel {panel} has the vertex {vertex}, and there are {vertices}")));
         }
     }
     out
@@ -288,22 +175,31 @@ fn edges(mesh: &Mesh) -> Vec<Trouble> {
     let mut edges: Vec<_> = passed.into_iter().collect();
     edges.sort_unstable();
     let point = |v: u32| mesh.vertices[v as usize];
-    let reported = |is_such: fn(usize, usize) -> bool, trouble: fn(usize, Vec3, Vec3) -> Trouble| {
+    let reported = |kind: Kind, is_such: fn(usize, usize) -> bool, [one, more]: [&str; 2], problem: &str| {
         let mut such = edges.iter().filter(|(_, (there, back))| is_such(*there, *back));
         let ((from, to), _) = *such.next()?;
-        Some(trouble(1 + such.count(), point(from), point(to)))
+        let (edges, from, to) = (counted(1 + such.count(), one, more), point(from), point(to));
+        Some(Trouble::new(kind, format!("{edges}, the first from {from:?} to {to:?} m: {problem}")))
     };
-    [
-        reported(|there, back| there + back == 1, |count, from, to| Trouble::Open { count, from, to }),
-        reported(
-            |there, back| there + back == 2 && there != back,
-            |count, from, to| Trouble::Turned { count, from, to },
-        ),
-        reported(|there, back| there + back > 2, |count, from, to| Trouble::Branched { count, from, to }),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let open = reported(
+        Kind::Open,
+        |there, back| there + back == 1,
+        ["edge has one panel only", "edges have one panel only"],
+        "the surface is open there",
+    );
+    let turned = reported(
+        Kind::Other,
+        |there, back| there + back == 2 && there != back,
+        ["edge is traversed twice in the same direction", "edges are traversed twice in the same direction"],
+        "neighbours are oriented against each other",
+    );
+    let branched = reported(
+        Kind::Other,
+        |there, back| there + back > 2,
+        ["edge has three panels or more", "edges have three panels or more"],
+        "surfaces touch there",
+    );
+    open.into_iter().chain(turned).chain(branched).collect()
 }
 
 #[cfg(test)]

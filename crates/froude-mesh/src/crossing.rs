@@ -15,8 +15,8 @@
 use indexmap::IndexMap;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
-use crate::check::{Trouble, is_readable};
-use crate::files::soup::bits;
+use crate::check::{Kind, Trouble, is_readable};
+use crate::files::soup::{bits, counted};
 use crate::mesh::Mesh;
 use crate::panel::halves;
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
@@ -32,8 +32,35 @@ pub const MOST: usize = 100_000;
 /// None for a mesh with coordinates or corners that are none. Panels without area cross nothing.
 #[must_use]
 pub fn crossings(mesh: &Mesh) -> Vec<Trouble> {
+    let [crossing, folded] = met(mesh);
+    let crossing = crossing.map(|Met { count, first, second, at }| {
+        let pairs = counted(count, "pair of panels crosses or touches", "pairs of panels cross or touch");
+        let words = format!(
+            "{pairs} without a common vertex there, the first {first} and {second} at {at:?} m; unite the bodies, or move them apart"
+        );
+        Trouble::new(Kind::Crossing, words)
+    });
+    let folded = folded.map(|Met { count, first, second, at }| {
+        let pairs = counted(count, "pair of neighbours is", "pairs of neighbours are");
+        let words =
+            format!("{pairs} folded onto one another, the first {first} and {second} at {at:?} m; take one out");
+        Trouble::new(Kind::Other, words)
+    });
+    crossing.into_iter().chain(folded).collect()
+}
+
+/// Panels that meet: how many pairs, the first of them, and a point of both.
+struct Met {
+    count: usize,
+    first: usize,
+    second: usize,
+    at: Vec3,
+}
+
+/// Panels that cross, and those folded onto a neighbour.
+fn met(mesh: &Mesh) -> [Option<Met>; 2] {
     if !is_readable(mesh) {
-        return Vec::new();
+        return [None, None];
     }
     let triangles = triangles(mesh);
     let mut crossing: Vec<(u32, u32, Vec3)> = Vec::new();
@@ -52,11 +79,10 @@ pub fn crossings(mesh: &Mesh) -> Vec<Trouble> {
     let reported = |mut pairs: Vec<(u32, u32, Vec3)>| {
         pairs.sort_by_key(|(a, b, _)| (*a, *b));
         pairs.dedup_by_key(|(a, b, _)| (*a, *b));
-        pairs.first().map(|(first, second, at)| (pairs.len(), *first as usize, *second as usize, *at))
+        let (first, second, at) = *pairs.first()?;
+        Some(Met { count: pairs.len(), first: first as usize, second: second as usize, at })
     };
-    let crossing = reported(crossing).map(|(count, first, second, at)| Trouble::Crossing { count, first, second, at });
-    let folded = reported(folded).map(|(count, first, second, at)| Trouble::Folded { count, first, second, at });
-    crossing.into_iter().chain(folded).collect()
+    [reported(crossing), reported(folded)]
 }
 
 struct Triangle {
@@ -313,9 +339,7 @@ mod tests {
     fn bodies_through_one_another_are_reported_with_a_point_of_both() {
         let mesh = ball(0.0, 4).with(&ball(1.5, 4));
         assert_eq!(check(&mesh), []);
-        let [Trouble::Crossing { count, first, second, at }] = crossings(&mesh)[..] else {
-            panic!("{:?}", reported(&mesh))
-        };
+        let [Some(Met { count, first, second, at }), None] = met(&mesh) else { panic!("{:?}", reported(&mesh)) };
         assert!(count > 30 && first < mesh.panels.len() / 2 && second >= mesh.panels.len() / 2);
         // Between the two spheres at x = 0.75, and within a panel's sag of both.
         assert!((at[0] - 0.75).abs() < 0.1 && (at[1].hypot(at[2]) - 0.75_f64.acos().sin()).abs() < 0.1, "{at:?}");

@@ -3,7 +3,7 @@
 //! [`mod@crate::check`] looks at the whole: a small part that is inside out disappears in the volume of a large one. Here each part is on
 //! its own.
 
-use crate::check::{Trouble, is_readable};
+use crate::check::{Kind, Trouble, is_readable};
 use crate::mesh::Mesh;
 use crate::panel::halves;
 use crate::topology::{Groups, by_edge, sides};
@@ -66,9 +66,15 @@ pub fn part_troubles(mesh: &Mesh) -> Vec<Trouble> {
     for (number, (part, holder)) in parts.iter().zip(holders).enumerate() {
         let (panels, at, volume_m3) = (part.panels.len(), part.at, part.volume_m3);
         if let Some(outer) = holder {
-            out.push(Trouble::Nested { part: number, panels, at, volume_m3, outer });
+            let words = format!(
+                "part {number} ({panels} panels, at {at:?} m, volume {volume_m3:.4e} m³) lies inside part {outer}: no water reaches it; take it out"
+            );
+            out.push(Trouble::new(Kind::Nested, words));
         } else if part.is_closed && has_right_one && part.volume_m3 < 0.0 {
-            out.push(Trouble::PartInsideOut { part: number, panels, at, volume_m3 });
+            let words = format!(
+                "part {number} ({panels} panels, at {at:?} m) is inside out (its volume is {volume_m3:.4e} m³), others are not; turn its panels"
+            );
+            out.push(Trouble::new(Kind::Other, words));
         }
     }
     out

@@ -7,125 +7,28 @@
 
 use indexmap::{IndexMap, IndexSet};
 
-use crate::check::{Trouble, extent, first_unreadable, has_no_area};
+use crate::check::{extent, first_unreadable, has_no_area};
 use crate::files::soup::counted;
 use crate::mesh::{Mesh, Panel};
 use crate::parts::{holders, volume};
 use crate::topology::{by_edge, sides};
 use crate::vector::{Vec3, norm, sub};
 
-/// What was done, or could not be decided.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Repair {
-    /// Nothing: the mesh has numbers that are none.
-    #[error("nothing repaired: {0}")]
-    Nothing(Trouble),
-    /// Vertices at one place made one.
-    #[error("{} merged (closer than {weld_m} m), first at {at:?} m", counted(*count, "vertex", "vertices"))]
-    Merged {
-        /// How many are gone.
-        count: usize,
-        /// How close they were at most.
-        weld_m: f64,
-        /// The first.
-        at: Vec3,
-    },
-    /// Panels without area taken out.
-    #[error("{} without area taken out, first at {at:?} m", counted(*count, "panel", "panels"))]
-    NoArea {
-        /// How many.
-        count: usize,
-        /// A corner of the first.
-        at: Vec3,
-    },
-    /// The later of two panels over the same corners taken out.
-    #[error("{} taken out, first at {at:?} m", counted(*count, "copy of a panel", "copies of panels"))]
-    Copies {
-        /// How many.
-        count: usize,
-        /// A corner of the first.
-        at: Vec3,
-    },
-    /// Vertices without panel taken out.
-    #[error("{} taken out", counted(*count, "vertex that no panel uses", "vertices that no panel uses"))]
-    Unused {
-        /// How many.
-        count: usize,
-    },
-    /// Panels turned to run as their neighbours do.
-    #[error("{} turned to match most of their neighbours, first at {at:?} m", counted(*count, "panel", "panels"))]
-    Turned {
-        /// How many.
-        count: usize,
-        /// A corner of the first.
-        at: Vec3,
-    },
-    /// A closed surface turned.
-    #[error("{panels} panels turned outward, at {at:?} m: they enclosed {volume_m3:.4e} m³")]
-    Outward {
-        /// How many.
-        panels: usize,
-        /// A corner of the first.
-        at: Vec3,
-        /// Signed volume before, m³.
-        volume_m3: f64,
-    },
-    /// Not decided: an open surface.
-    #[error("not decided: the outside of {panels} panels at {at:?} m, which are open; most of them keep their side")]
-    Open {
-        /// How many.
-        panels: usize,
-        /// A corner of the first.
-        at: Vec3,
-    },
-    /// Not decided: a surface inside another.
-    #[error(
-        "not decided: {panels} panels at {at:?} m, volume {volume_m3:.4e} m³, lie inside the surface at {outer:?} m; take out the one that \
-         the water does not touch"
-    )]
-    Nested {
-        /// How many.
-        panels: usize,
-        /// A corner of the first.
-        at: Vec3,
-        /// Signed volume, m³.
-        volume_m3: f64,
-        /// A corner of the outer surface.
-        outer: Vec3,
-    },
-    /// Not possible: one side only, as a Möbius band has.
-    #[error("not possible: {panels} panels at {at:?} m have no two sides; they are left as they were")]
-    OneSided {
-        /// How many.
-        panels: usize,
-        /// A corner of the first.
-        at: Vec3,
-    },
-}
-
-impl Repair {
-    /// Whether the mesh was changed; the others are for the user to decide.
-    #[must_use]
-    pub const fn is_change(&self) -> bool {
-        !matches!(self, Self::Nothing(_) | Self::Open { .. } | Self::Nested { .. } | Self::OneSided { .. })
-    }
-}
-
-/// A mesh repaired, and all that was done to it.
+/// A mesh repaired, and in words all that was done to it, and what was not decided.
 ///
 /// Vertices not farther than `weld_m` from an earlier one become that one; 0 merges those that are the same. Panels keep their order.
 #[must_use]
-pub fn repaired(mesh: &Mesh, weld_m: f64) -> (Mesh, Vec<Repair>) {
+pub fn repaired(mesh: &Mesh, weld_m: f64) -> (Mesh, Vec<String>) {
     if let Some(trouble) = first_unreadable(mesh) {
-        return (mesh.clone(), vec![Repair::Nothing(trouble)]);
+        return (mesh.clone(), vec![format!("nothing repaired: {trouble}")]);
     }
     let mut reported = Vec::new();
     let mut out = welded(mesh, weld_m, &mut reported);
     take_out(&mut out, &mut reported);
     let count = out.drop_unused_vertices();
     if count > 0 {
-        reported.push(Repair::Unused { count });
+        reported
+            .push(format!("{} taken out", counted(count, "vertex that no panel uses", "vertices that no panel uses")));
     }
     orient(&mut out, &mut reported);
     (out, reported)
@@ -159,16 +62,16 @@ pub fn merged(mesh: Mesh) -> (Mesh, Vec<String>) {
     if let Some(first) = first {
         let (before, at) = (out.panels.len(), corner(&out, first));
         out.panels.retain(|panel| !collapsed(panel));
-        reported.push(Repair::NoArea { count: before - out.panels.len(), at });
+        reported.push(without_area(before - out.panels.len(), at));
     }
-    (out, reported.iter().map(ToString::to_string).collect())
+    (out, reported)
 }
 
 /// Cells of the grid over the tolerance: a vertex then rarely lies so near a side that a second cell must be searched.
 const CELLS: f64 = 16.0;
 
 /// Each vertex becomes the first one within `weld_m` of it, found by a grid of cells.
-fn welded(mesh: &Mesh, weld_m: f64, reported: &mut Vec<Repair>) -> Mesh {
+fn welded(mesh: &Mesh, weld_m: f64, reported: &mut Vec<String>) -> Mesh {
     let weld_m = if weld_m.is_finite() { weld_m.max(0.0) } else { 0.0 };
     let low = |axis: usize| mesh.vertices.iter().map(|v| v[axis]).fold(f64::INFINITY, f64::min);
     let low = [low(0), low(1), low(2)];
@@ -208,13 +111,18 @@ fn welded(mesh: &Mesh, weld_m: f64, reported: &mut Vec<Repair>) -> Mesh {
     out.panels = mesh.panels.iter().map(renumbered).collect();
     let count = mesh.vertices.len() - out.vertices.len();
     if let Some(at) = first {
-        reported.push(Repair::Merged { count, weld_m, at });
+        let vertices = counted(count, "vertex", "vertices");
+        reported.push(format!("{vertices} merged (closer than {weld_m} m), first at {at:?} m"));
     }
     out
 }
 
+fn without_area(count: usize, at: Vec3) -> String {
+    format!("{} without area taken out, first at {at:?} m", counted(count, "panel", "panels"))
+}
+
 /// Takes out panels without area, and the later of two over the same corners.
-fn take_out(mesh: &mut Mesh, reported: &mut Vec<Repair>) {
+fn take_out(mesh: &mut Mesh, reported: &mut Vec<String>) {
     let extent = extent(mesh);
     let mut seen = IndexSet::new();
     let (mut empty, mut copies) = ((0, None), (0, None));
@@ -234,10 +142,11 @@ fn take_out(mesh: &mut Mesh, reported: &mut Vec<Repair>) {
         gone.1.get_or_insert_with(|| corner(mesh, number));
     }
     if let (count, Some(at)) = empty {
-        reported.push(Repair::NoArea { count, at });
+        reported.push(without_area(count, at));
     }
     if let (count, Some(at)) = copies {
-        reported.push(Repair::Copies { count, at });
+        let copies = counted(count, "copy of a panel", "copies of panels");
+        reported.push(format!("{copies} taken out, first at {at:?} m"));
     }
     mesh.panels = panels;
 }
@@ -249,21 +158,25 @@ struct Sheet {
     is_closed: bool,
 }
 
-fn orient(mesh: &mut Mesh, reported: &mut Vec<Repair>) {
+fn orient(mesh: &mut Mesh, reported: &mut Vec<String>) {
     let (sheets, mut turned) = sheets(mesh);
     let at = |mesh: &Mesh, sheet: &Sheet| corner(mesh, sheet.panels[0]);
     for sheet in &sheets {
         let count = sheet.panels.iter().filter(|p| turned[**p]).count();
         if !sheet.is_two_sided {
             sheet.panels.iter().for_each(|p| turned[*p] = false);
-            reported.push(Repair::OneSided { panels: sheet.panels.len(), at: at(mesh, sheet) });
+            let (panels, at) = (sheet.panels.len(), at(mesh, sheet));
+            reported.push(format!(
+                "not possible: {panels} panels at {at:?} m have no two sides; they are left as they were"
+            ));
         } else if 2 * count > sheet.panels.len() {
             sheet.panels.iter().for_each(|p| turned[*p] = !turned[*p]);
         }
     }
     let which: Vec<usize> = (0..turned.len()).filter(|p| turned[*p]).collect();
     if let Some(first) = which.first() {
-        reported.push(Repair::Turned { count: which.len(), at: corner(mesh, *first) });
+        let (panels, at) = (counted(which.len(), "panel", "panels"), corner(mesh, *first));
+        reported.push(format!("{panels} turned to match most of their neighbours, first at {at:?} m"));
     }
     for p in &which {
         mesh.panels[*p] = mesh.panels[*p].turned();
@@ -278,16 +191,20 @@ fn orient(mesh: &mut Mesh, reported: &mut Vec<Repair>) {
             continue;
         }
         if !sheet.is_closed {
-            reported.push(Repair::Open { panels, at });
+            reported.push(format!(
+                "not decided: the outside of {panels} panels at {at:?} m, which are open; most of them keep their side"
+            ));
             continue;
         }
         let volume_m3 = volume(mesh, &sheet.panels);
         if let Some(outer) = holder {
             let outer = corner(mesh, sheets[*outer].panels[0]);
-            reported.push(Repair::Nested { panels, at, volume_m3, outer });
+            reported.push(format!(
+                "not decided: {panels} panels at {at:?} m, volume {volume_m3:.4e} m³, lie inside the surface at {outer:?} m; take out the one that the water does not touch"
+            ));
         } else if volume_m3 < 0.0 {
             sheet.panels.iter().for_each(|p| mesh.panels[*p] = mesh.panels[*p].turned());
-            reported.push(Repair::Outward { panels, at, volume_m3 });
+            reported.push(format!("{panels} panels turned outward, at {at:?} m: they enclosed {volume_m3:.4e} m³"));
         }
     }
 }
@@ -377,10 +294,6 @@ mod tests {
         out
     }
 
-    fn reported(repairs: &[Repair]) -> Vec<String> {
-        repairs.iter().map(ToString::to_string).collect()
-    }
-
     #[test]
     fn a_good_mesh_stays_as_it_is() {
         let mesh = ball(0.0, 1.0);
@@ -410,7 +323,7 @@ mod tests {
             "1 vertex that no panel uses taken out".to_owned(),
             format!("1 panel turned to match most of their neighbours, first at {turned}"),
         ];
-        assert_eq!(reported(&repairs), expected);
+        assert_eq!(repairs, expected);
     }
 
     #[test]
@@ -419,17 +332,14 @@ mod tests {
         mesh.panels.iter_mut().for_each(|p| *p = p.turned());
         let (out, repairs) = repaired(&mesh, 0.0);
         assert!((Measure::of(&out).volume_m3 + Measure::of(&mesh).volume_m3).abs() < 1e-12);
-        assert_eq!(
-            reported(&repairs)[1],
-            "64 panels turned outward, at [2.5, 0.0, 0.0] m: they enclosed -4.5346e-1 m³"
-        );
+        assert_eq!(repairs[1], "64 panels turned outward, at [2.5, 0.0, 0.0] m: they enclosed -4.5346e-1 m³");
 
         let nested = ball(0.0, 1.0).with(&ball(0.0, 0.5));
         let (out, repairs) = repaired(&nested, 0.0);
         assert_eq!(out, nested);
         let sentence = "not decided: 64 panels at [-0.5, 0.0, 0.0] m, volume 4.5346e-1 m³, lie inside the surface at [-1.0, 0.0, 0.0] m; \
                         take out the one that the water does not touch";
-        assert_eq!(reported(&repairs), [sentence]);
+        assert_eq!(repairs, [sentence]);
     }
 
     #[test]
@@ -438,7 +348,7 @@ mod tests {
         open.panels.remove(0);
         let (out, repairs) = repaired(&open, 1e-6);
         assert_eq!(out, open);
-        assert!(reported(&repairs)[0].starts_with("not decided: the outside of 63 panels"), "{repairs:?}");
+        assert!(repairs[0].starts_with("not decided: the outside of 63 panels"), "{repairs:?}");
 
         // A band of quadrilaterals, joined with half a turn.
         let vertices = (0..16).map(|i| {
@@ -455,7 +365,7 @@ mod tests {
         let band = Mesh { vertices: vertices.collect(), panels: (0..8).map(quad).collect() };
         let (out, repairs) = repaired(&band, 0.0);
         assert_eq!(out.panels, band.panels);
-        assert!(reported(&repairs)[0].starts_with("not possible: 8 panels"), "{repairs:?}");
+        assert!(repairs[0].starts_with("not possible: 8 panels"), "{repairs:?}");
     }
 
     #[test]
@@ -469,7 +379,7 @@ mod tests {
         let half = 0.5 * core::f64::consts::SQRT_2;
         let mesh = box_at(0.0, 0.0).with(&box_at(half, half));
         let (out, repairs) = repaired(&mesh, 1e-9);
-        assert_eq!(reported(&repairs).len(), 1, "{repairs:?}");
+        assert_eq!(repairs.len(), 1, "{repairs:?}");
         assert!((Measure::of(&out).volume_m3 - 1.0).abs() < 1e-12);
     }
 

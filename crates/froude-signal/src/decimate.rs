@@ -16,6 +16,7 @@
 use std::f64::consts::PI;
 
 use crate::error::{SignalError, all_finite, in_range};
+use crate::stream::Link;
 
 /// Outputs at each end that a record's end has touched.
 pub const EDGE: usize = 10;
@@ -57,8 +58,8 @@ pub fn decimate(record: &[f64], factor: usize) -> Result<Vec<f64>, SignalError> 
     all_finite(record)?;
     let mut stream = Decimator::new(factor)?;
     let mut out = Vec::with_capacity(record.len().div_ceil(factor));
-    stream.push(record, &mut out);
-    stream.finish(&mut out);
+    stream.take(record, &mut out);
+    stream.finish(&mut out)?;
     Ok(out)
 }
 
@@ -90,23 +91,6 @@ impl Decimator {
         Ok(Self { factor, taps, window, taken: 0, given: 0 })
     }
 
-    /// Takes samples in and appends the outputs that they complete.
-    pub fn push(&mut self, samples: &[f64], out: &mut Vec<f64>) {
-        for bite in samples.chunks(BITE) {
-            self.window.extend_from_slice(bite);
-            self.taken += bite.len();
-            self.emit(out);
-        }
-    }
-
-    /// Appends what is left, the record continued by zeros.
-    pub fn finish(mut self, out: &mut Vec<f64>) {
-        let total = self.taken.div_ceil(self.factor);
-        self.window.resize(self.window.len() + self.taps.len() / 2, 0.0);
-        self.emit(out);
-        debug_assert_eq!(self.given, total);
-    }
-
     fn emit(&mut self, out: &mut Vec<f64>) {
         let mut start = 0;
         while let Some(under) = self.window.get(start..start + self.taps.len()) {
@@ -115,6 +99,25 @@ impl Decimator {
             start += self.factor;
         }
         self.window.drain(..start.min(self.window.len()));
+    }
+}
+
+impl Link for Decimator {
+    fn take(&mut self, samples: &[f64], out: &mut Vec<f64>) {
+        for bite in samples.chunks(BITE) {
+            self.window.extend_from_slice(bite);
+            self.taken += bite.len();
+            self.emit(out);
+        }
+    }
+
+    /// The record is continued by zeros.
+    fn finish(mut self, out: &mut Vec<f64>) -> Result<(), SignalError> {
+        let total = self.taken.div_ceil(self.factor);
+        self.window.resize(self.window.len() + self.taps.len() / 2, 0.0);
+        self.emit(out);
+        debug_assert_eq!(self.given, total);
+        Ok(())
     }
 }
 
@@ -168,9 +171,9 @@ mod tests {
             let mut stream = Decimator::new(q).unwrap();
             let mut parts = Vec::new();
             for chunk in x.chunks(cut) {
-                stream.push(chunk, &mut parts);
+                stream.take(chunk, &mut parts);
             }
-            stream.finish(&mut parts);
+            stream.finish(&mut parts).unwrap();
             prop_assert_eq!(whole.len(), x.len().div_ceil(q));
             prop_assert_eq!(whole, parts);
         }

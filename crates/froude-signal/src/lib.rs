@@ -9,9 +9,6 @@
 //! | [`butterworth`]     | low-pass design, as second-order sections                         | –                       |
 //! | [`analogue`]        | what a filter before the log does to a signal, and to noise       | –                       |
 //! | [`zero_phase`]      | forward and backward: no phase, twice the attenuation             | odd extension           |
-//! | [`causal`]          | forward only, a chunk at a time: with the filter's phase           | empty, or settled       |
-//! | [`gaussian`]        | smoothing by a Gaussian                                           | mirrored                |
-//! | [`savitzky_golay`]  | local polynomial: value and derivatives                           | polynomial of the end   |
 //! | [`differences`]     | central differences                                               | one-sided               |
 //! | [`decimate`]        | zero-phase FIR low-pass, every q-th sample                        | zeros                   |
 //! | [`block_mean`]      | means of blocks of neighbours                                     | whole blocks alone      |
@@ -22,7 +19,7 @@
 //! | [`harmonic`]        | mean, harmonics and their frequency, with uncertainty             | broken periods count    |
 //! | [`resample`]        | values between samples, at the times of another clock             | not-a-knot              |
 //! | [`clock`]           | offset, skew and gain of one channel against another              | –                       |
-//! | [`spectrum`]        | Welch spectra, frequency response, coherence                      | –                       |
+//! | [`spectrum`]        | Welch spectra                                                     | –                       |
 //!
 //! **Units.** A rate is in Hz, a time in s, the values are whatever they were (SI in [`two_mass`]).
 //! **Time.** Samples are equidistant; gaps and jitter are the caller's, reported before they come here.
@@ -36,18 +33,14 @@ pub mod block_mean;
 pub mod blocks;
 pub mod butterworth;
 mod cascade;
-pub mod causal;
 pub mod clock;
-mod convolve;
 pub mod decimate;
 pub mod differences;
 mod error;
 pub mod exponential;
-pub mod gaussian;
 pub mod harmonic;
 mod pages;
 pub mod resample;
-pub mod savitzky_golay;
 pub mod spectrum;
 pub mod stream;
 pub mod two_mass;

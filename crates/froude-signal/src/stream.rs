@@ -8,11 +8,10 @@
 //! |--------------------|-------------------------------|---------------------------------------------------------------|
 //! | [`ZeroPhase`]      | a block and the filter's memory | equal to rounding: the backward pass starts where its start is forgotten |
 //! | [`Differences`]    | two samples                   | equal, bit for bit                                              |
-//! | [`Decimator`]      | its taps and a bite           | equal, bit for bit                                              |
+//! | [`Decimator`](crate::decimate::Decimator)      | its taps and a bite           | equal, bit for bit                                              |
 
 use crate::SignalError;
 use crate::butterworth::LowPass;
-pub use crate::decimate::Decimator;
 use crate::zero_phase::{Pass, extension};
 
 /// A link of a chain.
@@ -26,17 +25,6 @@ pub trait Link {
     ///
     /// [`SignalError::TooShort`] when the whole record was too short for the link.
     fn finish(self, out: &mut Vec<f64>) -> Result<(), SignalError>;
-}
-
-impl Link for Decimator {
-    fn take(&mut self, samples: &[f64], out: &mut Vec<f64>) {
-        self.push(samples, out);
-    }
-
-    fn finish(self, out: &mut Vec<f64>) -> Result<(), SignalError> {
-        Decimator::finish(self, out);
-        Ok(())
-    }
 }
 
 /// Central differences, one-sided at the ends.
@@ -223,6 +211,7 @@ impl Link for ZeroPhase {
 mod tests {
     use super::*;
     use crate::butterworth::low_pass;
+    use crate::decimate::Decimator;
     use crate::{differences, zero_phase};
     use proptest::prelude::*;
 
@@ -290,7 +279,7 @@ mod tests {
         for _ in 0..300 {
             smooth.clear();
             filter.take(&chunk, &mut smooth);
-            decimator.push(&smooth, &mut out);
+            decimator.take(&smooth, &mut out);
             peak = peak.max(filter.waiting.capacity() + filter.tail.capacity());
         }
         assert!(peak < 12 * memory + 100, "{peak} samples held, memory of the filter {memory}");

@@ -17,6 +17,7 @@ mod uncertain;
 mod water;
 mod way;
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use froude_records::RecordError;
@@ -25,7 +26,6 @@ use froude_records::outcome::{Content, Head, Outcome, OutputFile};
 use froude_records::table::Table;
 
 use crate::chain::Chain;
-use crate::draws::DrawError;
 use crate::dynamics::Dynamics;
 pub use crate::gait_file::PitchFile as Pitching;
 use crate::joints::Drives;
@@ -39,7 +39,7 @@ pub use look::look;
 pub use moves::{Moves, Typed};
 pub use optimise::optimise;
 use reads::Reads;
-pub use sweep::{Ranges, SweepError, SweepJob, sweep};
+pub use sweep::{Ranges, SweepJob, sweep};
 pub use uncertain::Drawing;
 
 /// What is asked for.
@@ -77,28 +77,17 @@ pub enum VerbError {
     /// A robot file gives no robot.
     #[error(transparent)]
     Robot(#[from] RobotError),
-    /// A file does not fit the robot, or what is asked of it.
-    #[error("{}: {problem}", .path.display())]
-    Input {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, and what to do.
-        problem: String,
-    },
-    /// A sweep does not begin.
-    #[error(transparent)]
-    Sweep(#[from] SweepError),
-    /// Nothing can be drawn.
-    #[error(transparent)]
-    Draws(#[from] DrawError),
+    /// Something that is asked for cannot be; with the file, if it is one's.
+    #[error("{0}")]
+    Refused(String),
     /// A gait has no answer.
     #[error(transparent)]
     Swim(#[from] SwimError),
 }
 
 impl VerbError {
-    fn input(path: &Path, problem: impl Into<String>) -> Self {
-        Self::Input { path: path.to_owned(), problem: problem.into() }
+    fn input(path: &Path, problem: impl Display) -> Self {
+        Self::Refused(format!("{}: {problem}", path.display()))
     }
 }
 

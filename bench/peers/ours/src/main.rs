@@ -6,7 +6,7 @@
 //! peer-bench CASE DIR THREADS   solve it, print one line of JSON
 //! ```
 //!
-//! Cases: `columns`, `gaussian`, `savitzky-golay`, `forward-backward`, `harmonics`, `resample`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
+//! Cases: `columns`, `forward-backward`, `harmonics`, `resample`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
 
 mod hour;
 mod make;
@@ -38,7 +38,7 @@ fn main() -> Outcome<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build()?;
     let row = pool.install(|| match case.as_str() {
         "columns" => columns(dir),
-        "gaussian" | "savitzky-golay" | "forward-backward" => signals::filter(dir, case),
+        "forward-backward" => signals::filter(dir),
         "harmonics" => signals::harmonics(dir),
         "resample" => signals::resample(dir),
         "hour" => hour::identify(dir),

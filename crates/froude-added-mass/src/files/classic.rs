@@ -42,11 +42,11 @@ pub struct Classic {
 }
 
 impl Classic {
-    /// The file's bytes; [`FileError::BodyCount`] cannot come where the bodies have been counted before.
+    /// The file's bytes; an error of the count cannot come where the bodies have been counted before.
     pub fn bytes(&self, n_bodies: usize) -> Result<Vec<u8>, FileError> {
         let size = |bytes: usize| {
             let offset = i32::try_from(bytes).ok().and_then(|b| u32::try_from(b).ok());
-            offset.ok_or(FileError::BodyCount { count: n_bodies })
+            offset.ok_or_else(|| FileError::body_count(n_bodies))
         };
         // Offsets have a fixed width, so the header is as long with the right ones as without.
         let mut begins = vec![0; self.variables.len()];

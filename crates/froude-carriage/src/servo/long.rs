@@ -21,7 +21,8 @@ use std::collections::VecDeque;
 use froude_fit::faer::Mat;
 use froude_fit::stream::{Accumulator, Shape};
 use froude_signal::butterworth;
-use froude_signal::stream::{Decimator, Differences, Link, SecondDifferences, ZeroPhase};
+use froude_signal::decimate::Decimator;
+use froude_signal::stream::{Differences, Link, SecondDifferences, ZeroPhase};
 
 use crate::servo::chain::{Chain, MOST_NEAR_REST, Motion};
 use crate::servo::error::ServoError;
@@ -278,7 +279,7 @@ impl LongServo {
         self.load_n.drain(..n.min(self.load_n.len()));
         let mut force_n: Vec<f64> = self.force_n.drain(..n).collect();
         let near = self.chain.near_rest(&motion);
-        self.near_rest.push(&near, &mut self.decimated.near_rest);
+        self.near_rest.take(&near, &mut self.decimated.near_rest);
         if self.chain.is_moving {
             let moving = |x: &mut Vec<f64>| x.iter_mut().zip(&near).for_each(|(x, near)| *x *= 1.0 - near);
             moving(&mut force_n);
@@ -286,10 +287,10 @@ impl LongServo {
                 moving(&mut regressor.values);
             }
         }
-        self.force.push(&force_n, &mut self.decimated.force_n);
+        self.force.take(&force_n, &mut self.decimated.force_n);
         let to = self.columns.iter_mut().zip(&mut self.decimated.columns);
         for (regressor, (decimator, column)) in regressors.iter().zip(to) {
-            decimator.push(&regressor.values, column);
+            decimator.take(&regressor.values, column);
         }
         self.fit(kept)
     }
@@ -344,10 +345,10 @@ impl LongServo {
         self.acceleration.take([&[], &self.motion.velocity_m_s[velocity..]], &mut self.motion.acceleration_m_s2);
         self.acceleration.clone().finish(&mut self.motion.acceleration_m_s2)?;
         self.regress(self.trim)?;
-        self.force.clone().finish(&mut self.decimated.force_n);
-        self.near_rest.clone().finish(&mut self.decimated.near_rest);
+        self.force.clone().finish(&mut self.decimated.force_n)?;
+        self.near_rest.clone().finish(&mut self.decimated.near_rest)?;
         for (decimator, column) in self.columns.iter().zip(&mut self.decimated.columns) {
-            decimator.clone().finish(column);
+            decimator.clone().finish(column)?;
         }
         self.fit(self.trim)?;
         let rows = self.fitted;

@@ -77,13 +77,12 @@ impl Plate {
         let half_m = 0.5 * self.length_m;
         let plate = (0..=self.along).map(|i| -half_m * (PI * i as f64 / self.along as f64).cos());
         let edge_m = half_m * (1.0 - (PI / self.along as f64).cos());
-        let beyond = Layers::of_first(self.beyond, edge_m, self.far_m).map_err(|_| MeshError::Number {
-            quantity: "the number of cells beyond the plate's edges",
-            found: self.beyond as f64,
-            expected: format!(
+        let beyond = Layers::of_first(self.beyond, edge_m, self.far_m).map_err(|_| {
+            let expected = format!(
                 "so many that they reach {} m from one of {edge_m:.1e} m, each thicker than the one before and less than twice as thick",
                 self.far_m
-            ),
+            );
+            MeshError::number("the number of cells beyond the plate's edges", self.beyond as f64, expected)
         })?;
         let before = (1..=self.beyond).rev().map(|i| -half_m - beyond.distance_m(i));
         let behind = (1..=self.beyond).map(|i| half_m + beyond.distance_m(i));

@@ -5,7 +5,8 @@ use std::path::Path;
 use froude_mesh::vector::Vec3;
 
 use crate::foam_binary::of_cells;
-use crate::foam_case::{FoamCaseError, times};
+use crate::foam_case::times;
+use crate::foam_error::FoamError;
 use crate::input;
 use crate::poly_mesh::PolyMesh;
 
@@ -27,14 +28,11 @@ impl FlowField {
     ///
     /// # Errors
     ///
-    /// [`FoamCaseError`]: the case has no time but its start, or a file is none of a mesh's or of a field's on it.
-    pub fn read(mesh: &Path, solved: &Path) -> Result<Self, FoamCaseError> {
+    /// [`FoamError`]: the case has no time but its start, or a file is none of a mesh's or of a field's on it.
+    pub fn read(mesh: &Path, solved: &Path) -> Result<Self, FoamError> {
         let last = times(solved)?.pop().filter(|(time, _)| *time > 0.0);
         let (time, last) = last.ok_or_else(|| {
-            FoamCaseError::at(
-                solved,
-                "it has no fields of a later time; they were taken away, or the solver wrote none",
-            )
+            FoamError::at(solved, "it has no fields of a later time; they were taken away, or the solver wrote none")
         })?;
         let mesh = PolyMesh::read(mesh)?;
         let pressure = values::<1>(&last.join("p"), mesh.cells)?;
@@ -43,8 +41,8 @@ impl FlowField {
     }
 }
 
-fn values<const W: usize>(path: &Path, cells: usize) -> Result<Vec<[f64; W]>, FoamCaseError> {
-    let refuse = |problem: String| FoamCaseError::at(path, problem);
+fn values<const W: usize>(path: &Path, cells: usize) -> Result<Vec<[f64; W]>, FoamError> {
+    let refuse = |problem: String| FoamError::at(path, problem);
     let content = input::bytes(path).map_err(|e| refuse(e.to_string()))?;
     let values = of_cells(&content, cells).map_err(refuse)?;
     match values.iter().position(|value: &[f64; W]| !value.iter().all(|x| x.is_finite())) {

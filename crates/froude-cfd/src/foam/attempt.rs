@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use crate::case::Case;
-use crate::foam_case::{self, FoamCaseError, write_dictionary};
+use crate::foam_case::{self, write_dictionary};
+use crate::foam_error::FoamError;
 use crate::foam_mesh::FoamMesh;
 use crate::foam_system::{self, Pace};
-use crate::history::{self, HistoryError};
+use crate::history;
 use crate::input;
 use crate::openfoam::{End, OpenFoam, OpenFoamError};
 use crate::solver_log::SolverLog;
@@ -47,15 +48,12 @@ pub struct Progress {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// Its folder, its mesh or the case it starts from.
+    /// Its folder, its mesh, the case it starts from, or what the solver wrote.
     #[error(transparent)]
-    Folder(#[from] FoamCaseError),
+    File(#[from] FoamError),
     /// A program did not run, or was ended as asked.
     #[error(transparent)]
     Program(#[from] OpenFoamError),
-    /// What the solver wrote.
-    #[error(transparent)]
-    History(#[from] HistoryError),
     /// A program around the solver, or a solver in time.
     #[error("{program} did not end as it should ({end:?}); it says: {said}; its log is {log}")]
     Part {
@@ -155,7 +153,7 @@ impl<'a> Attempt<'a> {
     /// What the solver said so far.
     pub fn log(&self) -> Result<SolverLog, SolveError> {
         let log = self.folder.join(SOLVER_LOG);
-        let text = input::bytes(&log).map_err(|e| FoamCaseError::at(&log, e))?;
+        let text = input::bytes(&log).map_err(|e| FoamError::at(&log, e))?;
         Ok(SolverLog::of(&String::from_utf8_lossy(&text)))
     }
 
@@ -171,7 +169,7 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    fn write_control(&self, span: [f64; 2]) -> Result<(), FoamCaseError> {
+    fn write_control(&self, span: [f64; 2]) -> Result<(), FoamError> {
         let control = foam_system::control(self.case, &self.mesh, self.pace, span);
         write_dictionary(self.folder, "system/controlDict", &control)
     }
@@ -189,7 +187,7 @@ impl<'a> Attempt<'a> {
     }
 
     /// Leaves the last time of the case, and of each of its ranks, with the fields that a run can start from.
-    fn remove_earlier_times(&self, ranks: usize) -> Result<(), FoamCaseError> {
+    fn remove_earlier_times(&self, ranks: usize) -> Result<(), FoamError> {
         let mut folders = vec![self.folder.to_owned()];
         if ranks > 1 {
             folders.extend((0..ranks).map(|rank| self.folder.join(format!("processor{rank}"))));
@@ -203,13 +201,13 @@ impl<'a> Attempt<'a> {
             // The walls' y+ is kept as three numbers, not as a field over all cells.
             let field = last.map(|(_, path)| path.join("yPlus")).filter(|field| field.is_file());
             if let Some(field) = field {
-                std::fs::remove_file(&field).map_err(|e| FoamCaseError::at(&field, e))?;
+                std::fs::remove_file(&field).map_err(|e| FoamError::at(&field, e))?;
             }
         }
         Ok(())
     }
 }
 
-fn remove(folder: &Path) -> Result<(), FoamCaseError> {
-    std::fs::remove_dir_all(folder).map_err(|e| FoamCaseError::at(folder, e))
+fn remove(folder: &Path) -> Result<(), FoamError> {
+    std::fs::remove_dir_all(folder).map_err(|e| FoamError::at(folder, e))
 }

@@ -4,32 +4,10 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::case::Case;
 use crate::dictionary::Dictionary;
+use crate::foam_error::FoamError;
 use crate::foam_fields::{Field, fields};
-use crate::foam_mesh::{FoamMesh, FoamMeshError};
+use crate::foam_mesh::FoamMesh;
 use crate::foam_system::{self, Pace};
-
-/// Why a case's folder could not be written or read.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum FoamCaseError {
-    /// A file or folder.
-    #[error("{path}: {problem}")]
-    File {
-        /// Where.
-        path: String,
-        /// As the system says it.
-        problem: String,
-    },
-    /// The mesh.
-    #[error(transparent)]
-    Mesh(#[from] FoamMeshError),
-}
-
-impl FoamCaseError {
-    pub(crate) fn at(path: &Path, problem: impl ToString) -> Self {
-        Self::File { path: path.display().to_string(), problem: problem.to_string() }
-    }
-}
 
 /// Writes a case that starts from its inflow into an empty folder.
 ///
@@ -37,16 +15,16 @@ impl FoamCaseError {
 ///
 /// # Errors
 ///
-/// [`FoamCaseError`].
-pub fn write(case: &Case, mesh: &Path, folder: &Path, pace: Pace) -> Result<FoamMesh, FoamCaseError> {
+/// [`FoamError`].
+pub fn write(case: &Case, mesh: &Path, folder: &Path, pace: Pace) -> Result<FoamMesh, FoamError> {
     let found = FoamMesh::read(mesh)?;
     for part in ["0", "constant", "system"] {
         let part = folder.join(part);
-        std::fs::create_dir_all(&part).map_err(|e| FoamCaseError::at(&part, e))?;
+        std::fs::create_dir_all(&part).map_err(|e| FoamError::at(&part, e))?;
     }
     let link = folder.join("constant/polyMesh");
     let way = way_from(&folder.join("constant"), mesh)?;
-    std::os::unix::fs::symlink(way, &link).map_err(|e| FoamCaseError::at(&link, e))?;
+    std::os::unix::fs::symlink(way, &link).map_err(|e| FoamError::at(&link, e))?;
     write_fields(&fields(case), &found, folder)?;
     write_dictionary(folder, "constant/transportProperties", &foam_system::transport(case))?;
     write_dictionary(folder, "constant/turbulenceProperties", &foam_system::turbulence(case))?;
@@ -59,8 +37,8 @@ pub fn write(case: &Case, mesh: &Path, folder: &Path, pace: Pace) -> Result<Foam
 ///
 /// # Errors
 ///
-/// [`FoamCaseError::File`].
-pub fn write_fields(fields: &[Field], mesh: &FoamMesh, folder: &Path) -> Result<(), FoamCaseError> {
+/// [`FoamError`].
+pub fn write_fields(fields: &[Field], mesh: &FoamMesh, folder: &Path) -> Result<(), FoamError> {
     fields.iter().try_for_each(|field| write_text(&folder.join("0").join(field.name), &field.file(mesh)))
 }
 
@@ -68,23 +46,23 @@ pub fn write_fields(fields: &[Field], mesh: &FoamMesh, folder: &Path) -> Result<
 ///
 /// # Errors
 ///
-/// [`FoamCaseError::File`].
-pub fn write_dictionary(folder: &Path, part: &str, content: &Dictionary) -> Result<(), FoamCaseError> {
+/// [`FoamError`].
+pub fn write_dictionary(folder: &Path, part: &str, content: &Dictionary) -> Result<(), FoamError> {
     let name = part.rsplit('/').next().unwrap_or(part);
     write_text(&folder.join(part), &content.file("dictionary", name))
 }
 
-fn write_text(path: &Path, text: &str) -> Result<(), FoamCaseError> {
-    std::fs::write(path, text).map_err(|e| FoamCaseError::at(path, e))
+fn write_text(path: &Path, text: &str) -> Result<(), FoamError> {
+    std::fs::write(path, text).map_err(|e| FoamError::at(path, e))
 }
 
 /// Folders of times that a case holds, by time; `0` is one.
 ///
 /// # Errors
 ///
-/// [`FoamCaseError::File`] of a folder that cannot be read.
-pub fn times(folder: &Path) -> Result<Vec<(f64, PathBuf)>, FoamCaseError> {
-    let failed = |e| FoamCaseError::at(folder, e);
+/// [`FoamError`] of a folder that cannot be read.
+pub fn times(folder: &Path) -> Result<Vec<(f64, PathBuf)>, FoamError> {
+    let failed = |e| FoamError::at(folder, e);
     let mut times = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
@@ -98,8 +76,8 @@ pub fn times(folder: &Path) -> Result<Vec<(f64, PathBuf)>, FoamCaseError> {
 }
 
 /// The way from one folder to another, by their common ancestor.
-fn way_from(folder: &Path, target: &Path) -> Result<PathBuf, FoamCaseError> {
-    let whole = |path: &Path| path.canonicalize().map_err(|e| FoamCaseError::at(path, e));
+fn way_from(folder: &Path, target: &Path) -> Result<PathBuf, FoamError> {
+    let whole = |path: &Path| path.canonicalize().map_err(|e| FoamError::at(path, e));
     let (from, to) = (whole(folder)?, whole(target)?);
     let (from, to): (Vec<Component>, Vec<Component>) = (from.components().collect(), to.components().collect());
     let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();

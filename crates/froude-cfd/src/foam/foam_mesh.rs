@@ -3,6 +3,7 @@
 use std::io::Read as _;
 use std::path::Path;
 
+use crate::foam_error::FoamError;
 use crate::input;
 use crate::poly_mesh::{Patch, PatchKind};
 
@@ -15,35 +16,25 @@ pub struct FoamMesh {
     pub cells: usize,
 }
 
-/// Why a folder is no mesh that a case can stand in.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{path}: {problem}: a mesh has the files points, faces, owner, neighbour and boundary of OpenFOAM")]
-pub struct FoamMeshError {
-    /// The file.
-    pub path: String,
-    /// What is wrong with it.
-    pub problem: String,
-}
-
 impl FoamMesh {
     /// Reads `boundary` and the head of `owner`.
     ///
     /// # Errors
     ///
-    /// [`FoamMeshError`]: a file is missing, is none of a mesh's, or a patch has a type that cases have no conditions for.
-    pub fn read(folder: &Path) -> Result<Self, FoamMeshError> {
+    /// [`FoamError`]: a file is missing, is none of a mesh's, or a patch has a type that cases have no conditions for.
+    pub fn read(folder: &Path) -> Result<Self, FoamError> {
         let boundary = folder.join("boundary");
-        let text = input::text(&boundary).map_err(|e| refuse(&boundary, e.to_string()))?;
-        let patches = patches_of(&text).map_err(|problem| refuse(&boundary, problem))?;
+        let text = input::text(&boundary).map_err(|e| FoamError::of_mesh(&boundary, e))?;
+        let patches = patches_of(&text).map_err(|problem| FoamError::of_mesh(&boundary, problem))?;
         let owner = folder.join("owner");
         let mut head = Vec::new();
         froude_records::read::open(&owner)
-            .map_err(|e| refuse(&owner, e.to_string()))?
+            .map_err(|e| FoamError::of_mesh(&owner, e))?
             .take(4096)
             .read_to_end(&mut head)
-            .map_err(|e| refuse(&owner, e.to_string()))?;
+            .map_err(|e| FoamError::of_mesh(&owner, e))?;
         let cells = cells_of(&String::from_utf8_lossy(&head))
-            .ok_or_else(|| refuse(&owner, "its head has no note that says nCells".to_owned()))?;
+            .ok_or_else(|| FoamError::of_mesh(&owner, "its head has no note that says nCells"))?;
         Ok(Self { patches, cells })
     }
 
@@ -53,10 +44,6 @@ impl FoamMesh {
         let names: Vec<&str> = self.patches.iter().filter(|p| p.is_wall()).map(|p| p.name.as_str()).collect();
         format!("({})", names.join(" "))
     }
-}
-
-pub(crate) fn refuse(path: &Path, problem: String) -> FoamMeshError {
-    FoamMeshError { path: path.display().to_string(), problem }
 }
 
 /// The patches of a `boundary` file: `N ( name { type wall; … } … )`.

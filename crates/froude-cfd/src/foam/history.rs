@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::foam_error::FoamError;
 use crate::input;
 use crate::outcome::Loads;
 
@@ -26,26 +27,14 @@ impl Sample {
     }
 }
 
-/// A file of a solver that is none of its kind.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{path}{}: {problem}", line.map(|n| format!(", line {n}")).unwrap_or_default())]
-pub struct HistoryError {
-    /// The file.
-    pub path: String,
-    /// Counted from 1.
-    pub line: Option<usize>,
-    /// What was found, and what was expected.
-    pub problem: String,
-}
-
 /// Reads `postProcessing/forces/<start>/force.dat` and `moment.dat` of a case's folder.
 ///
 /// Of a half body each load that its plane of symmetry z = 0 leaves is doubled; the others, f_z, m_x and m_y, are zero. A case that has written nothing yet has no samples.
 ///
 /// # Errors
 ///
-/// [`HistoryError`]: a line is none of numbers, times do not grow, or forces and moments are of other times.
-pub fn read(case: &Path, is_half: bool) -> Result<Vec<Sample>, HistoryError> {
+/// [`FoamError`]: a line is none of numbers, times do not grow, or forces and moments are of other times.
+pub fn read(case: &Path, is_half: bool) -> Result<Vec<Sample>, FoamError> {
     let mut samples: Vec<Sample> = Vec::new();
     for folder in starts(&case.join("postProcessing/forces"))? {
         let forces = table(&folder.join("force.dat"))?;
@@ -55,11 +44,8 @@ pub fn read(case: &Path, is_half: bool) -> Result<Vec<Sample>, HistoryError> {
         }
         for (force, moment) in forces.iter().zip(&moments) {
             if force.time != moment.time {
-                return Err(HistoryError {
-                    path: folder.join("moment.dat").display().to_string(),
-                    line: None,
-                    problem: format!("has the time {} where force.dat has {}", moment.time, force.time),
-                });
+                let problem = format!("has the time {} where force.dat has {}", moment.time, force.time);
+                return Err(FoamError::at(&folder.join("moment.dat"), problem));
             }
             samples.push(Sample {
                 time: force.time,
@@ -76,9 +62,8 @@ fn loads([x, y, z]: [f64; 3], [k, m, n]: [f64; 3], is_half: bool) -> Loads {
 }
 
 /// Folders of a function object's starts, by their times.
-pub(crate) fn starts(folder: &Path) -> Result<Vec<PathBuf>, HistoryError> {
-    let failed =
-        |e: std::io::Error| HistoryError { path: folder.display().to_string(), line: None, problem: e.to_string() };
+pub(crate) fn starts(folder: &Path) -> Result<Vec<PathBuf>, FoamError> {
+    let failed = |e: std::io::Error| FoamError::at(folder, e);
     let entries = match std::fs::read_dir(folder) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
         entries => entries.map_err(failed)?,
@@ -103,13 +88,12 @@ struct Row {
 }
 
 /// A file's rows; none where it is not there yet.
-fn table(path: &Path) -> Result<Vec<Row>, HistoryError> {
-    let refuse = |line, problem| HistoryError { path: path.display().to_string(), line, problem };
+fn table(path: &Path) -> Result<Vec<Row>, FoamError> {
     let text = match input::bytes(path) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        bytes => bytes.map_err(|e| refuse(None, e.to_string()))?,
+        bytes => bytes.map_err(|e| FoamError::at(path, e))?,
     };
-    rows(&String::from_utf8_lossy(&text)).map_err(|(line, problem)| refuse(Some(line), problem))
+    rows(&String::from_utf8_lossy(&text)).map_err(|(line, problem)| FoamError::in_line(path, line, problem))
 }
 
 /// Rows `time (total) (pressure) (viscous)`, with or without parentheses, each up to its line's end.

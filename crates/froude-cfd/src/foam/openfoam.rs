@@ -39,56 +39,25 @@ pub enum End {
     Code(i32),
 }
 
-/// Why there is no OpenFOAM, or a program could not be run.
+/// Why OpenFOAM does not run.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OpenFoamError {
-    /// It is not there.
-    #[error("OpenFOAM is not there: no program {program} on PATH; install the package openfoam of Debian or Ubuntu")]
-    Absent {
-        /// The program that was looked for.
-        program: String,
-    },
-    /// Programs without their settings.
-    #[error(
-        "{program}: OpenFOAM's file etc/controlDict is not found from there; set WM_PROJECT_DIR to the folder that holds etc"
-    )]
-    NoSettings {
-        /// One of its programs.
-        program: String,
-    },
-    /// The other line of its development.
-    #[error(
-        "{program} is OpenFOAM {version} of openfoam.org, whose files have other names; cases are for that of openfoam.com, as in the package openfoam of Debian or Ubuntu"
-    )]
-    OtherLine {
-        /// One of its programs.
-        program: String,
-        /// As it says it.
-        version: String,
-    },
-    /// A program that says no version.
-    #[error("{program} -help says no version of OpenFOAM; it printed {found:?}")]
-    Unknown {
-        /// The program.
-        program: String,
-        /// The end of what it said.
-        found: String,
-    },
-    /// A program that did not start, or whose log could not be written.
-    #[error("{program}: {problem}")]
-    Run {
-        /// The program.
-        program: String,
-        /// As the system says it.
-        problem: String,
-    },
-    /// It was asked to end.
+    /// It is not there, is another one, or does not run.
+    #[error("{0}")]
+    Unusable(String),
+    /// It was ended as asked.
     #[error("{program} was ended as asked")]
     Cancelled {
         /// The program.
         program: String,
     },
+}
+
+impl OpenFoamError {
+    fn run(program: &str, problem: &std::io::Error) -> Self {
+        Self::Unusable(format!("{program}: {problem}"))
+    }
 }
 
 impl OpenFoam {
@@ -112,21 +81,28 @@ impl OpenFoam {
         let program = std::env::split_paths(path)
             .map(|folder| folder.join(name))
             .find(|program| program.is_file())
-            .ok_or_else(|| OpenFoamError::Absent { program: name.to_owned() })?;
+            .ok_or_else(|| {
+                OpenFoamError::Unusable(format!(
+                    "OpenFOAM is not there: no program {name} on PATH; install the package openfoam of Debian or Ubuntu"
+                ))
+            })?;
         let said = program.display().to_string();
         let project = project
             .map(PathBuf::from)
             .filter(|folder| folder.join("etc/controlDict").is_file())
             .or_else(|| settings_of(&program))
-            .ok_or_else(|| OpenFoamError::NoSettings { program: said.clone() })?;
+            .ok_or_else(|| {
+                OpenFoamError::Unusable(format!(
+                    "{said}: OpenFOAM's file etc/controlDict is not found from there; set WM_PROJECT_DIR to the folder that holds etc"
+                ))
+            })?;
         let output = Command::new(&program)
             .arg("-help")
             .env("WM_PROJECT_DIR", &project)
             .output()
-            .map_err(|e| OpenFoamError::Run { program: said.clone(), problem: e.to_string() })?;
+            .map_err(|e| OpenFoamError::run(&said, &e))?;
         let version = version_in(&String::from_utf8_lossy(&output.stdout), &said)?;
-        let program = std::path::absolute(&program)
-            .map_err(|e| OpenFoamError::Run { program: said.clone(), problem: e.to_string() })?;
+        let program = std::path::absolute(&program).map_err(|e| OpenFoamError::run(&said, &e))?;
         let programs = program.parent().map(PathBuf::from).unwrap_or_default();
         Ok(Self { programs, project, version })
     }
@@ -144,7 +120,7 @@ impl OpenFoam {
     ///
     /// # Errors
     ///
-    /// [`OpenFoamError::Run`], [`OpenFoamError::Cancelled`].
+    /// [`OpenFoamError::Unusable`], [`OpenFoamError::Cancelled`].
     pub fn run(
         &self,
         program: &str,
@@ -155,7 +131,7 @@ impl OpenFoam {
         cancel: &AtomicBool,
         look: &mut dyn FnMut(),
     ) -> Result<End, OpenFoamError> {
-        let failed = |e: std::io::Error| OpenFoamError::Run { program: program.to_owned(), problem: e.to_string() };
+        let failed = |e: std::io::Error| OpenFoamError::run(program, &e);
         let path = self.programs.join(program);
         let mut command = if ranks > 1 {
             let mut mpi = Command::new("mpirun");
@@ -236,15 +212,17 @@ fn settings_of(program: &Path) -> Option<PathBuf> {
 
 /// Of `Using: OpenFOAM-v2312 (2312) - visit www.openfoam.com`.
 fn version_in(help: &str, program: &str) -> Result<String, OpenFoamError> {
-    let unknown = || OpenFoamError::Unknown {
-        program: program.to_owned(),
-        found: help.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or_default().to_owned(),
+    let unknown = || {
+        let found = help.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or_default();
+        OpenFoamError::Unusable(format!("{program} -help says no version of OpenFOAM; it printed {found:?}"))
     };
     let line = help.lines().find(|line| line.trim_start().starts_with("Using: OpenFOAM")).ok_or_else(unknown)?;
     let behind = line.split("OpenFOAM-").nth(1).ok_or_else(unknown)?;
     let version = behind.split_whitespace().next().unwrap_or_default().trim_matches(['(', ')']);
     if line.contains("openfoam.org") || line.contains("OpenFOAM.org") {
-        return Err(OpenFoamError::OtherLine { program: program.to_owned(), version: version.to_owned() });
+        return Err(OpenFoamError::Unusable(format!(
+            "{program} is OpenFOAM {version} of openfoam.org, whose files have other names; cases are for that of openfoam.com, as in the package openfoam of Debian or Ubuntu"
+        )));
     }
     if version.is_empty() { Err(unknown()) } else { Ok(version.to_owned()) }
 }
@@ -258,9 +236,17 @@ mod tests {
         let of = |line: &str| version_in(&format!("Usage: …\n\n{line}\nBuild: 1\n"), "simpleFoam");
         assert_eq!(of("Using: OpenFOAM- (1912) - visit www.openfoam.com").unwrap(), "1912");
         assert_eq!(of("Using: OpenFOAM-v2312 (2312) - visit www.openfoam.com").unwrap(), "v2312");
-        assert!(matches!(of("Using: OpenFOAM-10 (see https://openfoam.org)"), Err(OpenFoamError::OtherLine { .. })));
-        assert!(matches!(of("something else"), Err(OpenFoamError::Unknown { .. })));
-        assert!(matches!(version_in("", "simpleFoam"), Err(OpenFoamError::Unknown { .. })));
+        let other = of("Using: OpenFOAM-10 (see https://openfoam.org)").unwrap_err().to_string();
+        assert!(
+            other.starts_with("simpleFoam is OpenFOAM 10 of openfoam.org, whose files have other names"),
+            "{other}"
+        );
+        let unknown = |help: &str| version_in(help, "simpleFoam").unwrap_err().to_string();
+        assert_eq!(
+            unknown("something else"),
+            "simpleFoam -help says no version of OpenFOAM; it printed \"something else\""
+        );
+        assert_eq!(unknown(""), "simpleFoam -help says no version of OpenFOAM; it printed \"\"");
     }
 
     #[test]

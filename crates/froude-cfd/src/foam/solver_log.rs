@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::history::{HistoryError, starts};
+use crate::foam_error::FoamError;
+use crate::history::starts;
 use crate::input;
 
 /// Of a solver's log.
@@ -66,8 +67,8 @@ pub struct Fastest {
 ///
 /// # Errors
 ///
-/// [`HistoryError`] of a file that cannot be read.
-pub fn fastest(case: &Path) -> Result<Vec<Fastest>, HistoryError> {
+/// [`FoamError`] of a file that cannot be read.
+pub fn fastest(case: &Path) -> Result<Vec<Fastest>, FoamError> {
     let texts = texts(case, "speed", "fieldMinMax.dat")?;
     Ok(texts.iter().flat_map(|text| text.lines()).filter_map(fastest_of).collect())
 }
@@ -85,8 +86,8 @@ fn fastest_of(line: &str) -> Option<Fastest> {
 ///
 /// # Errors
 ///
-/// [`HistoryError`] of a file that cannot be read.
-pub fn y_plus(case: &Path) -> Result<Option<[f64; 3]>, HistoryError> {
+/// [`FoamError`] of a file that cannot be read.
+pub fn y_plus(case: &Path) -> Result<Option<[f64; 3]>, FoamError> {
     let rows = texts(case, "yPlus", "yPlus.dat")?;
     let rows: Vec<(String, [f64; 3])> = rows
         .iter()
@@ -108,16 +109,14 @@ pub fn y_plus(case: &Path) -> Result<Option<[f64; 3]>, HistoryError> {
     ]))
 }
 
-fn texts(case: &Path, object: &str, file: &str) -> Result<Vec<String>, HistoryError> {
+fn texts(case: &Path, object: &str, file: &str) -> Result<Vec<String>, FoamError> {
     let mut texts = Vec::new();
     for folder in starts(&case.join("postProcessing").join(object))? {
         let path = folder.join(file);
         match input::bytes(&path) {
             Ok(bytes) => texts.push(String::from_utf8_lossy(&bytes).into_owned()),
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {}
-            Err(e) => {
-                return Err(HistoryError { path: path.display().to_string(), line: None, problem: e.to_string() });
-            }
+            Err(e) => return Err(FoamError::at(&path, e)),
         }
     }
     Ok(texts)

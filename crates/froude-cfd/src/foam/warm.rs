@@ -6,7 +6,8 @@ use std::path::Path;
 
 use crate::case::Case;
 use crate::foam_binary::{List, MARK, find, numbers_of, split};
-use crate::foam_case::{FoamCaseError, times};
+use crate::foam_case::times;
+use crate::foam_error::FoamError;
 use crate::foam_fields::fields;
 use crate::foam_mesh::FoamMesh;
 use crate::input;
@@ -17,13 +18,13 @@ use crate::input;
 ///
 /// # Errors
 ///
-/// [`FoamCaseError::File`]: the other case has no time but its start, or a file there is no binary field of OpenFOAM.
-pub fn write(case: &Case, mesh: &FoamMesh, from: &Path, folder: &Path) -> Result<(), FoamCaseError> {
+/// [`FoamError`]: the other case has no time but its start, or a file there is no binary field of OpenFOAM.
+pub fn write(case: &Case, mesh: &FoamMesh, from: &Path, folder: &Path) -> Result<(), FoamError> {
     let last = times(from)?.pop().filter(|(time, _)| *time > 0.0).map(|(_, path)| path);
-    let last = last.ok_or_else(|| FoamCaseError::at(from, "it has no fields of a later time to start from"))?;
+    let last = last.ok_or_else(|| FoamError::at(from, "it has no fields of a later time to start from"))?;
     let velocity = last.join("U");
     let its_speed_m_s = inflow_m_s(&get(&velocity)?)
-        .ok_or_else(|| FoamCaseError::at(&velocity, "it has no freestreamValue, which says the speed of its inflow"))?;
+        .ok_or_else(|| FoamError::at(&velocity, "it has no freestreamValue, which says the speed of its inflow"))?;
     let ratio = case.flow.speed_m_s / its_speed_m_s;
     for field in fields(case) {
         let source = last.join(field.name);
@@ -50,17 +51,17 @@ fn inflow_m_s(velocity: &[u8]) -> Option<f64> {
     (speed_m_s > 0.0 && speed_m_s.is_finite()).then_some(speed_m_s)
 }
 
-fn get(path: &Path) -> Result<Vec<u8>, FoamCaseError> {
-    input::bytes(path).map_err(|e| FoamCaseError::at(path, e))
+fn get(path: &Path) -> Result<Vec<u8>, FoamError> {
+    input::bytes(path).map_err(|e| FoamError::at(path, e))
 }
 
-fn put(path: &Path, content: &[u8]) -> Result<(), FoamCaseError> {
-    std::fs::write(path, content).map_err(|e| FoamCaseError::at(path, e))
+fn put(path: &Path, content: &[u8]) -> Result<(), FoamError> {
+    std::fs::write(path, content).map_err(|e| FoamError::at(path, e))
 }
 
 /// The file's bytes with all its numbers scaled, and where its internal field ends.
-fn scaled(path: &Path, scale: f64) -> Result<(Vec<u8>, usize), FoamCaseError> {
-    scaled_field(&get(path)?, scale).map_err(|problem| FoamCaseError::at(path, problem))
+fn scaled(path: &Path, scale: f64) -> Result<(Vec<u8>, usize), FoamError> {
+    scaled_field(&get(path)?, scale).map_err(|problem| FoamError::at(path, problem))
 }
 
 fn scaled_field(content: &[u8], scale: f64) -> Result<(Vec<u8>, usize), String> {

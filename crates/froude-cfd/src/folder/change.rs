@@ -30,12 +30,12 @@ pub struct Change {
 ///
 /// # Errors
 ///
-/// [`StoreError::Plan`]: a name that is none or stands twice, or a case that starts from one that does not stand before it. [`StoreError::Held`]: the campaign is running, or a case that would be moved. [`StoreError::File`]: something cannot be written.
+/// [`StoreError::Refused`]: a name that is none or stands twice, or a case that starts from one that does not stand before it. [`StoreError::Held`]: the campaign is running, or a case that would be moved. [`StoreError::Refused`]: something cannot be written.
 pub fn plan(root: &Path, cases: &[Case], inputs_sha256: &str) -> Result<(Store, Change), StoreError> {
     check(cases)?;
     only_own(root)?;
     let folder = root.join(CASES);
-    std::fs::create_dir_all(&folder).map_err(|e| StoreError::file(&folder, e.to_string()))?;
+    std::fs::create_dir_all(&folder).map_err(|e| StoreError::file(&folder, e))?;
     let _lock = Lock::take(root)?;
     let mut change = Change::default();
     let wanted: BTreeMap<&str, &Case> = cases.iter().map(|c| (c.id.as_str(), c)).collect();
@@ -50,7 +50,7 @@ pub fn plan(root: &Path, cases: &[Case], inputs_sha256: &str) -> Result<(Store, 
             None => pile.insert(new_pile(root)?),
         };
         let place = pile.join(&id);
-        std::fs::rename(&path, &place).map_err(|e| StoreError::file(&path, e.to_string()))?;
+        std::fs::rename(&path, &place).map_err(|e| StoreError::file(&path, e))?;
         at_work.release_in(&place);
         change.aside.push((id, place));
     }
@@ -59,10 +59,10 @@ pub fn plan(root: &Path, cases: &[Case], inputs_sha256: &str) -> Result<(Store, 
         if path.exists() {
             change.kept.push(case.id.clone());
         } else if let Some(old) = in_a_pile(root, case)? {
-            std::fs::rename(&old, &path).map_err(|e| StoreError::file(&old, e.to_string()))?;
+            std::fs::rename(&old, &path).map_err(|e| StoreError::file(&old, e))?;
             change.back.push(case.id.clone());
         } else {
-            std::fs::create_dir(&path).map_err(|e| StoreError::file(&path, e.to_string()))?;
+            std::fs::create_dir(&path).map_err(|e| StoreError::file(&path, e))?;
             input::write_json(&path.join(CASE_FILE), case)?;
             change.new.push(case.id.clone());
             continue;
@@ -102,7 +102,7 @@ fn only_own(root: &Path) -> Result<(), StoreError> {
 fn check(cases: &[Case]) -> Result<(), StoreError> {
     let mut known = std::collections::BTreeSet::new();
     for case in cases {
-        let refuse = |problem: String| Err(StoreError::Plan { id: case.id.clone(), problem });
+        let refuse = |problem: String| Err(StoreError::case(&case.id, problem));
         if !is_name(&case.id) {
             return refuse(
                 "its name is that of a folder: 1 to 200 letters, digits, and -_.+ behind the first".to_owned(),
@@ -128,7 +128,7 @@ fn holds(folder: &Path, case: &Case) -> bool {
 
 /// Folders of cases, with their names, in order.
 fn folders(folder: &Path) -> Result<Vec<(String, PathBuf)>, StoreError> {
-    let failed = |e: std::io::Error| StoreError::file(folder, e.to_string());
+    let failed = |e: std::io::Error| StoreError::file(folder, e);
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let entry = entry.map_err(failed)?;
@@ -150,7 +150,7 @@ fn piles(root: &Path) -> Result<Vec<(String, PathBuf)>, StoreError> {
 fn new_pile(root: &Path) -> Result<PathBuf, StoreError> {
     let number = piles(root)?.iter().filter_map(|(name, _)| name.parse::<u32>().ok()).max().unwrap_or(0) + 1;
     let pile = root.join(ASIDE).join(format!("{number:03}"));
-    std::fs::create_dir_all(&pile).map_err(|e| StoreError::file(&pile, e.to_string()))?;
+    std::fs::create_dir_all(&pile).map_err(|e| StoreError::file(&pile, e))?;
     Ok(pile)
 }
 

@@ -38,7 +38,7 @@ fn gather(folder: &Path, before: &str, files: &mut BTreeMap<String, String>) {
 ///
 /// # Errors
 ///
-/// [`StoreError::Edited`] with the first that differs.
+/// [`StoreError::Refused`] with the first that differs.
 pub fn verify(folder: &Path, files: &BTreeMap<String, String>) -> Result<(), StoreError> {
     for (name, expected) in files {
         let path = folder.join(name);
@@ -46,7 +46,7 @@ pub fn verify(folder: &Path, files: &BTreeMap<String, String>) -> Result<(), Sto
             && found != *expected
         {
             let next = "froude cfd retry with the case's name computes it again";
-            return Err(StoreError::Edited { path, found, expected: expected.clone(), next });
+            return Err(StoreError::edited(&path, [&found, expected], next));
         }
     }
     Ok(())

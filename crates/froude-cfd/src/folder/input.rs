@@ -35,7 +35,7 @@ pub(crate) fn numbers<N: FromStr + PartialOrd>(
     [before, behind]: [&str; 2],
     largest: N,
 ) -> Result<Vec<N>, StoreError> {
-    let failed = |e: io::Error| StoreError::file(folder, e.to_string());
+    let failed = |e: io::Error| StoreError::file(folder, e);
     let mut numbers = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let name = entry.map_err(failed)?.file_name();

@@ -76,13 +76,17 @@ impl Lock {
     ///
     /// # Errors
     ///
-    /// [`StoreError::Held`] with its holder; [`StoreError::File`] where the folder cannot be read or written.
+    /// [`StoreError::Held`] with its holder; [`StoreError::Refused`] where the folder cannot be read or written.
     pub fn take(folder: &Path) -> Result<Self, StoreError> {
         for _ in 0..MOST_TRIES {
             let highest = highest(folder)?;
             if let Some(number) = highest {
                 match look(folder, number) {
-                    Seen::Live(holder) => return Err(StoreError::Held { path: folder.to_owned(), holder }),
+                    Seen::Live(holder) => {
+                        let folder = folder.display();
+                        let held = format!("{folder}: {holder}, works on it; wait for it to end, or end it");
+                        return Err(StoreError::Held(held));
+                    }
                     Seen::Gone => continue,
                     Seen::Free => {}
                 }
@@ -119,7 +123,7 @@ impl Lock {
         let start = std::time::Instant::now();
         loop {
             match Self::take(folder) {
-                Err(StoreError::Held { .. }) if start.elapsed() < longest => {
+                Err(StoreError::Held(_)) if start.elapsed() < longest => {
                     std::thread::sleep(Duration::from_millis(200));
                 }
                 done => return done,
@@ -136,7 +140,7 @@ impl Lock {
     ///
     /// # Errors
     ///
-    /// [`StoreError::File`] where the folder cannot be read.
+    /// [`StoreError::Refused`] where the folder cannot be read.
     pub fn holder(folder: &Path) -> Result<Option<Holder>, StoreError> {
         for _ in 0..MOST_TRIES {
             let Some(number) = highest(folder)? else { return Ok(None) };

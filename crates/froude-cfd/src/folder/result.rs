@@ -48,14 +48,14 @@ struct Sealed {
 ///
 /// # Errors
 ///
-/// [`StoreError::File`]: the folder cannot be made, or the disk is full.
+/// [`StoreError::Refused`]: the folder cannot be made, or the disk is full.
 pub fn begin(case_folder: &Path) -> Result<(u32, PathBuf), StoreError> {
     loop {
         let number = attempts(case_folder)?.into_iter().max().unwrap_or(0) + 1;
         let folder = attempt_folder(case_folder, number);
         match std::fs::create_dir(&folder) {
             Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
-            Err(e) => return Err(StoreError::file(&folder, e.to_string())),
+            Err(e) => return Err(StoreError::file(&folder, e)),
             Ok(()) => {
                 let reserved = write_atomically(&folder.join(RESERVE_FILE), &vec![b'\n'; RESERVE_BYTES]);
                 if reserved.is_err() {
@@ -73,7 +73,7 @@ pub fn begin(case_folder: &Path) -> Result<(u32, PathBuf), StoreError> {
 ///
 /// # Errors
 ///
-/// [`StoreError::File`] where it cannot be written; a result with a number that is not finite is refused so.
+/// [`StoreError::Refused`] where it cannot be written; a result with a number that is not finite is refused so.
 pub fn write(case_folder: &Path, attempted: &Attempted) -> Result<(), StoreError> {
     let folder = attempt_folder(case_folder, attempted.attempt);
     let path = folder.join(RESULT_FILE);
@@ -92,7 +92,7 @@ pub(crate) fn let_go(attempt_folder: &Path) {
 ///
 /// # Errors
 ///
-/// [`StoreError::File`] where the folder cannot be written.
+/// [`StoreError::Refused`] where the folder cannot be written.
 pub fn accept(case_folder: &Path, attempt: u32) -> Result<bool, StoreError> {
     let its = attempt_folder(case_folder, attempt).join(RESULT_FILE);
     let place = case_folder.join(RESULT_FILE);
@@ -100,11 +100,11 @@ pub fn accept(case_folder: &Path, attempt: u32) -> Result<bool, StoreError> {
         Ok(()) => Ok(true),
         Err(e) if e.kind() == ErrorKind::AlreadyExists => Ok(false),
         Err(e) if matches!(e.kind(), ErrorKind::Unsupported | ErrorKind::PermissionDenied) => {
-            let text = input::bytes(&its).map_err(|e| StoreError::file(&its, e.to_string()))?;
+            let text = input::bytes(&its).map_err(|e| StoreError::file(&its, e))?;
             let taken = Prepared::new(&place, |out| out.write_all(&text))?.take_free_place();
             if taken.is_err() && place.exists() { Ok(false) } else { Ok(taken.map(|()| true)?) }
         }
-        Err(e) => Err(StoreError::file(&place, e.to_string())),
+        Err(e) => Err(StoreError::file(&place, e)),
     }
 }
 
@@ -112,19 +112,19 @@ pub fn accept(case_folder: &Path, attempt: u32) -> Result<bool, StoreError> {
 ///
 /// # Errors
 ///
-/// [`StoreError::File`] where the folder cannot be written.
+/// [`StoreError::Refused`] where the folder cannot be written.
 pub fn retire(case_folder: &Path) -> Result<(), StoreError> {
     let place = case_folder.join(RESULT_FILE);
     let newest = attempts(case_folder)?.into_iter().max().unwrap_or(0);
     std::fs::rename(&place, case_folder.join(format!("retired-{newest:03}.json")))
-        .map_err(|e| StoreError::file(&place, e.to_string()))
+        .map_err(|e| StoreError::file(&place, e))
 }
 
 /// The result of a case that counts, once it has one.
 ///
 /// # Errors
 ///
-/// [`StoreError::Edited`]: it is not what was written, or a file that it stands on is not, or it belongs to other inputs.
+/// [`StoreError::Refused`]: it is not what was written, or a file that it stands on is not, or it belongs to other inputs.
 pub fn accepted(case_folder: &Path, case: &Case) -> Result<Option<Attempted>, StoreError> {
     let found = read(&case_folder.join(RESULT_FILE), case)?;
     if let Some(attempted) = &found {
@@ -137,7 +137,7 @@ pub fn accepted(case_folder: &Path, case: &Case) -> Result<Option<Attempted>, St
 ///
 /// # Errors
 ///
-/// [`StoreError::File`] where the folder cannot be read.
+/// [`StoreError::Refused`] where the folder cannot be read.
 pub fn left_over(case_folder: &Path, case: &Case) -> Result<Option<Attempted>, StoreError> {
     let mut numbers = open_attempts(case_folder)?;
     numbers.sort_unstable_by(|a, b| b.cmp(a));
@@ -149,7 +149,7 @@ pub fn left_over(case_folder: &Path, case: &Case) -> Result<Option<Attempted>, S
 ///
 /// # Errors
 ///
-/// [`StoreError::File`] where the folder cannot be read.
+/// [`StoreError::Refused`] where the folder cannot be read.
 pub fn attempts(case_folder: &Path) -> Result<Vec<u32>, StoreError> {
     input::numbers(case_folder, ["attempt-", ""], u32::MAX)
 }
@@ -158,7 +158,7 @@ pub fn attempts(case_folder: &Path) -> Result<Vec<u32>, StoreError> {
 ///
 /// # Errors
 ///
-/// [`StoreError::File`] where the folder cannot be read.
+/// [`StoreError::Refused`] where the folder cannot be read.
 pub fn open_attempts(case_folder: &Path) -> Result<Vec<u32>, StoreError> {
     let retired = input::numbers(case_folder, ["retired-", ".json"], u32::MAX)?.into_iter().max().unwrap_or(0);
     Ok(attempts(case_folder)?.into_iter().filter(|n| *n > retired).collect())
@@ -192,7 +192,7 @@ fn read(path: &Path, case: &Case) -> Result<Option<Attempted>, StoreError> {
     let (attempted, sha256, found) =
         unseal(&text).map_err(|problem| StoreError::file(path, format!("{problem}; {NEXT}")))?;
     if found != sha256 {
-        return Err(StoreError::Edited { path: path.to_owned(), found, expected: sha256, next: NEXT });
+        return Err(StoreError::edited(path, [&found, &sha256], NEXT));
     }
     let hash = case.hash();
     if attempted.case != hash {

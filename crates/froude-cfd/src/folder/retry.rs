@@ -11,7 +11,7 @@ use crate::store_error::StoreError;
 ///
 /// # Errors
 ///
-/// [`StoreError::NoCase`]; [`StoreError::Plan`] for a named case that has no result to set aside, or one that counts; [`StoreError::Edited`] where its inputs were changed; [`StoreError::Held`] where the campaign is running. Nothing is set aside then.
+/// [`StoreError::Refused`]; [`StoreError::Refused`] for a named case that has no result to set aside, or one that counts; [`StoreError::Refused`] where its inputs were changed; [`StoreError::Held`] where the campaign is running. Nothing is set aside then.
 pub fn retry(store: &Store, named: &[String]) -> Result<Vec<String>, StoreError> {
     let _lock = Lock::take(store.root())?;
     for id in named {
@@ -23,7 +23,7 @@ pub fn retry(store: &Store, named: &[String]) -> Result<Vec<String>, StoreError>
             }
             State::Done(_) | State::Edited(_) => continue,
         };
-        return Err(StoreError::Plan { id: id.clone(), problem: problem.to_owned() });
+        return Err(StoreError::case(id, problem));
     }
     let is_unusable = |id: &&str| store.state(id).status().is_some_and(|s| !s.is_usable());
     let chosen: Vec<String> = match named {

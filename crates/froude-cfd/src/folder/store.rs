@@ -94,7 +94,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// [`StoreError::File`]: the folder holds no campaign, or its file is none.
+    /// [`StoreError::Refused`]: the folder holds no campaign, or its file is none.
     pub fn open(root: &Path) -> Result<Self, StoreError> {
         let path = root.join(CAMPAIGN_FILE);
         let wrong = |problem: String| {
@@ -118,9 +118,9 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// As [`open`](Self::open); [`StoreError::NoCase`] where the campaign does not have it.
+    /// As [`open`](Self::open); [`StoreError::Refused`] where the campaign does not have it.
     pub fn of_case(folder: &Path) -> Result<(Self, String), StoreError> {
-        let whole = folder.canonicalize().map_err(|e| StoreError::file(folder, e.to_string()))?;
+        let whole = folder.canonicalize().map_err(|e| StoreError::file(folder, e))?;
         let root = whole.parent().and_then(Path::parent).unwrap_or(Path::new("/"));
         let id = whole.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let store = Self::open(root)?;
@@ -161,15 +161,15 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// [`StoreError::NoCase`]; [`StoreError::File`] where it cannot be read; [`StoreError::Edited`] where its inputs are not those that were planned.
+    /// [`StoreError::Refused`]; [`StoreError::Refused`] where it cannot be read; [`StoreError::Refused`] where its inputs are not those that were planned.
     pub fn case(&self, id: &str) -> Result<Case, StoreError> {
         let planned = self.planned(id)?;
         let path = self.case_folder(id);
-        let case = Case::read(&path).map_err(|e| StoreError::file(&path, e.to_string()))?;
+        let case = Case::read(&path).map_err(|e| StoreError::file(&path, e))?;
         let found = case.hash();
         if found != planned.hash || case.id != id {
             let next = "plan the campaign again: it moves the changed case aside and makes it anew";
-            return Err(StoreError::Edited { path: path.join(CASE_FILE), found, expected: planned.hash.clone(), next });
+            return Err(StoreError::edited(&path.join(CASE_FILE), [&found, &planned.hash], next));
         }
         Ok(case)
     }
@@ -217,7 +217,10 @@ impl Store {
     }
 
     pub(crate) fn planned(&self, id: &str) -> Result<&Planned, StoreError> {
-        let missing = || StoreError::NoCase { path: self.root.clone(), id: id.to_owned() };
+        let missing = || {
+            let problem = format!("it has no case {id:?}; froude cfd status names those that it has");
+            StoreError::file(&self.root, problem)
+        };
         self.index.cases.iter().find(|c| c.id == id).ok_or_else(missing)
     }
 }
@@ -232,7 +235,7 @@ pub(crate) fn is_name(id: &str) -> bool {
 ///
 /// # Errors
 ///
-/// [`StoreError::File`]: the link.
+/// [`StoreError::Refused`]: the link.
 pub fn check_links(root: &Path) -> Result<(), StoreError> {
     for folder in [root.to_owned(), root.join(CASES)] {
         for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {

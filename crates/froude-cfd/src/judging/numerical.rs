@@ -18,7 +18,7 @@ use crate::body::domain_radius;
 use crate::case::Case;
 use crate::collect::Collected;
 use crate::family::refinement_ratio;
-use crate::grid_error::{FamilyError, two_grids};
+use crate::grid_error::two_grids;
 use crate::outcome::Loads;
 use crate::over_angles::{OverAngles, each};
 use crate::study::{DIRECTIONS, Study, studies};
@@ -106,7 +106,7 @@ fn mesh_errors(studies: &[Study], fine: &[[Collected; 2]], least: f64) -> Vec<(C
         let own = fine.iter().find(|[own, _]| own.case.configuration == study.first.case.configuration);
         let on = own.or_else(|| fine.first()).map_or(&study.first, |[_, fine]| fine);
         let size = refinement_ratio(study.finest_cells(), on.outcome.cells, DIRECTIONS);
-        let loads: Result<Vec<f64>, FamilyError> = (0..6).map(|k| Ok(study.error(k)?.at(size) / COVERAGE)).collect();
+        let loads: Result<Vec<f64>, String> = (0..6).map(|k| Ok(study.error(k)?.at(size) / COVERAGE)).collect();
         let loads: Loads = loads.ok()?.try_into().ok()?;
         Some((study.first.case.clone(), loads))
     };

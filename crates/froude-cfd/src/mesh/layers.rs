@@ -21,18 +21,15 @@ impl Layers {
     ///
     /// # Errors
     ///
-    /// [`MeshError::Number`]: a first layer that is not above 0 or is thicker than equal layers, or a growth above 2.
+    /// [`MeshError::Refused`]: a first layer that is not above 0 or is thicker than equal layers, or a growth above 2.
     pub fn of_first(count: usize, first_m: f64, length_m: f64) -> Result<Self, MeshError> {
         let equal_m = length_m / count as f64;
         let thinnest_m = Self { count, growth: MAX_GROWTH, length_m }.first_m();
         if !(thinnest_m..=equal_m).contains(&first_m) {
-            return Err(MeshError::Number {
-                quantity: "the thickness of the first layer",
-                found: first_m,
-                expected: format!(
-                    "from {thinnest_m:.3e} m (each of {count} layers twice the one before) to {equal_m:.3e} m (all equal)"
-                ),
-            });
+            let expected = format!(
+                "from {thinnest_m:.3e} m (each of {count} layers twice the one before) to {equal_m:.3e} m (all equal)"
+            );
+            return Err(MeshError::number("the thickness of the first layer", first_m, expected));
         }
         // The first layer falls with the growth: halving 60 times is exact to the last bit.
         let (mut low, mut high) = (1.0, MAX_GROWTH);

@@ -64,7 +64,7 @@ impl Meridian {
     ///
     /// # Errors
     ///
-    /// [`MeshError::Body`]: lengths that are not finite, a body that does not begin and end with a point, or is one in between, pieces that do not meet.
+    /// [`MeshError::Refused`]: lengths that are not finite, a body that does not begin and end with a point, or is one in between, pieces that do not meet.
     pub fn new(body: &SectionBody) -> Result<Self, MeshError> {
         let pieces = body.pieces.clone();
         check(&pieces)?;
@@ -148,7 +148,7 @@ impl Meridian {
 }
 
 fn check(pieces: &[Piece]) -> Result<(), MeshError> {
-    let refuse = |x_m: f64, problem| Err(MeshError::Body { x_m, problem });
+    let refuse = |x_m: f64, problem: &str| Err(MeshError::Refused(format!("the body at x = {x_m} m: {problem}")));
     let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else {
         return refuse(0.0, "it has no piece; give it sections from tip to tip");
     };

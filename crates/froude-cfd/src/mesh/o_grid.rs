@@ -85,11 +85,7 @@ impl OGrid {
         let least_m = head_m - tail_m;
         if !(least_m..=1e6 * least_m).contains(&self.outer_radius_m) {
             let expected = format!("a body's length, {least_m} m, at least: the water goes around the body");
-            return Err(MeshError::Number {
-                quantity: "the radius of the outer sphere",
-                found: self.outer_radius_m,
-                expected,
-            });
+            return Err(MeshError::number("the radius of the outer sphere", self.outer_radius_m, expected));
         }
         Ok(())
     }

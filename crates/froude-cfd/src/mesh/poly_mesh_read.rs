@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::foam_mesh::{FoamMesh, FoamMeshError, refuse, without_comments};
+use crate::foam_error::FoamError;
+use crate::foam_mesh::{FoamMesh, without_comments};
 use crate::input;
 use crate::poly_mesh::PolyMesh;
 
@@ -11,25 +12,25 @@ impl PolyMesh {
     ///
     /// # Errors
     ///
-    /// [`FoamMeshError`]: a file is missing, is not written as text, does not hold what it says, or names what another has not.
-    pub fn read(folder: &Path) -> Result<Self, FoamMeshError> {
+    /// [`FoamError`]: a file is missing, is not written as text, does not hold what it says, or names what another has not.
+    pub fn read(folder: &Path) -> Result<Self, FoamError> {
         let found = FoamMesh::read(folder)?;
         let read = |name: &str| {
             let path = folder.join(name);
-            let text = input::text(&path).map_err(|e| refuse(&path, e.to_string()))?;
-            Ok::<_, FoamMeshError>((path, text))
+            let text = input::text(&path).map_err(|e| FoamError::of_mesh(&path, e))?;
+            Ok::<_, FoamError>((path, text))
         };
         let (path, text) = read("points")?;
-        let points_m = points_of(&text).map_err(|problem| refuse(&path, problem))?;
+        let points_m = points_of(&text).map_err(|problem| FoamError::of_mesh(&path, problem))?;
         let (path, text) = read("faces")?;
-        let faces = faces_of(&text, points_m.len()).map_err(|problem| refuse(&path, problem))?;
+        let faces = faces_of(&text, points_m.len()).map_err(|problem| FoamError::of_mesh(&path, problem))?;
         let (path, text) = read("owner")?;
-        let owner = labels_of(&text, found.cells).map_err(|problem| refuse(&path, problem))?;
+        let owner = labels_of(&text, found.cells).map_err(|problem| FoamError::of_mesh(&path, problem))?;
         if owner.len() != faces.len() {
-            return Err(refuse(&path, format!("it has {} entries for {} faces", owner.len(), faces.len())));
+            return Err(FoamError::of_mesh(&path, format!("it has {} entries for {} faces", owner.len(), faces.len())));
         }
         let (path, text) = read("neighbour")?;
-        let neighbour = labels_of(&text, found.cells).map_err(|problem| refuse(&path, problem))?;
+        let neighbour = labels_of(&text, found.cells).map_err(|problem| FoamError::of_mesh(&path, problem))?;
         let mut next = neighbour.len();
         for patch in &found.patches {
             if patch.start != next || patch.count > faces.len().saturating_sub(next) {
@@ -40,13 +41,13 @@ impl PolyMesh {
                     patch.start,
                     faces.len()
                 );
-                return Err(refuse(&folder.join("boundary"), problem));
+                return Err(FoamError::of_mesh(&folder.join("boundary"), problem));
             }
             next += patch.count;
         }
         if next != faces.len() {
             let problem = format!("its patches end at the face {next} of {}", faces.len());
-            return Err(refuse(&folder.join("boundary"), problem));
+            return Err(FoamError::of_mesh(&folder.join("boundary"), problem));
         }
         Ok(Self { points_m, faces, owner, neighbour, patches: found.patches, cells: found.cells })
     }
@@ -144,7 +145,10 @@ mod tests {
             std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
             let error = PolyMesh::read(&written).unwrap_err();
             std::fs::write(&path, text).unwrap();
-            error.problem
+            let words = error.to_string();
+            let (_, problem) = words.split_once(&format!("/{name}: ")).unwrap();
+            let files = ": a mesh has the files points, faces, owner, neighbour and boundary of OpenFOAM";
+            problem.strip_suffix(files).unwrap().to_owned()
         };
         assert_eq!(refused("points", "ascii", "binary"), "it is not written as text");
         let named = refused("faces", "\n(\n4(", "\n(\n4(9999 ");

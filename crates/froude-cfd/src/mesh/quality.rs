@@ -98,7 +98,10 @@ impl Quality {
             ("the aspect ratio", self.max_aspect, MAX_ASPECT, thicker),
         ] {
             if worst.value > limit {
-                return Err(MeshError::Poor { measure, found: worst.value, limit, place: place(worst.cell), advice });
+                let (found, place) = (worst.value, place(worst.cell));
+                return Err(MeshError::Refused(format!(
+                    "{measure} of the mesh is {found:.1} at {place}, and {limit:.0} is the limit: {advice}"
+                )));
             }
         }
         Ok(())

@@ -91,35 +91,31 @@ impl Snappy {
             std::fs::remove_dir_all(&folder).map_err(failed)?;
         }
         self.write(&self.turned(surface), &folder)?;
+        let no_mesh = |program: &str, problem: &str| {
+            let log = folder.join(format!("log.{program}"));
+            MeshError::Refused(format!("{program} made no mesh: {problem}; its log is {}", log.display()))
+        };
         let run = |program: &'static str, arguments: &[&str], sign: &str| -> Result<String, MeshError> {
             let log = format!("log.{program}");
             let end = openfoam.run(program, arguments, 1, &folder, &log, cancel, &mut || {})?;
-            let path = folder.join(&log);
-            let text = input::text(&path).unwrap_or_default();
+            let text = input::text(&folder.join(&log)).unwrap_or_default();
             if end == End::Whole && text.contains(sign) {
                 return Ok(text);
             }
             let problem = fault_of(&text).unwrap_or_else(|| format!("it ended as {end:?}"));
-            Err(MeshError::Program { program, problem, log: path.display().to_string() })
+            Err(no_mesh(program, &problem))
         };
         run("blockMesh", &[], "End")?;
         let snapped = run("snappyHexMesh", &["-overwrite"], "Finished meshing")?;
         let checked = run("checkMesh", &["-constant"], "Mesh OK.")?;
-        let unreadable = |program: &'static str| MeshError::Program {
-            program,
-            problem: "its log does not say what it made".to_owned(),
-            log: folder.join(format!("log.{program}")).display().to_string(),
-        };
+        let unreadable = |program: &str| no_mesh(program, "its log does not say what it made");
         let (wall_faces, layers, layers_m, coverage) =
             layers_of(&snapped, "body").ok_or_else(|| unreadable("snappyHexMesh"))?;
         let (cells, non_orthogonality_deg, max_skewness) =
             quality_of(&checked).ok_or_else(|| unreadable("checkMesh"))?;
         let kept = keep(meshes, &self.files(&folder)?)?;
-        let finished = PolyMesh::read(&kept).map_err(|e| MeshError::Program {
-            program: "snappyHexMesh",
-            problem: format!("its mesh cannot be read: {e}"),
-            log: folder.join("log.snappyHexMesh").display().to_string(),
-        })?;
+        let finished =
+            PolyMesh::read(&kept).map_err(|e| no_mesh("snappyHexMesh", &format!("its mesh cannot be read: {e}")))?;
         let made = Made {
             mesh: kept.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             cells,
@@ -186,7 +182,7 @@ impl Snappy {
             ("the number of far cells over the box's height", z, 2),
         ])?;
         if surface.panels.is_empty() {
-            return Err(MeshError::Outside { problem: "the surface has no panel".to_owned() });
+            return Err(MeshError::Refused("the body is not in the water: the surface has no panel".to_owned()));
         }
         let ([low, high], [least, most]) = (self.box_m, bounds_m(&self.turned(surface)));
         for (k, axis) in ["along", "across", "over its height"].into_iter().enumerate() {
@@ -198,10 +194,10 @@ impl Snappy {
             let is_cut = self.is_half && k == 2;
             if most[k] > high[k] - room_m || (!is_cut && least[k] < low[k] + room_m) {
                 let problem = format!(
-                    "{axis} the box of {:.4} to {:.4} m the body reaches from {:.4} to {:.4} m, and {room_m:.4} m of water are needed on both sides",
+                    "the body is not in the water: {axis} the box of {:.4} to {:.4} m the body reaches from {:.4} to {:.4} m, and {room_m:.4} m of water are needed on both sides",
                     low[k], high[k], least[k], most[k]
                 );
-                return Err(MeshError::Outside { problem });
+                return Err(MeshError::Refused(problem));
             }
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use crate::again::Again;
 use crate::collect::Collected;
-use crate::grid_error::{FamilyError, GridError, OnGrid, grid_error};
+use crate::grid_error::{GridError, OnGrid, grid_error};
 use crate::outcome::Loads;
 use crate::over_angles::each;
 
@@ -25,8 +25,8 @@ impl Study {
     ///
     /// # Errors
     ///
-    /// [`FamilyError`]: fewer than two grids have a result.
-    pub fn error(&self, load: usize) -> Result<GridError, FamilyError> {
+    /// Fewer than two grids have a result.
+    pub fn error(&self, load: usize) -> Result<GridError, String> {
         let on = |(_, row): &(i32, Collected)| OnGrid {
             cells: row.outcome.cells,
             value: row.loads[load],

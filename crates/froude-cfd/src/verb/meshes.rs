@@ -150,7 +150,12 @@ fn of_angle(asked: &Asked, body: &Shaped, angle_rad: Option<f64>, cancel: &Atomi
         }
     };
     if made.area_coverage < MIN_COVERAGE {
-        return Err(refused(MeshError::Layers { coverage: made.area_coverage, needed: MIN_COVERAGE }));
+        let problem = format!(
+            "layers cover {} % of the body's area, but at least {} % is required, because the friction is not resolved without layers; write mesh = {{ surface_cell, first_layer, layers }} with smaller cubes or fewer layers",
+            (100.0 * made.area_coverage).round(),
+            (100.0 * MIN_COVERAGE).round()
+        );
+        return Err(refused(MeshError::Refused(problem)));
     }
     let quality = MeshQuality {
         max_non_orthogonality_rad: made.max_non_orthogonality_rad,

@@ -143,8 +143,7 @@ fn grid_table(study: &Study, loads: &[usize]) -> ResultTable {
 }
 
 fn error_table(study: &Study, loads: &[usize]) -> ResultTable {
-    let found: Vec<(usize, Result<GridError, String>)> =
-        loads.iter().map(|k| (*k, study.error(*k).map_err(|why| why.to_string()))).collect();
+    let found: Vec<(usize, Result<GridError, String>)> = loads.iter().map(|k| (*k, study.error(*k))).collect();
     let caption = format!("{}: 95 % half-widths from the grid study alone", setting(&study.first.case));
     let t = TableBuilder::new("error", caption, &found);
     let of =

@@ -57,7 +57,7 @@ pub enum Worked {
 ///
 /// # Errors
 ///
-/// [`StoreError::Held`]: another worker has it. [`StoreError::Edited`]: a file of it was changed. [`StoreError::File`]: its folder cannot be written, as on a full disk; the case is as if its attempt was interrupted.
+/// [`StoreError::Held`]: another worker has it. [`StoreError::Refused`]: a file of it was changed. [`StoreError::Refused`]: its folder cannot be written, as on a full disk; the case is as if its attempt was interrupted.
 pub fn work(
     store: &Store,
     id: &str,

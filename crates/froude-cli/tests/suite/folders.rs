@@ -7,7 +7,6 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use froude::methods::added_mass::files::read_wamit;
 use froude::records::hash::sha256_of_file;
 
 use crate::bench::SHORT;
@@ -269,8 +268,6 @@ const OVER_LIMIT: &[(&str, &str, &str)] = &[
 
 /// Limited by its unpacked size; tested in `limits::a_small_run_cannot_stand_for_gigabytes`.
 const RUN: &str = "run (MCAP)";
-/// No verb reads it; tested through [`read_wamit`].
-const WAMIT: &str = "added mass in WAMIT's format";
 
 fn bytes_of(limit: &str) -> u64 {
     let words: Vec<&str> = limit.split([' ', ',', ';']).collect();
@@ -285,7 +282,7 @@ fn inputs_above_the_limits_of_the_book_are_rejected() {
     let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
     let cells = rows.map(|row| row.split('|').map(str::trim).collect::<Vec<_>>());
     let limits: BTreeMap<&str, &str> = cells.map(|cells| (cells[1], cells[2])).collect();
-    let held = INPUTS.iter().map(|(row, _)| *row).chain(OVER_LIMIT.iter().map(|(row, ..)| *row)).chain([RUN, WAMIT]);
+    let held = INPUTS.iter().map(|(row, _)| *row).chain(OVER_LIMIT.iter().map(|(row, ..)| *row)).chain([RUN]);
     assert_eq!(held.collect::<BTreeSet<_>>(), limits.keys().copied().collect());
 
     let folder = lab();
@@ -336,8 +333,4 @@ fn inputs_above_the_limits_of_the_book_are_rejected() {
         let limit = limit.replace(',', "").replace("10⁵⁰", "1e50").replace("1 km", "1000 m");
         assert!(code == Some(2) && said.contains(&limit), "{args}: {said}");
     }
-    let wamit = at.join("big.1");
-    let bytes = bytes_of(limits[WAMIT]);
-    File::create(&wamit).unwrap().set_len(bytes + 1).unwrap();
-    assert!(read_wamit(&wamit, 1000.0, 1.0).unwrap_err().to_string().ends_with(&bytes.to_string()));
 }

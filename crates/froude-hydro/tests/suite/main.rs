@@ -1,14 +1,14 @@
 //! Force models, water and coefficients of bodies: tests against closed forms and published numbers.
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
-mod closed_forms;
 mod common;
 mod dissipation;
 mod ellipsoid;
 mod force_models;
-mod near_wall;
 mod nesting;
+mod sloshing;
 mod small_laws;
+mod spheroids;
 mod strip;
 mod tabulated;
 mod water;

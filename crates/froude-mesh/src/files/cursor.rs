@@ -1,5 +1,7 @@
 //! Bytes of a file with a place in them, as text or as binary numbers.
 
+use std::fmt::Display;
+
 use crate::files::soup::{Place, ReadError};
 
 /// What to do about a line that is wrong.
@@ -209,30 +211,26 @@ impl<'a> Cursor<'a> {
         self.wrong(Place::Byte(at), found, expected, EXPORT)
     }
 
-    fn wrong(&self, place: Place, found: &str, expected: &str, advice: &'static str) -> ReadError {
-        ReadError::Unexpected {
-            name: self.name.to_owned(),
-            place,
-            found: found.to_owned(),
-            expected: expected.to_owned(),
-            advice,
-        }
+    fn wrong(&self, place: Place, found: &str, expected: &str, advice: &str) -> ReadError {
+        ReadError(format!("{}, {place}: {found} where {expected} should be; {advice}", self.name))
     }
 
     /// Text ends.
     pub fn ends(&self, expected: &str) -> ReadError {
-        let place = self.place(self.bytes.len());
-        ReadError::Ends { name: self.name.to_owned(), place, expected: expected.to_owned() }
+        self.ends_at(self.place(self.bytes.len()), expected)
     }
 
     /// Binary data end.
     pub fn cut(&self, expected: &str) -> ReadError {
-        let place = Place::Byte(self.bytes.len());
-        ReadError::Ends { name: self.name.to_owned(), place, expected: expected.to_owned() }
+        self.ends_at(Place::Byte(self.bytes.len()), expected)
+    }
+
+    fn ends_at(&self, place: Place, expected: &str) -> ReadError {
+        ReadError(format!("{}, {place}: the file ends where {expected} should be; copy or export it again", self.name))
     }
 
     /// Sound, and not read here.
-    pub fn not_read(&self, place: Place, what: String, advice: &'static str) -> ReadError {
-        ReadError::NotRead { name: self.name.to_owned(), place, what, advice }
+    pub fn not_read(&self, place: Place, what: impl Display, advice: &str) -> ReadError {
+        ReadError(format!("{}, {place}: {what} is not read; {advice}", self.name))
     }
 }

@@ -37,7 +37,7 @@ use cursor::Cursor;
 
 use crate::mesh::Mesh;
 
-pub use crate::files::soup::{Place, ReadError};
+pub use crate::files::soup::ReadError;
 pub use write::{write_obj, write_stl_binary};
 
 /// Largest file, bytes: the number of a vertex has 32 bits.
@@ -134,11 +134,17 @@ pub struct MeshFile {
 /// ```
 pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, ReadError> {
     if bytes.len() > LARGEST {
-        return Err(ReadError::TooLarge { name: name.to_owned(), bytes: bytes.len(), limit: LARGEST });
+        let bytes = bytes.len();
+        return Err(ReadError(format!(
+            "{name} has {bytes} bytes, the limit is {LARGEST}; divide it, or make a coarser mesh"
+        )));
     }
     let format = Format::of_extension(name).or_else(|| Format::of_content(bytes));
     let Some(format) = format else {
-        return Err(ReadError::UnknownFormat { name: name.to_owned() });
+        return Err(ReadError(format!(
+            "{name}: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh or Gmsh; give it the extension of its format \
+             (.stl .obj .ply .gdf .dat .msh)"
+        )));
     };
     // Some editors begin a text with the mark of its encoding.
     let text = if format == Format::Stl { None } else { bytes.strip_prefix(b"\xEF\xBB\xBF") };

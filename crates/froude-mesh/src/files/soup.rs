@@ -30,66 +30,10 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why a file is not read.
+/// What is wrong with a file, where in it, and what to do.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReadError {
-    /// Neither the extension nor the content says what it is.
-    #[error(
-        "{name}: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh or Gmsh; give it the extension of its format \
-         (.stl .obj .ply .gdf .dat .msh)"
-    )]
-    UnknownFormat {
-        /// The file.
-        name: String,
-    },
-    /// Something else than the format has there.
-    #[error("{name}, {place}: {found} where {expected} should be; {advice}")]
-    Unexpected {
-        /// The file.
-        name: String,
-        /// Where.
-        place: Place,
-        /// What is there.
-        found: String,
-        /// What should be.
-        expected: String,
-        /// The next step.
-        advice: &'static str,
-    },
-    /// It ends too early.
-    #[error("{name}, {place}: the file ends where {expected} should be; copy or export it again")]
-    Ends {
-        /// The file.
-        name: String,
-        /// Its end.
-        place: Place,
-        /// What should come.
-        expected: String,
-    },
-    /// The file is sound, and has something that is not read here.
-    #[error("{name}, {place}: {what} is not read; {advice}")]
-    NotRead {
-        /// The file.
-        name: String,
-        /// Where.
-        place: Place,
-        /// What it is.
-        what: String,
-        /// The next step.
-        advice: &'static str,
-    },
-    /// More than the numbers of vertices can count.
-    #[error("{name} has {bytes} bytes, the limit is {limit}; divide it, or make a coarser mesh")]
-    TooLarge {
-        /// The file.
-        name: String,
-        /// Its size.
-        bytes: usize,
-        /// The largest.
-        limit: usize,
-    },
-}
+#[error("{0}")]
+pub struct ReadError(pub(crate) String);
 
 /// What a reader returns: the mesh, and what it has to say.
 pub(crate) type Read = Result<(Mesh, Vec<String>), ReadError>;

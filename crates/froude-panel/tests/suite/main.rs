@@ -7,6 +7,7 @@ mod fast;
 mod foreign;
 mod frames;
 mod laws;
+mod near_wall;
 mod revolution;
 mod robot;
 mod walls;

@@ -11,6 +11,8 @@ use froude_panel::problem::{FIXED, Frame, Problem};
 use froude_panel::tank::Tank;
 use froude_panel::{dense, fast, solve};
 
+use crate::near_wall::{Direction, far_from_plane, in_shell, normal_to_plane};
+
 const VOLUME: f64 = 4.0 / 3.0 * PI;
 const LEVELS: [usize; 3] = [4, 6, 8];
 
@@ -28,36 +30,24 @@ const DIPOLE: f64 = 1e-4;
 /// What extrapolation leaves on the sphere alone, with these levels.
 const EXTRAPOLATED: f64 = 2e-5;
 
-/// Towards a plane: images of images of the dipole, each (a/f)³ of the one at distance f (Hicks 1880); `sign` −1 for φ = 0.
-fn hicks(h: f64, sign: f64) -> f64 {
-    let (mut place, mut strength, mut sum) = (0.0, 1.0, 0.0);
-    for _ in 0..20 {
-        let f = 2.0 * h - place;
-        strength *= sign / f.powi(3);
-        place = 1.0 / f;
-        sum += strength;
-    }
-    0.5 * (1.0 + 3.0 * sum)
-}
-
 #[test]
 fn a_sphere_beside_a_plane_has_the_added_mass_of_its_image() {
     let levels = [8, 12, 16];
-    for (kind, sign) in [(Kind::Wall, 1.0), (Kind::FreeSurface, -1.0)] {
-        for h in [3.0_f64, 5.0] {
+    for kind in [Kind::Wall, Kind::FreeSurface] {
+        for h in [3.0, 5.0] {
             let mirrors = [Mirror::body(0), Mirror::body(1), Mirror { axis: 2, at_m: h, kind }];
             let found = levels.map(|m| {
                 let part = positive_part(&sphere(1.0, m), &mirrors).unwrap();
                 fast::solve(&Problem::rigid(&part, &mirrors)).added_mass(0).matrix
             });
-            for (i, factor) in [(0, 3.0 / 16.0), (2, 3.0 / 8.0)] {
+            for (i, direction) in [(0, Direction::Parallel), (2, Direction::Normal)] {
                 let sizes = levels.map(|m| 1.0 / m as f64);
                 let a = converged(&sizes, &found.map(|f| f[i][i] / VOLUME), 0.0).extrapolated.value;
-                let law = 0.5 * (1.0 + sign * factor / h.powi(3));
+                let law = far_from_plane(kind, direction, h);
                 println!("{kind:?}, h = {h} a, A{0}{0}: {a:.6}, dipole law {law:.6}, {1:.1e}", i + 1, a / law - 1.0);
                 assert!((a / law - 1.0).abs() < DIPOLE, "{kind:?} {h} {i}: {a} {law}");
                 if i == 2 {
-                    let all = hicks(h, sign);
+                    let all = normal_to_plane(kind, h);
                     println!("    all images {all:.6}, {:.1e}", a / all - 1.0);
                     assert!((a / all - 1.0).abs() < EXTRAPOLATED, "{kind:?} {h}: {a} {all}");
                 }
@@ -86,9 +76,10 @@ fn a_sphere_in_a_rigid_shell_has_its_added_mass() {
     let (whole, eighth) = (both(3, &[]), both(3, &octant));
     assert!((whole - eighth).abs() < 1e-9, "{whole} {eighth}");
     let a = limit([6, 8, 12], |m| both(m, &octant));
-    println!("shell: {a:.6}, 5/7 = {:.6}", 5.0 / 7.0);
+    let exact = in_shell(Kind::Wall, 2.0);
+    println!("shell: {a:.6}, 5/7 = {exact:.6}");
     // Extrapolated values of these levels err by a few parts in a million for the sphere alone.
-    assert!((a - 5.0 / 7.0).abs() < 3e-5, "{a}");
+    assert!((a - exact).abs() < 3e-5, "{a}");
 }
 
 /// On one line −3/2 (a/d)³, side by side +3/4 (a/d)³ of ρV; the next term is of (a/d)⁶ (Lamb 1932, § 138).

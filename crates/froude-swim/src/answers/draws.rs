@@ -18,8 +18,9 @@ use rand::SeedableRng;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
-use crate::blueprint::{Blueprint, drives_the_whole};
+use crate::blueprint::{Blueprint, Number, drives_the_whole};
 use crate::chain::Chain;
+use crate::robot::RobotError;
 
 /// Of draws that are asked for, most that are tried.
 const MOST_TRIES: usize = 100;
@@ -57,73 +58,30 @@ impl std::ops::AddAssign for Beyond {
     }
 }
 
-/// Why nothing is drawn.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum DrawError {
-    /// Published numbers.
-    #[error(
-        "{record}: {id} states no covariance and no standard uncertainty, as published tables do not: nothing can be drawn, and there is no interval; leave out --draws, or name an estimate that froude identify made"
-    )]
-    NoCovariance {
-        /// The file.
-        record: String,
-        /// The estimate.
-        id: String,
-    },
-    /// A record of before estimates without bounds were kept.
-    #[error(
-        "{record}: {name} of {id} stands at its bound, and the record does not hold the estimate without it, about which its uncertainty is stated; identify again"
-    )]
-    NoCentre {
-        /// The file.
-        record: String,
-        /// The estimate.
-        id: String,
-        /// The coefficient.
-        name: String,
-    },
-    /// A matrix that is no covariance.
-    #[error("{record}: the covariance of {id} is not positive semi-definite (at {name}): it is none of an estimate")]
-    NotPositive {
-        /// The file.
-        record: String,
-        /// The estimate.
-        id: String,
-        /// The coefficient.
-        name: String,
-    },
-    /// Nearly no draw is a body.
-    #[error(
-        "of {tried} draws from the covariance of {id} all but {kept} are no bodies in water, nor is one near them: its coefficients are not determined well enough for intervals; choose a law with fewer of them"
-    )]
-    Refused {
-        /// Tries.
-        tried: usize,
-        /// Draws that are bodies.
-        kept: usize,
-        /// The estimate.
-        id: String,
-    },
-}
-
 impl Blueprint {
     /// So many draws; the same seed gives the same, and the first of many are the few.
     ///
     /// # Errors
     ///
-    /// [`DrawError`].
-    pub fn draws(&self, n: usize, seed: u64) -> Result<Draws, DrawError> {
+    /// [`RobotError::Unfit`]: no covariance, or nearly no draw that is a body in water.
+    pub fn draws(&self, n: usize, seed: u64) -> Result<Draws, RobotError> {
         let centre: Vec<f64> = self.numbers().iter().map(|c| c.centre.unwrap_or(c.value)).collect();
-        let (record, id) = (self.record().display().to_string(), self.id().to_owned());
-        let Some(covariance) = self.covariance() else { return Err(DrawError::NoCovariance { record, id }) };
-        if let Some(number) = self.numbers().iter().find(|c| c.centre.is_none()) {
-            return Err(DrawError::NoCentre { record, id, name: number.name.clone() });
+        let (id, unfit) = (self.id(), |problem: String| RobotError::of(self.record(), problem));
+        let Some(covariance) = self.covariance() else {
+            return Err(unfit(format!(
+                "{id} states no covariance and no standard uncertainty, as published tables do not: nothing can be drawn, and there is no interval; leave out --draws, or name an estimate that froude identify made"
+            )));
+        };
+        if let Some(Number { name, .. }) = self.numbers().iter().find(|c| c.centre.is_none()) {
+            return Err(unfit(format!(
+                "{name} of {id} stands at its bound, and the record does not hold the estimate without it, about which its uncertainty is stated; identify again"
+            )));
         }
-        let root = root(&covariance).map_err(|j| DrawError::NotPositive {
-            record,
-            id: id.clone(),
-            name: self.numbers()[j].name.clone(),
+        let root = root(&covariance).map_err(|j| {
+            let name = &self.numbers()[j].name;
+            unfit(format!(
+                "the covariance of {id} is not positive semi-definite (at {name}): it is none of an estimate"
+            ))
         })?;
         let dof = self.numbers().iter().filter_map(|c| c.dof).fold(f64::INFINITY, f64::min);
         let chi_squared = ChiSquared::new(dof).ok().filter(|_| dof.is_finite());
@@ -132,7 +90,10 @@ impl Blueprint {
         while draws.values.len() < n {
             let kept = draws.values.len();
             if draws.beyond.refused > MOST_TRIES * n {
-                return Err(DrawError::Refused { tried: draws.beyond.refused + kept, kept, id });
+                let tried = draws.beyond.refused + kept;
+                return Err(RobotError::Unfit(format!(
+                    "of {tried} draws from the covariance of {id} all but {kept} are no bodies in water, nor is one near them: its coefficients are not determined well enough for intervals; choose a law with fewer of them"
+                )));
             }
             let z: Vec<f64> = centre.iter().map(|_| StandardNormal.sample(&mut rng)).collect();
             let wide = chi_squared.map_or(1.0, |chi_squared| (dof / chi_squared.sample(&mut rng)).sqrt());

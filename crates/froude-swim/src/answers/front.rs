@@ -9,7 +9,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::gait::Gait;
-use crate::sweep::{Axis, Grid, Row, Status};
+use crate::sweep::{Axis, Grid, Row};
+use crate::swim::Status;
 
 /// What is sought.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use crate::dynamics::Dynamics;
 use crate::gait::{Course, Gait};
 use crate::joints::Drives;
 use crate::robot::Robot;
-use crate::swim::{Swim, SwimError};
+use crate::swim::{Status, Swim};
 
 /// Values at even distances, both ends among them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,72 +111,6 @@ pub const COLUMNS: [(&str, &str); 26] = [
     ("unstable_speed", "m/s"), ("unstable_power_net", "W"), ("unstable_floquet", "1"),
 ];
 
-/// Why a gait has no answer, or that it has one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Status {
-    /// It repeats itself.
-    Periodic,
-    /// Joints beyond their limits.
-    Limit,
-    /// No motion repeats itself.
-    NotPeriodic,
-    /// Nothing moves.
-    Still,
-    /// An inertia that is not positive.
-    Inertia,
-    /// A step that the servos do not allow.
-    Step,
-    /// A period of too many steps.
-    TooSlow,
-    /// It repeats itself, and needs more than the drives give or goes beyond the joints' limits.
-    Drives,
-}
-
-impl Status {
-    /// All of them, in the order of their codes.
-    pub const ALL: [Self; 8] = [
-        Self::Periodic,
-        Self::Limit,
-        Self::NotPeriodic,
-        Self::Still,
-        Self::Inertia,
-        Self::Step,
-        Self::TooSlow,
-        Self::Drives,
-    ];
-
-    /// As a column has it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Periodic => "periodic",
-            Self::Limit => "limit",
-            Self::NotPeriodic => "not_periodic",
-            Self::Still => "still",
-            Self::Inertia => "inertia",
-            Self::Step => "step",
-            Self::TooSlow => "too_slow",
-            Self::Drives => "drives",
-        }
-    }
-}
-
-impl From<&SwimError> for Status {
-    fn from(error: &SwimError) -> Self {
-        match error {
-            SwimError::Inertia => Self::Inertia,
-            SwimError::Limit { .. } => Self::Limit,
-            SwimError::Still { .. } => Self::Still,
-            SwimError::Step { .. } => Self::Step,
-            SwimError::TooSlow { .. } => Self::TooSlow,
-            SwimError::NotPeriodic
-            | SwimError::Restless { .. }
-            | SwimError::Diverged { .. }
-            | SwimError::TooLong { .. } => Self::NotPeriodic,
-        }
-    }
-}
-
 /// What a gait comes to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
@@ -194,9 +128,12 @@ impl Row {
         let asked = [gait.amplitude, gait.frequency, gait.phase, gait.turn, draw as f64];
         let mut numbers = [f64::NAN; COLUMNS.len()];
         numbers[..asked.len()].copy_from_slice(&asked);
-        let status = found.as_ref().map_or_else(Status::from, |swim| {
-            if swim.effort.needs.is_beyond { Status::Drives } else { Status::Periodic }
-        });
+        let status = found.as_ref().map_or_else(
+            |error| error.status,
+            |swim| {
+                if swim.effort.needs.is_beyond { Status::Drives } else { Status::Periodic }
+            },
+        );
         if let Ok(swim) = &found {
             numbers[asked.len()..].copy_from_slice(&answer(swim, gait));
         }

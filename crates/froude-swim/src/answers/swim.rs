@@ -30,6 +30,8 @@ use crate::seen::Seen;
 use crate::shares::gains;
 use crate::stability::{REAL_LIMIT, Stiffness, stiffness};
 
+/// Where roll and pitch are not among what must repeat.
+const NOT_PERIODIC: &str = "no motion of this gait repeats itself from period to period within reach; check its lengths, masses and added masses, where a slip of a unit does this; else take a smaller amplitude, or a frequency at which the drag settles it";
 /// Steps of a period, at least.
 pub const STEPS: usize = 400;
 /// A step is at most this part of the longest that is stable about shapes at rest.
@@ -47,96 +49,73 @@ const STILL: f64 = 1e-9;
 /// A gain of less than this part of the net power is none.
 pub(crate) const NO_GAIN: f64 = 1e-3;
 
-/// Why a gait has no answer.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SwimError {
-    /// An inertia that is not positive.
-    #[error("an inertia of the chain is not positive: masses and added masses must be")]
-    Inertia,
-    /// A gait that the joints do not allow.
-    #[error(
-        "the gait asks for {asked} at joint {joint}, and the joints allow {allowed}: take a smaller amplitude or, for a rate, a lower frequency"
-    )]
-    Limit {
-        /// The joint, from the head.
-        joint: usize,
-        /// What it asks for, with its unit.
-        asked: String,
-        /// What is allowed.
-        allowed: String,
-    },
+/// Why a gait has no answer, or that it has one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// It repeats itself.
+    Periodic,
+    /// Joints beyond their limits.
+    Limit,
     /// No motion repeats itself.
-    #[error(
-        "no motion of this gait repeats itself from period to period within reach; check its lengths, masses and added masses, where a slip of a unit does this; else take a smaller amplitude, or a frequency at which the drag settles it"
-    )]
     NotPeriodic,
-    /// No motion repeats itself in three dimensions.
-    #[error(
-        "no motion of this gait repeats itself from period to period within reach, roll and pitch among it; the mass lies {righting_mm:.2} mm below the buoyancy, and where that is little nothing rights the body: lower center_of_mass or raise center_of_buoyancy; else take a smaller amplitude, or check lengths, masses and added masses for a slip of a unit"
-    )]
-    Restless {
-        /// mm.
-        righting_mm: f64,
-    },
     /// Nothing moves.
-    #[error(
-        "the gait does not swim: its speed is {speed_m_s:e} m/s; give it an amplitude, and a phase from joint to joint"
-    )]
-    Still {
-        /// m/s.
-        speed_m_s: f64,
-    },
+    Still,
+    /// An inertia that is not positive.
+    Inertia,
     /// A step that the servos do not allow.
-    #[error(
-        "a step of {asked_s} s is not stable: the largest eigenvalue of k_d over the inertia of the joints (friction in k_d) is {damping_per_s:.6} 1/s, which by itself allows 2.785/{damping_per_s:.6} = {by_damping_s:.3e} s; with k_p the limit is {longest_s:.3e} s: take --step '{would_do_s:.6} s', which is half of it and divides the period, or a smaller kd"
-    )]
-    Step {
-        /// What was asked for, s.
-        asked_s: f64,
-        /// λ, 1/s.
-        damping_per_s: f64,
-        /// 2.785/λ, s.
-        by_damping_s: f64,
-        /// The longest that is stable, s.
-        longest_s: f64,
-        /// About half of it, which divides the period, s.
-        would_do_s: f64,
-    },
-    /// A gait whose period has too many steps.
-    #[error(
-        "a period of {period_s:e} s needs steps of {step_s:e} s at most ({why}), which are more than {most:e} for this chain: take a higher frequency or, for servos, a smaller kd"
-    )]
-    TooSlow {
-        /// s.
-        period_s: f64,
-        /// The longest step, s.
-        step_s: f64,
-        /// What limits it.
-        why: &'static str,
-        /// Most steps.
-        most: f64,
-    },
-    /// A motion that grows beyond all numbers.
-    #[error(
-        "the motion diverges in steps of {step_s:e} s: take a shorter --step, and check lengths, masses and added masses for a slip of a unit"
-    )]
-    Diverged {
-        /// s.
-        step_s: f64,
-    },
-    /// A trajectory that no memory holds.
-    #[error(
-        "{moments} moments of {joints} joints are {numbers:e} numbers; a trajectory has 1e8 at most: ask for fewer --periods"
-    )]
-    TooLong {
-        /// Moments.
-        moments: usize,
-        /// Joints.
-        joints: usize,
-        /// Numbers of the trajectory.
-        numbers: f64,
-    },
+    Step,
+    /// A period of too many steps.
+    TooSlow,
+    /// It repeats itself, and needs more than the drives give or goes beyond the joints' limits.
+    Drives,
+}
+
+impl Status {
+    /// All of them, in the order of their codes.
+    pub const ALL: [Self; 8] = [
+        Self::Periodic,
+        Self::Limit,
+        Self::NotPeriodic,
+        Self::Still,
+        Self::Inertia,
+        Self::Step,
+        Self::TooSlow,
+        Self::Drives,
+    ];
+
+    /// As a column has it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Periodic => "periodic",
+            Self::Limit => "limit",
+            Self::NotPeriodic => "not_periodic",
+            Self::Still => "still",
+            Self::Inertia => "inertia",
+            Self::Step => "step",
+            Self::TooSlow => "too_slow",
+            Self::Drives => "drives",
+        }
+    }
+}
+
+/// Why a gait has no answer.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{words}")]
+pub struct SwimError {
+    /// As a row of a sweep has it.
+    pub status: Status,
+    words: String,
+}
+
+impl SwimError {
+    pub(crate) fn of(status: Status, words: impl Into<String>) -> Self {
+        Self { status, words: words.into() }
+    }
+
+    pub(crate) fn inertia() -> Self {
+        Self::of(Status::Inertia, "an inertia of the chain is not positive: masses and added masses must be")
+    }
 }
 
 /// What a gait comes to.
@@ -162,7 +141,7 @@ impl<C: Dynamics> Robot<C> {
         within(gait, drives)?;
         let mut swimmer = Swimmer::new(&self.chain, gait);
         if swimmer.rates(0.0, &C::REST).is_none() {
-            return Err(SwimError::Inertia);
+            return Err(SwimError::inertia());
         }
         let (steps, stiffness) = self.steps(gait, drives, step_s)?;
         let driven = || Driven::new(&self.chain, Servo::new(gait, &drives.following, &drives.motor));
@@ -193,7 +172,11 @@ impl<C: Dynamics> Robot<C> {
         }
         let means = periodic.means;
         if means.speed_m_s * gait.period_s() < STILL * self.chain.flat().length_m() {
-            return Err(SwimError::Still { speed_m_s: means.speed_m_s });
+            let speed_m_s = means.speed_m_s;
+            let words = format!(
+                "the gait does not swim: its speed is {speed_m_s:e} m/s; give it an amplitude, and a phase from joint to joint"
+            );
+            return Err(SwimError::of(Status::Still, words));
         }
         let given = means.loss_w + means.friction_w + means.lifting_w;
         // What is no number is not balanced either.
@@ -210,8 +193,13 @@ impl<C: Dynamics> Robot<C> {
     }
 
     fn not_periodic(&self) -> SwimError {
-        let restless = |balance: Balance| SwimError::Restless { righting_mm: 1e3 * balance.righting_m };
-        self.chain.balance().map_or(SwimError::NotPeriodic, restless)
+        let restless = |balance: Balance| {
+            let righting_mm = 1e3 * balance.righting_m;
+            format!(
+                "no motion of this gait repeats itself from period to period within reach, roll and pitch among it; the mass lies {righting_mm:.2} mm below the buoyancy, and where that is little nothing rights the body: lower center_of_mass or raise center_of_buoyancy; else take a smaller amplitude, or check lengths, masses and added masses for a slip of a unit"
+            )
+        };
+        SwimError::of(Status::NotPeriodic, self.chain.balance().map_or_else(|| NOT_PERIODIC.to_owned(), restless))
     }
 
     /// What a motion needed and lost, in so many steps; a module that gains less than `least_w` gains nothing.
@@ -261,7 +249,7 @@ impl<C: Dynamics> Robot<C> {
         let period_s = course.period_s();
         let stiffness = match &drives.following[..] {
             [] => None,
-            following => Some(stiffness(&self.chain, course, following).ok_or(SwimError::Inertia)?),
+            following => Some(stiffness(&self.chain, course, following).ok_or_else(SwimError::inertia)?),
         };
         // The search for the motion that repeats begins with longer steps.
         let settled_s = REAL_LIMIT / (COARSE as f64 * self.chain.flat().settles_per_s());
@@ -270,19 +258,22 @@ impl<C: Dynamics> Robot<C> {
             _ => (settled_s, "linear drag settles it many times within a period"),
         };
         if let (Some(asked_s), Some(s)) = (step_s.filter(|asked| *asked > longest_s), stiffness) {
-            return Err(SwimError::Step {
-                asked_s,
-                damping_per_s: s.damping_per_s,
-                by_damping_s: REAL_LIMIT / s.damping_per_s,
-                longest_s,
-                would_do_s: period_s / (period_s / (SHORTER * longest_s)).ceil(),
-            });
+            let Stiffness { damping_per_s, .. } = s;
+            let by_damping_s = REAL_LIMIT / damping_per_s;
+            let would_do_s = period_s / (period_s / (SHORTER * longest_s)).ceil();
+            let words = format!(
+                "a step of {asked_s} s is not stable: the largest eigenvalue of k_d over the inertia of the joints (friction in k_d) is {damping_per_s:.6} 1/s, which by itself allows 2.785/{damping_per_s:.6} = {by_damping_s:.3e} s; with k_p the limit is {longest_s:.3e} s: take --step '{would_do_s:.6} s', which is half of it and divides the period, or a smaller kd"
+            );
+            return Err(SwimError::of(Status::Step, words));
         }
         let step_s = step_s.unwrap_or((period_s / STEPS as f64).min(SHORTER * longest_s));
         let steps = (period_s / step_s).ceil();
         let most = MOST_LINK_STEPS / (self.chain.joints() + 1) as f64;
         if steps > most {
-            return Err(SwimError::TooSlow { period_s, step_s, why, most });
+            let words = format!(
+                "a period of {period_s:e} s needs steps of {step_s:e} s at most ({why}), which are more than {most:e} for this chain: take a higher frequency or, for servos, a smaller kd"
+            );
+            return Err(SwimError::of(Status::TooSlow, words));
         }
         Ok((steps as usize, stiffness))
     }
@@ -324,16 +315,19 @@ pub(crate) fn within(gait: &dyn Course, drives: &Drives) -> Result<(), SwimError
     for (joint, limits) in (1..).zip(&drives.limits) {
         let [angle, rate] = gait.extremes(joint - 1, joints);
         let degrees = |x: f64| format!("{:.4}", x.to_degrees()).trim_end_matches('0').trim_end_matches('.').to_owned();
-        let refused = |asked, allowed, unit: &str| SwimError::Limit {
-            joint,
-            asked: format!("{} {unit}", degrees(asked)),
-            allowed: format!("{} {unit}", degrees(allowed)),
+        let refused = |asked, allowed, unit: &str| {
+            let words = format!(
+                "the gait asks for {} {unit} at joint {joint}, and the joints allow {} {unit}: take a smaller amplitude or, for a rate, a lower frequency",
+                degrees(asked),
+                degrees(allowed)
+            );
+            Err(SwimError::of(Status::Limit, words))
         };
         if let Some(allowed) = limits.angle_rad.filter(|limit| angle > *limit) {
-            return Err(refused(angle, allowed, "deg"));
+            return refused(angle, allowed, "deg");
         }
         if let Some(allowed) = limits.rate_rad_s.filter(|limit| rate > *limit) {
-            return Err(refused(rate, allowed, "deg/s"));
+            return refused(rate, allowed, "deg/s");
         }
     }
     Ok(())

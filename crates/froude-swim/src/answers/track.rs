@@ -12,7 +12,7 @@ use crate::means::{Effort, Means};
 use crate::moving::{Passage, go};
 use crate::robot::Robot;
 use crate::seen::Seen;
-use crate::swim::{NO_GAIN, STEPS, SwimError, within};
+use crate::swim::{NO_GAIN, STEPS, Status, SwimError, within};
 use crate::trajectory::under_way;
 
 /// Means over a recording.
@@ -52,11 +52,15 @@ impl<C: Dynamics> Robot<C> {
         }
         let mut seen = Seen::new(&self.chain, drives, track);
         let mut moving = under_way(&self.chain, track, drives, [0.0; 3], begin, &[]);
-        let passage =
-            go(moving.as_mut(), length_s / steps as f64, steps, &mut |now| seen.see(now)).ok_or(SwimError::Inertia)?;
+        let passage = go(moving.as_mut(), length_s / steps as f64, steps, &mut |now| seen.see(now))
+            .ok_or_else(SwimError::inertia)?;
         let means = passage.means(length_s);
         if !means.net_w.is_finite() {
-            return Err(SwimError::Diverged { step_s: length_s / steps as f64 });
+            let step_s = length_s / steps as f64;
+            let words = format!(
+                "the motion diverges in steps of {step_s:e} s: take a shorter --step, and check lengths, masses and added masses for a slip of a unit"
+            );
+            return Err(SwimError::of(Status::NotPeriodic, words));
         }
         let effort = self.effort(&seen, drives, &means, (steps, stiffness), NO_GAIN * means.net_w.abs());
         Ok(Tracked { length_s, means, passage, effort })

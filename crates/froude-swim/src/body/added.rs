@@ -65,10 +65,15 @@ fn of_record(file: &RobotFile, module: &ModuleFile, from: &FromRecord) -> Result
         return Ok((Added { matrix, is_by_link: false }, e.id.clone()));
     }
     let Some((_, c_a)) = c_a_of(e) else {
-        return Err(RobotError::NoAdded { path: from.path.clone(), id: e.id.clone() });
+        let problem = format!(
+            "{} has no C_A. The added mass of a link comes from C_A with the volume of a link that it refers to (forced oscillation, accelerated tow), or is written in numbers: \
+             added_mass = {{ sway = \"1.65 kg\", yaw = \"4.5e-3 kg m^2\" }}",
+            e.id
+        );
+        return Err(RobotError::of(&from.path, problem));
     };
     if c_a.is_nan() || c_a <= 0.0 {
-        return Err(RobotError::NotPositive { path: from.path.clone(), id: e.id.clone(), value: c_a });
+        return Err(RobotError::of(&from.path, format!("C_A of {} is {c_a}; an added mass is above zero", e.id)));
     }
     let volume = measure(from, e, "link_volume", "C_A refers to, of a link")?;
     let (sway, l) = (file.density_kg_m3 * volume * c_a, module.link.half_length_m);
@@ -83,7 +88,7 @@ pub(crate) fn c_a_of(e: &Estimate) -> Option<(&'static str, f64)> {
 }
 
 fn matrix(file: &RobotFile, module: &ModuleFile, from: &FromRecord, e: &Estimate) -> Result<[[f64; 6]; 6], RobotError> {
-    let wrong = |problem: String| RobotError::Matrix { path: from.path.clone(), id: e.id.clone(), problem };
+    let wrong = |problem: String| RobotError::of(&from.path, format!("the added mass of {} {problem}", e.id));
     let length = measure(from, e, "length", "matrix refers to")?;
     let own = 2.0 * module.link.half_length_m;
     if !(1.0 / OF_A_MODULE..=OF_A_MODULE).contains(&(length / own)) {
@@ -104,7 +109,7 @@ fn matrix(file: &RobotFile, module: &ModuleFile, from: &FromRecord, e: &Estimate
         for j in i..6 {
             let name = format!("A{}{}", i + 1, j + 1);
             let Some(value) = e.coefficients.get(&name).and_then(|c| c.value) else {
-                return Err(RobotError::Undetermined { path: from.path.clone(), id: e.id.clone(), name });
+                return Err(RobotError::undetermined(from, e, &name));
             };
             (all[i][j], all[j][i]) = (water * value, water * value);
         }

@@ -154,18 +154,24 @@ impl Blueprint {
     ///
     /// # Errors
     ///
-    /// [`RobotError::SwayAlone`].
+    /// [`RobotError::Unfit`], by C_A of sway alone.
     pub fn fitting<C: Dynamics>(self) -> Result<Self, RobotError> {
         let id = (C::TILTS && self.by_link.iter().any(Option::is_some)).then(|| self.added_ids.join(", "));
-        id.map_or(Ok(self), |id| Err(RobotError::SwayAlone { id }))
+        id.map_or(Ok(self), |id| {
+            Err(RobotError::Unfit(format!(
+                "{id} has C_A, which is of sway alone, and three dimensions need the added mass of all six motions: write them in numbers, or name the record of froude added-mass of one module"
+            )))
+        })
     }
 
     fn by(file: &RobotFile, drag: Fitted) -> Result<Self, RobotError> {
         let setting = setting(file, &drag.estimate)?;
         let (model, values) = law(&file.drag, &drag.estimate)?;
         if file.model.torque == Torque::Friction && model == DragModel::F6 {
-            let (id, law) = (drag.estimate.id.clone(), drag.estimate.law.name.clone());
-            return Err(RobotError::NoFriction { id, law });
+            let (id, law) = (&drag.estimate.id, &drag.estimate.law.name);
+            return Err(RobotError::Unfit(format!(
+                "{id} is {law}, which has no friction of links: write torque = \"cross_flow\", or drag = \"strip\""
+            )));
         }
         let named = model.coefficients().iter().zip(values);
         let mut coefficients: Vec<Number> = named.map(|(c, value)| drag.number(c.name, c.unit, value)).collect();

@@ -6,7 +6,8 @@
 //!
 //! **Source.** USR eq. 4 and 8 to 15.
 
-use std::path::PathBuf;
+use std::fmt::Display;
+use std::path::Path;
 
 use froude_hydro::{Body, CrossTerm, DragModel, Link as Section, Setting};
 use froude_records::RecordError;
@@ -16,103 +17,31 @@ use froude_records::json::read_estimates;
 use crate::chain::Chain;
 use crate::robot_file::{FromRecord, RobotFile};
 
-/// Why a robot does not swim.
+/// Why a robot file and the records that it names are no robot.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum RobotError {
-    /// A file that cannot be read, or says something impossible.
+    /// A record cannot be read.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// A record without such an estimate.
-    #[error("{}: {asked}; it has {}", .path.display(), .known.join(", "))]
-    Select {
-        /// The record.
-        path: PathBuf,
-        /// What was asked for.
-        asked: String,
-        /// Ids of its estimates.
-        known: Vec<String>,
-    },
-    /// An estimate whose law is none of a robot's drag.
-    #[error("{}: {id} is the law {law}; the drag of a robot is one of f1 to f6, which say what lies along and across a link: choose such an estimate with select", .path.display())]
-    Law {
-        /// The record.
-        path: PathBuf,
-        /// The estimate.
-        id: String,
-        /// Its law.
-        law: String,
-    },
-    /// A coefficient that nothing determines.
-    #[error("{}: {id} does not determine {name}: a robot cannot swim without it; choose an estimate that does, or hold it in the campaign", .path.display())]
-    Undetermined {
-        /// The record.
-        path: PathBuf,
-        /// The estimate.
-        id: String,
-        /// The coefficient.
-        name: String,
-    },
-    /// Torques of a friction that the law does not tell.
-    #[error("{id} is {law}, which has no friction of links: write torque = \"cross_flow\", or drag = \"strip\"")]
-    NoFriction {
-        /// The estimate.
-        id: String,
-        /// Its law.
-        law: String,
-    },
-    /// An added mass that is none.
-    #[error("{}: C_A of {id} is {value}; an added mass is above zero", .path.display())]
-    NotPositive {
-        /// The record.
-        path: PathBuf,
-        /// The estimate.
-        id: String,
-        /// C_A.
-        value: f64,
-    },
-    /// An estimate without an added mass that a link has.
-    #[error(
-        "{}: {id} has no C_A. The added mass of a link comes from C_A with the volume of a link that it refers to (forced oscillation, accelerated tow), or is written in numbers: \
-         added_mass = {{ sway = \"1.65 kg\", yaw = \"4.5e-3 kg m^2\" }}",
-        .path.display()
-    )]
-    NoAdded {
-        /// The record.
-        path: PathBuf,
-        /// The estimate.
-        id: String,
-    },
-    /// An added mass of sway for three dimensions.
-    #[error(
-        "{id} has C_A, which is of sway alone, and three dimensions need the added mass of all six motions: write them in numbers, or name the record of froude added-mass of one module"
-    )]
-    SwayAlone {
-        /// The estimate.
-        id: String,
-    },
-    /// A matrix that is none of a module.
-    #[error("{}: the added mass of {id} {problem}", .path.display())]
-    Matrix {
-        /// The record.
-        path: PathBuf,
-        /// The estimate.
-        id: String,
-        /// What is wrong, and what to do.
-        problem: String,
-    },
-    /// Coefficients without what they refer to.
-    #[error("{}: {id} does not say the {what} that its {of}; without it the numbers mean nothing", .path.display())]
-    RefersTo {
-        /// The record.
-        path: PathBuf,
-        /// The estimate.
-        id: String,
-        /// What is missing.
-        what: String,
-        /// Whose it is.
-        of: &'static str,
-    },
+    /// It says something else than a robot needs; with the file.
+    #[error("{0}")]
+    Unfit(String),
+}
+
+impl RobotError {
+    /// Of a record.
+    pub(crate) fn of(record: &Path, problem: impl Display) -> Self {
+        Self::Unfit(format!("{}: {problem}", record.display()))
+    }
+
+    /// An estimate without a coefficient.
+    pub(crate) fn undetermined(from: &FromRecord, e: &Estimate, name: &str) -> Self {
+        let id = &e.id;
+        let problem = format!(
+            "{id} does not determine {name}: a robot cannot swim without it; choose an estimate that does, or hold it in the campaign"
+        );
+        Self::of(&from.path, problem)
+    }
 }
 
 /// A robot that can swim.
@@ -153,15 +82,18 @@ pub(crate) fn selected(from: &FromRecord) -> Result<(EstimateFile, usize), Robot
             || "it has no single recommended estimate: name one with select = \"…\"".to_owned(),
             |id| format!("no estimate is {id:?}"),
         );
-        let known = file.estimates.iter().map(|e| e.id.clone()).collect();
-        return Err(RobotError::Select { path: from.path.clone(), asked, known });
+        let known: Vec<&str> = file.estimates.iter().map(|e| e.id.as_str()).collect();
+        return Err(RobotError::of(&from.path, format!("{asked}; it has {}", known.join(", "))));
     };
     Ok((file, at))
 }
 
 pub(crate) fn measure(from: &FromRecord, e: &Estimate, key: &str, of: &'static str) -> Result<f64, RobotError> {
-    let missing =
-        || RobotError::RefersTo { path: from.path.clone(), id: e.id.clone(), what: key.replace('_', " "), of };
+    let missing = || {
+        let (id, what) = (&e.id, key.replace('_', " "));
+        let problem = format!("{id} does not say the {what} that its {of}; without it the numbers mean nothing");
+        RobotError::of(&from.path, problem)
+    };
     e.refers_to.get(key).map(|m| m.value).ok_or_else(missing)
 }
 
@@ -184,14 +116,15 @@ pub(crate) fn setting(file: &RobotFile, e: &Estimate) -> Result<Setting, RobotEr
 
 pub(crate) fn law(from: &FromRecord, e: &Estimate) -> Result<(DragModel, Vec<f64>), RobotError> {
     let Some(model) = DragModel::from_name(&e.law.name) else {
-        return Err(RobotError::Law { path: from.path.clone(), id: e.id.clone(), law: e.law.name.clone() });
+        let problem = format!(
+            "{} is the law {}; the drag of a robot is one of f1 to f6, which say what lies along and across a link: choose such an estimate with select",
+            e.id, e.law.name
+        );
+        return Err(RobotError::of(&from.path, problem));
     };
     let value = |name: &str| {
-        e.coefficients.get(name).and_then(|c| c.value).ok_or_else(|| RobotError::Undetermined {
-            path: from.path.clone(),
-            id: e.id.clone(),
-            name: name.to_owned(),
-        })
+        let found = e.coefficients.get(name).and_then(|c| c.value);
+        found.ok_or_else(|| RobotError::undetermined(from, e, name))
     };
     Ok((model, model.coefficients().iter().map(|c| value(c.name)).collect::<Result<_, _>>()?))
 }

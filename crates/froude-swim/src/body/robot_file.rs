@@ -219,15 +219,6 @@ pub fn parse_robot(path: &Path, text: &str) -> Result<RobotFile, RecordError> {
     parse(path, text, None)
 }
 
-/// The sidecar of a URDF, whose links are known.
-///
-/// # Errors
-///
-/// As [`read_robot`].
-pub fn parse_sidecar_of_urdf(path: &Path, text: &str, chain: &[UrdfLink]) -> Result<RobotFile, RecordError> {
-    parse(path, text, Some(chain))
-}
-
 fn parse(path: &Path, text: &str, chain: Option<&[UrdfLink]>) -> Result<RobotFile, RecordError> {
     let source = Source { path, text };
     let document = section::parse(source)?;

@@ -12,7 +12,7 @@ use crate::moving::{Exact, Moving, Servoed};
 use crate::path::Swimmer;
 use crate::robot::Robot;
 use crate::state::Numbers;
-use crate::swim::{SwimError, within};
+use crate::swim::{Status, SwimError, within};
 
 /// Most numbers of a trajectory: 800 MB.
 const MOST_NUMBERS: f64 = 1e8;
@@ -90,7 +90,11 @@ impl<C: Dynamics> Robot<C> {
         let n = self.chain.joints();
         let numbers = cut.moments as f64 * ((5 + C::Motion::LEN) * n + 26) as f64;
         if numbers > MOST_NUMBERS {
-            return Err(SwimError::TooLong { moments: cut.moments, joints: n, numbers });
+            let words = format!(
+                "{} moments of {n} joints are {numbers:e} numbers; a trajectory has 1e8 at most: ask for fewer --periods",
+                cut.moments
+            );
+            return Err(SwimError::of(Status::NotPeriodic, words));
         }
         within(course, drives)?;
         let mut moving = under_way(&self.chain, course, drives, [x, y, 0.0], begin, joints);
@@ -98,15 +102,15 @@ impl<C: Dynamics> Robot<C> {
         let mut out = Vec::new();
         for i in 0..=cut.moments {
             let time_s = i as f64 * cut.apart_s;
-            let now = moving.first(time_s).ok_or(SwimError::Inertia)?;
+            let now = moving.first(time_s).ok_or_else(SwimError::inertia)?;
             let (shape, torque_n_m) = (now.shape.clone(), now.torque_n_m.to_vec());
             let (power_w, motions) = (now.power_w, now.motions.to_vec());
             let (state, centre_m, energy_j) = (moving.state(), moving.centre_m(), moving.energy_j());
             out.push(Moment { time_s, state, centre_m, shape, torque_n_m, power_w, energy_j, motions });
             for k in 0..cut.steps {
                 let time_s = (i * cut.steps + k) as f64 * h;
-                moving.first(time_s).ok_or(SwimError::Inertia)?;
-                moving.rest(time_s, h).ok_or(SwimError::Inertia)?;
+                moving.first(time_s).ok_or_else(SwimError::inertia)?;
+                moving.rest(time_s, h).ok_or_else(SwimError::inertia)?;
             }
         }
         Ok(out)

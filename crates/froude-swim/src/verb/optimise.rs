@@ -20,7 +20,8 @@ use crate::front::{Objective, Search};
 use crate::gait::Gait;
 use crate::robot_file::{RobotFile, read_robot};
 use crate::spatial;
-use crate::sweep::{Row, Status};
+use crate::sweep::Row;
+use crate::swim::Status;
 
 /// How often the distance of the grid is halved.
 const HALVINGS: u32 = 4;

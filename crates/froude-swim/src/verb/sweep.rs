@@ -101,38 +101,6 @@ struct Swept {
 /// Draws per law, number of laws, and draws that were no bodies.
 pub(super) type Drawn = (Drawing, usize, Beyond);
 
-/// Why a sweep does not begin.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SweepError {
-    /// More than memory holds.
-    #[error(
-        "the sweep has {rows} rows; one of {most} at most is made at a time: take fewer values, or sweep its parts into folders of their own"
-    )]
-    TooMany {
-        /// As they are counted.
-        rows: String,
-        /// Most of them.
-        most: usize,
-    },
-    /// A part of a sweep in the place of another.
-    #[error("{}: it holds part {other:06}, not part {part:06}: it was renamed or copied; delete it, and it is made again", .path.display())]
-    Elsewhere {
-        /// The file.
-        path: PathBuf,
-        /// Whose place it is.
-        part: usize,
-        /// Which it is.
-        other: usize,
-    },
-    /// Another process makes the same.
-    #[error("{}: another process is running this sweep; wait for it, or name another folder with --out", .folder.display())]
-    Busy {
-        /// The folder of its parts.
-        folder: PathBuf,
-    },
-}
-
 /// Most rows of a table.
 const MOST_ROWS: usize = 1_000_000;
 
@@ -225,12 +193,16 @@ impl<'a, C: Dynamics> Ready<'a, C> {
         let (laws, _) = Blueprint::of_all_laws(&file)?;
         let drives = super::drives(&file, job.motor.as_deref())?;
         let grid = job.ranges.about(&base(&file, job)?);
-        let too_many = |rows: String| SweepError::TooMany { rows, most: MOST_ROWS };
+        let too_many = |rows: String| {
+            VerbError::Refused(format!(
+                "the sweep has {rows} rows; one of {MOST_ROWS} at most is made at a time: take fewer values, or sweep its parts into folders of their own"
+            ))
+        };
         let each = job.draws.map_or(0, |drawing| drawing.n * laws.len()) + 1;
         let rows = grid.gaits().and_then(|gaits| gaits.checked_mul(each));
         match rows {
-            None => return Err(too_many("more than can be counted".to_owned()).into()),
-            Some(rows) if rows > MOST_ROWS => return Err(too_many(rows.to_string()).into()),
+            None => return Err(too_many("more than can be counted".to_owned())),
+            Some(rows) if rows > MOST_ROWS => return Err(too_many(rows.to_string())),
             Some(_) => {}
         }
         let (mut robots, mut beyond) = (vec![laws[0].estimated()], Beyond::default());

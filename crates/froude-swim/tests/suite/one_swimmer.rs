@@ -16,7 +16,8 @@ use froude_swim::robot_file::{RobotFile, read_robot};
 use froude_swim::spatial::chain::Chain;
 use froude_swim::spatial::vector::Axis;
 use froude_swim::state::Energy;
-use froude_swim::sweep::{Axis as Range, Grid, Row, Status};
+use froude_swim::sweep::{Axis as Range, Grid, Row};
+use froude_swim::swim::Status;
 use froude_swim::trajectory::Cut;
 
 /// Of figures over a period: both searches repeat to 1e-9, and the same steps round apart.

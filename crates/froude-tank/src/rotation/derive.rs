@@ -166,7 +166,7 @@ mod tests {
     const TANK: LinkCoefficients = LinkCoefficients { c_f: 0.0544, c_d: 1.8601, c_a: 1.277, c_m: 1.0 };
 
     fn parameters(inertia: YawInertia, drag: YawDrag) -> [f64; 3] {
-        let p = LinkParameters::of(&MAMBA, 1025.0, &TANK, inertia, drag).unwrap();
+        let p = LinkParameters::of(&MAMBA, 1025.0, &TANK, inertia, drag);
         [p.lambda_1_kg_m2, p.lambda_2_kg_m, p.lambda_3_kg_m2]
     }
 

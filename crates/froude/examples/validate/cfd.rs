@@ -189,7 +189,7 @@ fn of_capsule(claims: &mut Claims, room: &Room, of_family: &Room) -> Result<(), 
                 write!(words, "{} cells {:.4} ({}); ", found.cells, found.value, outcome.status.word())?;
                 on_grids.extend(outcome.status.is_usable().then_some(found));
             }
-            let found = grid_error(&on_grids, 3).map_or_else(|e| e.to_string(), |found| in_words(&found));
+            let found = grid_error(&on_grids, 3).map_or_else(|why| why, |found| in_words(&found));
             claims.add(
                 CAPSULE,
                 &format!("four grids by √2: {} at {angle}°, N", ["f_x", "f_y"][load]),

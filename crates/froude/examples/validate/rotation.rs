@@ -30,7 +30,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
 fn laws(claims: &mut Claims, case: &Case<Rotation>) -> Result<(), Box<dyn Error>> {
     let link = case.twin.setup.method.link.ok_or("no link")?;
     let of = |drag: YawDrag| LinkParameters::of(&link, 1025.0, &TANK, YawInertia::StripTheory, drag);
-    let [friction, across] = [of(YawDrag::FrictionStrip)?.lambda_3_kg_m2, of(YawDrag::CrossFlow)?.lambda_3_kg_m2];
+    let [friction, across] = [YawDrag::FrictionStrip, YawDrag::CrossFlow].map(|drag| of(drag).lambda_3_kg_m2);
     claims.holds(
         SECTION,
         "λ₃ of the Mamba link with the f2 set of the tank, by friction and by drag across it",

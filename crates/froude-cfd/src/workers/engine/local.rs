@@ -20,7 +20,7 @@ const LOOK: Duration = Duration::from_millis(100);
 ///
 /// # Errors
 ///
-/// [`StoreError::Held`]: another process runs this campaign. [`StoreError::File`]: its folder cannot be written.
+/// [`StoreError::Held`]: another process runs this campaign. [`StoreError::Refused`]: its folder cannot be written.
 pub fn run(
     store: &Store,
     solver: &dyn Solve,

@@ -29,7 +29,7 @@ const REFUSALS: usize = 3;
 ///
 /// # Errors
 ///
-/// [`StoreError::Held`]: another process runs this campaign. [`StoreError::Queue`]: Slurm is not there, or takes no job. [`StoreError::File`]: the folder cannot be written.
+/// [`StoreError::Held`]: another process runs this campaign. [`StoreError::Refused`]: Slurm is not there, or takes no job. [`StoreError::Refused`]: the folder cannot be written.
 pub fn run(
     store: &Store,
     options: &SlurmOptions,
@@ -37,7 +37,7 @@ pub fn run(
     tell: &(dyn Fn(Event) + Sync),
 ) -> Result<Ran, StoreError> {
     let _lock = Lock::take(store.root())?;
-    let root = store.root().canonicalize().map_err(|e| StoreError::file(store.root(), e.to_string()))?;
+    let root = store.root().canonicalize().map_err(|e| StoreError::file(store.root(), e))?;
     let store = &Store::open(&root)?;
     let mut run = Run {
         store,

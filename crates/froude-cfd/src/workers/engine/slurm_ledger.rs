@@ -59,7 +59,7 @@ impl Submission {
             }
             let read = |file: &str| {
                 let path = folder.join(file);
-                input::text(&path).map_err(|e| StoreError::file(&path, e.to_string()))
+                input::text(&path).map_err(|e| StoreError::file(&path, e))
             };
             let (name, text) = (read("name")?, read("tasks")?);
             if !is_name(&name) {
@@ -108,7 +108,7 @@ impl Submission {
 
     /// Takes it back: it was not submitted.
     pub fn withdraw(&self) -> Result<(), StoreError> {
-        std::fs::remove_dir_all(&self.folder).map_err(|e| StoreError::file(&self.folder, e.to_string()))
+        std::fs::remove_dir_all(&self.folder).map_err(|e| StoreError::file(&self.folder, e))
     }
 
     /// Says that none of its tasks is waited for any more.
@@ -119,7 +119,7 @@ impl Submission {
 
 fn numbers(root: &Path) -> Result<Vec<u32>, StoreError> {
     let folder = root.join(LEDGER);
-    std::fs::create_dir_all(&folder).map_err(|e| StoreError::file(&folder, e.to_string()))?;
+    std::fs::create_dir_all(&folder).map_err(|e| StoreError::file(&folder, e))?;
     input::numbers(&folder, ["", ""], u32::MAX)
 }
 

@@ -91,15 +91,15 @@ pub(crate) fn job_named(name: &str) -> Result<Option<u64>, StoreError> {
 
 /// Submits, the number of the job written to a file by `sbatch` itself: it stands there even where this process is killed meanwhile.
 pub(crate) fn submit(arguments: &[String], number: &Path) -> Result<u64, StoreError> {
-    let failed = |problem: String| StoreError::Queue { program: "sbatch".to_owned(), problem };
-    let file = File::create(number).map_err(|e| StoreError::file(number, e.to_string()))?;
+    let failed = |problem: String| StoreError::Refused(format!("sbatch: {problem}"));
+    let file = File::create(number).map_err(|e| StoreError::file(number, e))?;
     let mut command = Command::new("sbatch");
     command.args(arguments).stdin(Stdio::null()).stdout(file).stderr(Stdio::piped());
     let output = command.output().map_err(|e| failed(absent(&e)))?;
     if !output.status.success() {
         return Err(failed(String::from_utf8_lossy(&output.stderr).trim().to_owned()));
     }
-    let text = input::text(number).map_err(|e| StoreError::file(number, e.to_string()))?;
+    let text = input::text(number).map_err(|e| StoreError::file(number, e))?;
     number_in(&text).ok_or_else(|| failed(format!("it said {text:?}, and a number was expected")))
 }
 
@@ -118,7 +118,7 @@ pub(crate) fn cancel(jobs: &[String]) -> Result<(), StoreError> {
 }
 
 fn ask(program: &str, arguments: &[&str]) -> Result<String, StoreError> {
-    let failed = |problem: String| StoreError::Queue { program: program.to_owned(), problem };
+    let failed = |problem: String| StoreError::Refused(format!("{program}: {problem}"));
     let output = Command::new(program).args(arguments).stdin(Stdio::null()).output().map_err(|e| failed(absent(&e)))?;
     if output.status.success() {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());

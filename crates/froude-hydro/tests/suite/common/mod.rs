@@ -76,3 +76,8 @@ pub fn mamba() -> Body {
 pub fn setting(n_links: f64) -> Setting {
     Setting::as_published(mamba(), n_links, 1025.0)
 }
+
+/// Position of a coefficient, by its name.
+pub fn index_of(model: DragModel, name: &str) -> Option<usize> {
+    model.coefficients().iter().position(|c| c.name == name)
+}

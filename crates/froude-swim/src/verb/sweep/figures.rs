@@ -5,7 +5,8 @@ use froude_records::number::significant;
 use froude_records::page::{Chart, ChartPanel, Map, Scale, Series};
 
 use super::Swept;
-use crate::sweep::{Row, Status};
+use crate::sweep::Row;
+use crate::swim::Status;
 
 /// Columns of a gait, with their labels in degrees.
 const AXES: [(&str, &str); 4] = [

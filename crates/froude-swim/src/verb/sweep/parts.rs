@@ -13,8 +13,8 @@ use froude_records::outcome::Scratch;
 use froude_records::read::if_there;
 use froude_records::write::write_atomically;
 
-use super::SweepError;
-use crate::sweep::{COLUMNS, Row, Status};
+use crate::sweep::{COLUMNS, Row};
+use crate::swim::Status;
 use crate::verb::VerbError;
 
 /// So many parts, where a part has not more rows than it may.
@@ -60,7 +60,8 @@ impl Parts {
         std::fs::create_dir_all(&folder).map_err(failed(&folder))?;
         let lock_path = folder.join("lock");
         let Ok(lock) = FolderLock::take(&lock_path, "", false).map_err(failed(&lock_path))? else {
-            return Err(SweepError::Busy { folder }.into());
+            let busy = "another process is running this sweep; wait for it, or name another folder with --out";
+            return Err(VerbError::input(&folder, busy));
         };
         let is_other = |path: &PathBuf| {
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -94,7 +95,7 @@ impl Parts {
     ///
     /// # Errors
     ///
-    /// [`SweepError::Elsewhere`]: it is whole, and another part.
+    /// [`VerbError`]: it is whole, and another part.
     pub(super) fn read(&self, part: usize) -> Result<Option<Vec<Row>>, VerbError> {
         let path = self.path(part);
         let most = (ROW * self.each + SUM) as u64;
@@ -105,7 +106,12 @@ impl Parts {
             return Ok(content.chunks_exact(ROW).map(row).collect());
         }
         match (0..self.count()).find(|other| is_its(*other)) {
-            Some(other) => Err(SweepError::Elsewhere { path, part, other }.into()),
+            Some(other) => {
+                let problem = format!(
+                    "it holds part {other:06}, not part {part:06}: it was renamed or copied; delete it, and it is made again"
+                );
+                Err(VerbError::input(&path, problem))
+            }
             None => Ok(None),
         }
     }

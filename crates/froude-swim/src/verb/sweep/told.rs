@@ -8,7 +8,8 @@ use froude_records::text::counted;
 
 use super::{Swept, gaits};
 use crate::draws::envelope_95;
-use crate::sweep::{Row, Status};
+use crate::sweep::Row;
+use crate::swim::Status;
 use crate::verb::uncertain::{bodies, of_draws};
 
 impl Swept {
