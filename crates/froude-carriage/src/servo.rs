@@ -5,7 +5,7 @@
 //!
 //! | model                 | module           | equation                                                             |
 //! |-----------------------|------------------|----------------------------------------------------------------------|
-//! | rigid, the chain      | [`chain`], [`friction`] | `M q̈ + F_v q̇ + F_c sgn q̇ + offset = g u`, asymmetric, Stribeck, over position, over load |
+//! | rigid, the chain      | [`chain`], [`friction`] | `M q̈ + F_v q̇ + F_c sgn q̇ + offset = g u`, asymmetric, Stribeck, over position |
 //! | two masses and a chain | [`two_mass`]    | MCD eq. 2a, 2b from motor-side signals                                |
 //!
 //! A record of hours goes through [`long`] a chunk at a time.

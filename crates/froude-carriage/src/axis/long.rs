@@ -21,6 +21,7 @@ use froude_records::units::Dimension;
 use super::page::{Pieces, coefficient_table, with_declared};
 use super::{AxisModel, friction_of, one_excitation};
 use crate::runs::implausible;
+use crate::servo::interval::CONFIDENCE;
 use crate::servo::log::{is_even, rate_of};
 use crate::servo::report::negative;
 use crate::servo::scale::ForcePerVolt;
@@ -134,7 +135,7 @@ pub(super) fn of_table(
         }
         under_way
             .iter_mut()
-            .try_for_each(|(_, servo)| servo.push(position_m, command_v, None))
+            .try_for_each(|(_, servo)| servo.push(position_m, command_v))
             .map_err(MethodError::refused)
     })?;
     let text = format!(
@@ -173,7 +174,7 @@ pub(super) fn of_table(
 
 /// Values with the intervals of HAC.
 fn coefficients(report: &LongReport) -> Vec<ServoCoefficient> {
-    let coverage = coverage_factor(0.95, report.dof);
+    let coverage = coverage_factor(CONFIDENCE, report.dof);
     let of = |(j, (name, unit)): (usize, &(String, &'static str))| {
         let hac_std = if report.is_told[j] { report.hac[j] } else { f64::NAN };
         let std = [report.classical[j], hac_std, hac_std];

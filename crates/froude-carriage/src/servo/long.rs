@@ -26,7 +26,7 @@ use froude_signal::stream::{Decimator, Differences, Link, SecondDifferences, Zer
 use crate::servo::chain::{Chain, MOST_NEAR_REST, Motion};
 use crate::servo::error::ServoError;
 use crate::servo::excitation::{Column, excitation};
-use crate::servo::interval::diagonal_roots;
+use crate::servo::interval::{BLOCK_S, diagonal_roots};
 use crate::servo::regression::{inverse_gram, solve};
 
 /// Samples taken in at a time, so that the memory does not grow with a chunk.
@@ -87,7 +87,7 @@ pub struct LongReport {
 ///             (6.0 * a + 2.0 * v + 2.5 * v.signum()) / 6.0
 ///         })
 ///         .collect();
-///     servo.push(&position_m, &command_v, None)?;
+///     servo.push(&position_m, &command_v)?;
 /// }
 /// let report = servo.finish()?;
 /// assert_eq!(report.names[0].0, "M");
@@ -106,8 +106,6 @@ pub struct LongServo {
     acceleration: Acceleration,
     /// Filtered and differentiated, not yet made into regressors; the three end at different samples.
     motion: Motion,
-    /// Load on the guides of those samples.
-    load_n: Vec<f64>,
     /// Force of the samples whose motion is not yet complete.
     force_n: Vec<f64>,
     /// The command before the next one.
@@ -173,7 +171,7 @@ struct Decimated {
 impl LongServo {
     /// Begins a record sampled at `rate_hz`.
     ///
-    /// HAC's lag is the chain's `hac_lag_s`, or the length of its blocks where that is left open: the automatic lag needs
+    /// HAC's lag is the chain's `hac_lag_s`, or the length of a block where that is left open: the automatic lag needs
     /// the residuals first.
     ///
     /// # Errors
@@ -182,7 +180,7 @@ impl LongServo {
     pub fn new(chain: &Chain, rate_hz: f64) -> Result<Self, ServoError> {
         let low_pass = butterworth::low_pass(chain.filter_order, chain.corner_hz, rate_hz)?;
         let row_rate_hz = rate_hz / chain.decimation as f64;
-        let lag_s = chain.intervals.hac_lag_s.unwrap_or(chain.intervals.block_s);
+        let lag_s = chain.hac_lag_s.unwrap_or(BLOCK_S);
         if !(0.0..f64::INFINITY).contains(&lag_s) {
             return Err(ServoError::Setting {
                 what: "lag of HAC (s)",
@@ -191,7 +189,7 @@ impl LongServo {
             });
         }
         let none = Motion { position_m: Vec::new(), velocity_m_s: Vec::new(), acceleration_m_s2: Vec::new() };
-        let names: Vec<_> = (chain.regressors(&none, Some(&[]))?.into_iter()).map(|r| (r.name, r.unit)).collect();
+        let names: Vec<_> = (chain.regressors(&none)?.into_iter()).map(|r| (r.name, r.unit)).collect();
         let decimator = Decimator::new(chain.decimation)?;
         let trim = (chain.trim_s * row_rate_hz).round() as usize;
         Ok(Self {
@@ -202,7 +200,6 @@ impl LongServo {
             velocity: Differences::new(rate_hz.recip())?,
             acceleration: Acceleration::new(chain, rate_hz)?,
             motion: none,
-            load_n: Vec::new(),
             force_n: Vec::new(),
             before_v: None,
             force: decimator.clone(),
@@ -225,25 +222,19 @@ impl LongServo {
         })
     }
 
-    /// Takes the next samples; the load on the guides is needed by friction over load only.
+    /// Takes the next samples.
     ///
     /// # Errors
     ///
-    /// [`ServoError::Length`], [`ServoError::Missing`], [`ServoError::Fit`] for a number that is none.
-    pub fn push(&mut self, position_m: &[f64], command_v: &[f64], load_n: Option<&[f64]>) -> Result<(), ServoError> {
-        let load_n = load_n.filter(|_| self.chain.friction.is_loaded);
-        let columns = [("command", Some(command_v)), ("load", load_n)];
-        for (column, values) in columns.into_iter().filter_map(|(c, v)| v.map(|v| (c, v))) {
-            if values.len() != position_m.len() {
-                return Err(ServoError::Length { column, found: values.len(), expected: position_m.len() });
-            }
+    /// [`ServoError::Length`], [`ServoError::Fit`] for a number that is none.
+    pub fn push(&mut self, position_m: &[f64], command_v: &[f64]) -> Result<(), ServoError> {
+        let (found, expected) = (command_v.len(), position_m.len());
+        if found != expected {
+            return Err(ServoError::Length { column: "command", found, expected });
         }
         for start in (0..position_m.len()).step_by(BITE) {
             let bite = start..position_m.len().min(start + BITE);
             self.taken += bite.len();
-            if let Some(load_n) = load_n {
-                self.load_n.extend_from_slice(&load_n[bite.clone()]);
-            }
             let command_v = &command_v[bite.clone()];
             self.force_n.extend(self.chain.force_n(command_v, self.before_v));
             self.before_v = command_v.last().copied();
@@ -273,9 +264,7 @@ impl LongServo {
             velocity_m_s: part(velocity_m_s),
             acceleration_m_s2: part(acceleration_m_s2),
         };
-        let load_n = self.load_n.get(..n).filter(|_| self.chain.friction.is_loaded);
-        let mut regressors = self.chain.regressors(&motion, load_n)?;
-        self.load_n.drain(..n.min(self.load_n.len()));
+        let mut regressors = self.chain.regressors(&motion)?;
         let mut force_n: Vec<f64> = self.force_n.drain(..n).collect();
         let near = self.chain.near_rest(&motion);
         self.near_rest.push(&near, &mut self.decimated.near_rest);
@@ -549,7 +538,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// Two tones that reverse every few seconds, a command with friction, a ripple nobody records; 60 s at 1 kHz.
-    fn record(load_n: bool) -> ServoLog {
+    fn record() -> ServoLog {
         let time_s: Vec<f64> = (0..60_000).map(|i| 1e-3 * f64::from(i)).collect();
         let position_m = time_s.iter().map(|t| 0.2 * (1.3 * t).sin() + 0.1 * (3.1 * t).sin()).collect();
         let command_v = (time_s.iter())
@@ -559,8 +548,7 @@ mod tests {
                 (6.0 * a + 2.0 * v + 2.5 * v.signum() + 0.3 + 0.1 * (17.0 * t).sin()) / 6.0
             })
             .collect();
-        let load_n = load_n.then(|| time_s.iter().map(|t| 20.0 + (0.05 * t).sin()).collect());
-        ServoLog { time_s, position_m, command_v, load_n }
+        ServoLog { time_s, position_m, command_v }
     }
 
     /// Both sides round alike but in another order: some 6000 roundings times a condition of some 100 are 1.3e-10.
@@ -578,7 +566,7 @@ mod tests {
         let rows = chain.rows(log).unwrap();
         let whole = least_squares(&rows).unwrap();
         let residuals = rows.residuals_n(&whole.coefficients);
-        let lag_s = chain.intervals.hac_lag_s;
+        let lag_s = chain.hac_lag_s;
         let (mut expected, lag_s) = hac(&rows.columns, &residuals, &inverse_gram(&whole), rows.rate_hz, lag_s);
         if chain.is_moving {
             let rms = |x: &[f64]| (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt();
@@ -593,7 +581,7 @@ mod tests {
         let mut servo = LongServo::new(chain, 1000.0).unwrap();
         for start in (0..log.time_s.len()).step_by(cut) {
             let part = log.part(start..log.time_s.len().min(start + cut));
-            servo.push(&part.position_m, &part.command_v, part.load_n.as_deref()).unwrap();
+            servo.push(&part.position_m, &part.command_v).unwrap();
         }
         let report = servo.finish().unwrap();
         assert_eq!(report.n_rows, rows.force_n.len());
@@ -608,8 +596,8 @@ mod tests {
     #[test]
     fn however_it_is_cut_a_record_gives_what_it_gives_in_memory() {
         let mut chain = Chain::new(6.0, Friction::symmetric());
-        chain.intervals.hac_lag_s = Some(0.77);
-        let log = record(false);
+        chain.hac_lag_s = Some(0.77);
+        let log = record();
         for cut in [997, 10_000, 60_000] {
             compare(&log, &chain, cut);
         }
@@ -618,22 +606,22 @@ mod tests {
     #[test]
     fn any_log_gives_the_same_result_in_chunks_as_in_memory() {
         let mut chain = Chain::of_log(6.0, 1000.0, Friction::asymmetric());
-        chain.intervals.hac_lag_s = Some(0.77);
+        chain.hac_lag_s = Some(0.77);
         for cut in [997, 60_000] {
-            compare(&record(false), &chain, cut);
+            compare(&record(), &chain, cut);
         }
     }
 
     #[test]
     fn every_law_of_friction_and_a_lag_of_none() {
-        let log = record(true);
+        let log = record();
         for friction in [
             Friction::asymmetric(),
             Friction { knots_m: vec![-0.2, 0.0, 0.2], ..Friction::default() },
-            Friction { is_loaded: true, stribeck_speed_m_s: Some(0.05), ..Friction::default() },
+            Friction { stribeck_speed_m_s: Some(0.05), ..Friction::default() },
         ] {
             let mut chain = Chain::new(6.0, friction);
-            chain.intervals.hac_lag_s = Some(0.0);
+            chain.hac_lag_s = Some(0.0);
             compare(&log, &chain, 7001);
         }
     }
@@ -641,7 +629,7 @@ mod tests {
     #[test]
     fn a_record_of_a_moment_is_refused_with_both_numbers() {
         let mut servo = LongServo::new(&Chain::new(6.0, Friction::symmetric()), 1000.0).unwrap();
-        servo.push(&[0.0; 300], &[0.0; 300], None).unwrap();
+        servo.push(&[0.0; 300], &[0.0; 300]).unwrap();
         let error = servo.finish().unwrap_err();
         assert_eq!(error, ServoError::TooFewRows { rows: 0, needed: 6 });
     }

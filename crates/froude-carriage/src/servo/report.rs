@@ -117,7 +117,7 @@ impl ServoReport {
 ///         (6.0 * a + 2.0 * v + 2.5 * v.signum()) / 6.0
 ///     })
 ///     .collect();
-/// let log = ServoLog { time_s, position_m, command_v, ..ServoLog::default() };
+/// let log = ServoLog { time_s, position_m, command_v };
 /// let report = identify_servo(&log, &Chain::new(6.0, Friction::symmetric()))?;
 /// let mass_kg = report.coefficient("M").map_or(f64::NAN, |c| c.value);
 /// assert!((mass_kg - 6.0).abs() < 0.01);
@@ -137,7 +137,7 @@ pub fn identify_servo(columns: &ServoLog, chain: &Chain) -> Result<ServoReport, 
 /// [`ServoError`].
 pub fn of_rows(rows: Rows, chain: &Chain) -> Result<ServoReport, ServoError> {
     let solution = least_squares(&rows)?;
-    let spread = spread(&rows, &solution, &chain.intervals).map_err(|error| match error {
+    let spread = spread(&rows, &solution, chain.hac_lag_s).map_err(|error| match error {
         ServoError::TooFewRows { rows, needed } if chain.is_moving => ServoError::AtRest { rows, needed },
         other => other,
     })?;
@@ -183,7 +183,7 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
         );
     }
     let solution = least_squares(&rows)?;
-    match over_runs(&rows, &solution, &ranges, &chain.intervals) {
+    match over_runs(&rows, &solution, &ranges, chain.hac_lag_s) {
         Ok(spread) => Ok(reported(rows, ranges.clone(), &solution, spread, chain)),
         Err(error @ ServoError::Alone { .. }) => by_blocks(rows, &error.to_string()),
         Err(error) => Err(error),
@@ -324,7 +324,6 @@ mod tests {
                     time_s: r.time_s[first..=last].to_vec(),
                     position_m: r.position_m[first..=last].to_vec(),
                     command_v: r.command_v[first..=last].to_vec(),
-                    ..ServoLog::default()
                 };
                 chain.rows(&log).unwrap()
             })

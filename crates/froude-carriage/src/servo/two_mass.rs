@@ -38,7 +38,7 @@ use crate::servo::error::ServoError;
 use crate::servo::flexible::{Stepper, TwoMass};
 use crate::servo::friction::Friction;
 use crate::servo::gauss_newton::{DIFFERENCE, Fitted, minimise};
-use crate::servo::interval::{hac_covariance, whiteness};
+use crate::servo::interval::{BLOCK_S, hac_covariance, whiteness};
 use crate::servo::log::ServoLog;
 use crate::servo::regression::{inverse_gram, least_squares, solve};
 use crate::servo::report::ServoCoefficient;
@@ -119,7 +119,7 @@ struct Record<'a> {
 impl<'a> Record<'a> {
     fn new(log: &'a ServoLog, options: &'a FlexibleOptions) -> Result<Self, ServoError> {
         let rate_hz = log.rate_hz()?;
-        let needed = (PARAMETERS + 2) * (options.intervals.block_s * rate_hz).ceil() as usize;
+        let needed = (PARAMETERS + 2) * (BLOCK_S * rate_hz).ceil() as usize;
         if log.position_m.len() < needed {
             return Err(ServoError::TooFewRows { rows: log.position_m.len(), needed });
         }
@@ -314,12 +314,11 @@ impl<'a> Record<'a> {
         let gram = inverse_gram(&solve(&fitted.columns, &fitted.residuals)?);
         let data: Vec<Vec<f64>> = fitted.columns.iter().map(|c| c[..n].to_vec()).collect();
         let innovations = &fitted.residuals[..n];
-        let options = &self.options.intervals;
-        let (hac, _) = hac_covariance(&data, innovations, &gram, self.rate_hz, options.hac_lag_s);
+        let (hac, _) = hac_covariance(&data, innovations, &gram, self.rate_hz, None);
         let information = Mat::from_fn(PARAMETERS, PARAMETERS, |i, j| {
             (n..n + 2).map(|k| fitted.columns[i][k] * fitted.columns[j][k]).sum()
         });
-        let length = (options.block_s * self.rate_hz).round() as usize;
+        let length = (BLOCK_S * self.rate_hz).round() as usize;
         let clustered =
             Clustered::new(&data, innovations, &stretches(n, length), Some(&information), Enlarged::Average)?;
         let prior = Self::of_prior(fitted, n, &gram);
@@ -336,7 +335,6 @@ impl<'a> Record<'a> {
             known,
             radius_relative: self.options.radius_relative,
             clustered,
-            confidence: options.confidence,
         })
     }
 

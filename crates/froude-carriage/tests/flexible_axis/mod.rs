@@ -96,5 +96,5 @@ pub fn record(axis: &TwoMass, rate_hz: f64, half_s: f64, noise: &Noise, seed: u6
         .into_iter()
         .map(|p| (p * noise.counts_per_m + within_count).floor() / noise.counts_per_m)
         .collect();
-    Ok(ServoLog { time_s, position_m, command_v, ..ServoLog::default() })
+    Ok(ServoLog { time_s, position_m, command_v })
 }

@@ -63,7 +63,6 @@ fn read(root: &Path) -> Result<ServoLog, Box<dyn Error>> {
         time_s: of("time", Dimension::TIME)?,
         position_m: of("position", Dimension::LENGTH)?,
         command_v: of("command", Dimension::VOLTAGE)?,
-        load_n: None,
     })
 }
 

@@ -96,7 +96,6 @@ fn identified(scenario: &Scenario, friction: &Friction, seed: u64) -> Result<Ser
                 time_s: within(&run.time_s),
                 position_m: within(&run.position_m),
                 command_v: within(&run.command_v),
-                ..ServoLog::default()
             })
         })
         .collect::<Result<Vec<_>, _>>()?;

@@ -6,7 +6,7 @@ use froude_fit::faer::Mat;
 
 use crate::drag::mbdp;
 use crate::servo::flexible::TwoMass;
-use crate::servo::interval::{IntervalOptions, Whiteness};
+use crate::servo::interval::Whiteness;
 use crate::servo::motor::MotorSide;
 use crate::servo::report::ServoCoefficient;
 
@@ -45,8 +45,6 @@ pub struct FlexibleOptions {
     pub step_s: f64,
     /// Antiresonances tried as a start, Hz.
     pub start_hz: Vec<f64>,
-    /// How intervals are made; of the blocks only their length is used.
-    pub intervals: IntervalOptions,
 }
 
 impl FlexibleOptions {
@@ -62,7 +60,6 @@ impl FlexibleOptions {
             radius_relative: 0.0,
             step_s: 2e-4,
             start_hz: vec![2.5, 3.2, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 17.0, 22.0, 30.0],
-            intervals: IntervalOptions::default(),
         }
     }
 
