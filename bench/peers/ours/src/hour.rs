@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{BufWriter, Read, Write};
 use std::path::Path;
 
-use froude_carriage::servo::{Chain, Friction, LongServo};
+use froude_carriage::servo::{Chain, Friction, LongServo, ServoCoefficient};
 
 use crate::Outcome;
 use crate::make::Normal;
@@ -69,8 +69,9 @@ pub fn identify(dir: &Path) -> Outcome<Row> {
                 break;
             }
         }
-        let report = servo.finish()?;
-        Ok([report.coefficients, report.classical, report.hac].concat())
+        let found = servo.finish()?.coefficients;
+        let of = |number: fn(&ServoCoefficient) -> f64| found.iter().map(number).collect::<Vec<f64>>();
+        Ok([of(|c| c.value), of(|c| c.classical_std), of(|c| c.hac_std)].concat())
     })
 }
 

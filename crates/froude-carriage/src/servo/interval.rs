@@ -17,7 +17,6 @@
 
 use froude_fit::autocorrelation::{autocorrelation, integrated_time};
 use froude_fit::diagnostics::ljung_box;
-use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
 use froude_fit::long_run::{self, automatic_lag};
 use froude_fit::stream::Solution;
@@ -74,25 +73,19 @@ pub fn whiteness(residuals: &[f64], rate_hz: f64) -> Option<Whiteness> {
     Some(Whiteness { r1, ljung_box: statistic, p, lags: LAGS, correlation_time_s })
 }
 
-/// Standard deviations of the coefficients, three ways.
+/// How far the coefficients scatter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spread {
-    /// White residuals.
-    pub classical: Vec<f64>,
-    /// HAC.
+    /// Standard deviations by HAC.
     pub hac: Vec<f64>,
     /// Lag of HAC, s.
     pub hac_lag_s: f64,
-    /// Moving blocks.
-    pub blocks: Vec<f64>,
     /// Length of a block, s.
     pub block_s: f64,
     /// Runs whose scatter stands in the place of the blocks'; `None` for a single record.
     pub runs: Option<usize>,
     /// Degrees of freedom of each interval: blocks side by side less coefficients, or those of the clusters' variance.
     pub dof: Vec<f64>,
-    /// Half-width of each interval over the standard deviation of the blocks.
-    pub coverage_factor: Vec<f64>,
     /// Covariance over the blocks' resamples, or over the runs.
     pub covariance: Mat<f64>,
 }
@@ -105,7 +98,7 @@ impl Spread {
     }
 }
 
-/// Standard deviations of a least-squares solution of `rows`.
+/// Scatter of a least-squares solution of `rows`.
 ///
 /// # Errors
 ///
@@ -119,17 +112,8 @@ pub fn spread(rows: &Rows, solution: &Solution, hac_lag_s: Option<f64>) -> Resul
     };
     let (hac, hac_lag_s) = hac(&rows.columns, &residuals, &inverse_gram(solution), rows.rate_hz, hac_lag_s);
     let over = over_blocks(residuals.len(), rows.rate_hz, solution.coefficients.len(), refit)?;
-    Ok(Spread {
-        classical: solution.standard.clone(),
-        hac,
-        hac_lag_s,
-        blocks: diagonal_roots(&over.covariance),
-        block_s: over.block_s,
-        runs: None,
-        dof: vec![over.dof; solution.coefficients.len()],
-        coverage_factor: vec![coverage_factor(CONFIDENCE, over.dof); solution.coefficients.len()],
-        covariance: over.covariance,
-    })
+    let dof = vec![over.dof; solution.coefficients.len()];
+    Ok(Spread { hac, hac_lag_s, block_s: over.block_s, runs: None, dof, covariance: over.covariance })
 }
 
 /// As [`spread`], the runs (ranges of rows) being the clusters.
@@ -144,18 +128,8 @@ pub(crate) fn over_runs(
     let clustered = Clustered::new(&rows.columns, &residuals, runs, None, Enlarged::Jackknife)?;
     let p = solution.coefficients.len();
     let of_one = |j: usize| clustered.dof(&(0..p).map(|k| f64::from(u8::from(k == j))).collect::<Vec<f64>>());
-    let dof: Vec<f64> = (0..p).map(of_one).collect();
-    Ok(Spread {
-        classical: solution.standard.clone(),
-        hac,
-        hac_lag_s,
-        blocks: diagonal_roots(&clustered.covariance),
-        block_s: BLOCK_S,
-        runs: Some(runs.len()),
-        coverage_factor: dof.iter().map(|dof| coverage_factor(CONFIDENCE, *dof)).collect(),
-        dof,
-        covariance: clustered.covariance,
-    })
+    let dof = (0..p).map(of_one).collect();
+    Ok(Spread { hac, hac_lag_s, block_s: BLOCK_S, runs: Some(runs.len()), dof, covariance: clustered.covariance })
 }
 
 /// HAC standard deviations, and the lag used, s.
@@ -204,8 +178,7 @@ pub(crate) fn over_blocks(
         return Err(ServoError::TooFewRows { rows, needed });
     }
     let blocks = MovingBlocks::new(rows, block, SEED)?;
-    let draws: Vec<Vec<f64>> =
-        (0..RESAMPLES).into_par_iter().filter_map(|k| refit(&blocks.resample(k))).collect();
+    let draws: Vec<Vec<f64>> = (0..RESAMPLES).into_par_iter().filter_map(|k| refit(&blocks.resample(k))).collect();
     let n = draws.len() as f64;
     let mean: Vec<f64> = (0..p).map(|j| draws.iter().map(|d| d[j]).sum::<f64>() / n).collect();
     let covariance =

@@ -28,47 +28,13 @@ use crate::servo::error::ServoError;
 use crate::servo::excitation::{Column, excitation};
 use crate::servo::interval::{BLOCK_S, diagonal_roots};
 use crate::servo::regression::{inverse_gram, solve};
+use crate::servo::report::{NO_RANGE, RigidFit, coefficients, negative, widened};
 
 /// Samples taken in at a time, so that the memory does not grow with a chunk.
 const BITE: usize = 8192;
 
 /// Rows of the beginning that scores are taken from, at least.
 const BEGINNING: usize = 4096;
-
-/// What a long record says about an axis.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LongReport {
-    /// Name and unit of each coefficient, in the order of the regression.
-    pub names: Vec<(String, &'static str)>,
-    /// Values.
-    pub coefficients: Vec<f64>,
-    /// Standard deviations if residuals were white.
-    pub classical: Vec<f64>,
-    /// Standard deviations by HAC, including the bias that a disturbance can cause.
-    pub hac: Vec<f64>,
-    /// Their covariance.
-    pub covariance: Mat<f64>,
-    /// Degrees of freedom of that, 1.5 n/(lag + 1): Bartlett's window at frequency zero (Priestley 1981, 6.2).
-    pub dof: f64,
-    /// Lag of HAC, s.
-    pub hac_lag_s: f64,
-    /// Standard deviation of the residuals, N.
-    pub sigma_n: f64,
-    /// `‖force − model‖/‖force‖`.
-    pub relative_force_error: f64,
-    /// Least and largest value of each regressor.
-    pub ranges: Vec<[f64; 2]>,
-    /// Coefficients that the motion does not determine, which have no interval, and a motion that would determine them.
-    pub excitation: Vec<String>,
-    /// Whether the motion determines each coefficient.
-    pub is_told: Vec<bool>,
-    /// How the rows of the regression were made, in words.
-    pub preparation: String,
-    /// Rows of the regression.
-    pub n_rows: usize,
-    /// Their rate, Hz.
-    pub rate_hz: f64,
-}
 
 /// An identification under way.
 ///
@@ -89,9 +55,9 @@ pub struct LongReport {
 ///         .collect();
 ///     servo.push(&position_m, &command_v)?;
 /// }
-/// let report = servo.finish()?;
-/// assert_eq!(report.names[0].0, "M");
-/// assert!((report.coefficients[0] - 6.0).abs() < 0.01);
+/// let fit = servo.finish()?;
+/// assert_eq!(fit.coefficients[0].name, "M");
+/// assert!((fit.coefficients[0].value - 6.0).abs() < 0.01);
 /// # Ok::<(), froude_carriage::servo::ServoError>(())
 /// ```
 #[derive(Debug)]
@@ -216,7 +182,7 @@ impl LongServo {
             squares_n2: 0.0,
             squares: vec![0.0; names.len()],
             fitted: 0,
-            ranges: vec![[f64::INFINITY, f64::NEG_INFINITY]; names.len()],
+            ranges: vec![NO_RANGE; names.len()],
             chain: chain.clone(),
             names,
         })
@@ -300,7 +266,7 @@ impl LongServo {
         self.windows.push(&regressors, response);
         self.squares_n2 += response.iter().map(|f| f * f).sum::<f64>();
         for (range, column) in self.ranges.iter_mut().zip(&regressors) {
-            *range = column.iter().fold(*range, |[low, high], x| [low.min(*x), high.max(*x)]);
+            *range = widened(*range, column);
         }
         for (squares, column) in self.squares.iter_mut().zip(&regressors) {
             *squares += column.iter().map(|x| x * x).sum::<f64>();
@@ -313,13 +279,14 @@ impl LongServo {
         Ok(())
     }
 
-    /// Ends the record.
+    /// Ends the record. Its intervals are those of HAC, with 1.5 n/(lag + 1) degrees of freedom: Bartlett's window at frequency zero (Priestley
+    /// 1981, 6.2).
     ///
     /// # Errors
     ///
     /// [`ServoError::TooFewRows`], [`ServoError::Signal`] for a record shorter than the filter, [`ServoError::Fit`] where
     /// it does not determine the coefficients.
-    pub fn finish(mut self) -> Result<LongReport, ServoError> {
+    pub fn finish(mut self) -> Result<RigidFit, ServoError> {
         let total = self.taken.div_ceil(self.chain.decimation);
         let (rows, needed) = (total.saturating_sub(2 * self.trim), self.names.len() + 2);
         if rows < needed {
@@ -364,22 +331,24 @@ impl LongServo {
             covariance += &found.moved;
             (weak, is_told) = (found.findings, found.is_told);
         }
-        Ok(LongReport {
+        let hac = diagonal_roots(&covariance);
+        let dof = vec![(1.5 * windows).min(solution.dof); p];
+        let coefficients = coefficients(&self.names, &solution, [&hac, &hac, &dof], &is_told);
+        Ok(RigidFit {
+            findings: negative(&coefficients).collect(),
             excitation: weak,
-            is_told,
-            hac: diagonal_roots(&covariance),
+            coefficients,
             covariance,
-            dof: (1.5 * windows).min(solution.dof),
-            relative_force_error: (solution.residual_squares / self.squares_n2).sqrt(),
+            dof,
+            pieces: format!("HAC with a lag of {:.1} s", self.windows.lag as f64 / rate_hz),
+            runs: None,
             ranges: self.ranges,
-            hac_lag_s: self.windows.lag as f64 / rate_hz,
-            names: self.names,
-            coefficients: solution.coefficients,
-            classical: solution.standard,
-            sigma_n: solution.sigma,
             preparation: self.chain.words(self.rate_hz),
             n_rows: rows,
             rate_hz,
+            relative_force_error: (solution.residual_squares / self.squares_n2).sqrt(),
+            sigma_n: solution.sigma,
+            condition_number: None,
         })
     }
 }
@@ -535,6 +504,7 @@ mod tests {
     use crate::servo::interval::hac;
     use crate::servo::log::ServoLog;
     use crate::servo::regression::least_squares;
+    use crate::servo::report::ServoCoefficient;
     use proptest::prelude::*;
 
     /// Two tones that reverse every few seconds, a command with friction, a ripple nobody records; 60 s at 1 kHz.
@@ -583,14 +553,17 @@ mod tests {
             let part = log.part(start..log.time_s.len().min(start + cut));
             servo.push(&part.position_m, &part.command_v).unwrap();
         }
-        let report = servo.finish().unwrap();
-        assert_eq!(report.n_rows, rows.force_n.len());
-        assert_eq!(report.names, rows.names);
-        assert!((report.hac_lag_s - lag_s).abs() < 1e-9);
-        same(&report.coefficients, &whole.coefficients);
-        same(&report.classical, &whole.standard);
-        same(&report.hac, &expected);
-        same(&[report.relative_force_error], &[rows.relative_error(&whole.coefficients)]);
+        assert_eq!(servo.windows.lag, (lag_s * rows.rate_hz).round() as usize);
+        let fit = servo.finish().unwrap();
+        assert_eq!(fit.n_rows, rows.force_n.len());
+        let own = |of: fn(&ServoCoefficient) -> f64| fit.coefficients.iter().map(of).collect::<Vec<f64>>();
+        for (c, (name, unit)) in fit.coefficients.iter().zip(&rows.names) {
+            assert_eq!((&c.name, c.unit), (name, *unit));
+        }
+        same(&own(|c| c.value), &whole.coefficients);
+        same(&own(|c| c.classical_std), &whole.standard);
+        same(&own(|c| c.hac_std), &expected);
+        same(&[fit.relative_force_error], &[rows.relative_error(&whole.coefficients)]);
     }
 
     #[test]

@@ -21,9 +21,8 @@ use froude_records::estimate::{
 };
 use indexmap::IndexMap;
 
-use crate::servo::long::LongReport;
 use crate::servo::motor::Drive;
-use crate::servo::report::{ServoCoefficient, ServoReport};
+use crate::servo::report::{RigidFit, ServoCoefficient};
 use crate::servo::scale::{ForcePerVolt, combined, errors_of};
 use crate::servo::two_mass::{CHAIN_PARAMETERS, FlexibleReport, radius_power};
 
@@ -32,58 +31,6 @@ pub const TWO_MASS: &str = "servo_two_mass";
 
 /// The load that the laws give.
 const LOAD: &str = "drive_force";
-
-/// A rigid model as an estimate of `source`; `friction` names its law, `gain` is what made volts into forces.
-#[must_use]
-pub fn rigid(source: &str, friction: &str, report: &ServoReport, gain: &ForcePerVolt<'_>) -> Estimate {
-    let fit = RigidFit {
-        coefficients: &report.coefficients,
-        dof: &report.spread.dof,
-        covariance: &report.spread.covariance,
-        pieces: if gain.drive.is_none() { with_bias(&report.spread.pieces()) } else { report.spread.pieces() },
-        sigma_n: report.sigma_n,
-        preparation: &report.preparation,
-        n_rows: report.n_rows,
-        relative_force_error: report.relative_force_error,
-        findings: &report.findings,
-    };
-    let recorded = recorded(source, friction, &fit, gain);
-    Estimate {
-        clusters: report.spread.runs.map(|n| Clusters { by: "run".to_owned(), n }),
-        interval: if report.spread.runs.is_some() { Interval::default() } else { of_one_excitation() },
-        derived: gain.drive.map_or_else(IndexMap::new, |drive| effective(report, drive)),
-        validity: validity(report.rows.names.iter().zip(&report.rows.columns).map(|((name, _), column)| {
-            let bounds = [f64::INFINITY, f64::NEG_INFINITY];
-            (name.as_str(), column.iter().fold(bounds, |[low, high], x| [low.min(*x), high.max(*x)]))
-        })),
-        diagnostics: Diagnostics { condition_number: report.condition_number, ..recorded.diagnostics },
-        ..recorded
-    }
-}
-
-/// The same of a record of hours, whose rows were not kept. `coefficients` are those of the report with their intervals.
-#[must_use]
-pub fn long(
-    source: &str,
-    friction: &str,
-    (report, coefficients): (&LongReport, &[ServoCoefficient]),
-    findings: &[String],
-    gain: &ForcePerVolt<'_>,
-) -> Estimate {
-    let fit = RigidFit {
-        coefficients,
-        dof: &vec![report.dof; coefficients.len()],
-        covariance: &report.covariance,
-        pieces: with_bias(&format!("HAC with a lag of {:.1} s", report.hac_lag_s)),
-        sigma_n: report.sigma_n,
-        preparation: &report.preparation,
-        n_rows: report.n_rows,
-        relative_force_error: report.relative_force_error,
-        findings,
-    };
-    let ranges = report.names.iter().zip(&report.ranges).map(|((name, _), range)| (name.as_str(), *range));
-    Estimate { validity: validity(ranges), interval: of_one_excitation(), ..recorded(source, friction, &fit, gain) }
-}
 
 /// What an interval of a log includes.
 fn with_bias(pieces: &str) -> String {
@@ -95,30 +42,18 @@ fn of_one_excitation() -> Interval {
     Interval { of: "excitation".to_owned(), ..Interval::default() }
 }
 
-/// The fit of a rigid model as its record wants it.
-struct RigidFit<'a> {
-    coefficients: &'a [ServoCoefficient],
-    dof: &'a [f64],
-    covariance: &'a Mat<f64>,
-    /// What was taken as one piece of evidence.
-    pieces: String,
-    sigma_n: f64,
-    preparation: &'a str,
-    n_rows: usize,
-    relative_force_error: f64,
-    findings: &'a [String],
-}
-
 /// Name of the law of a rigid model with this friction.
 #[must_use]
 pub fn law_of(friction: &str) -> String {
     format!("servo_{}", friction.replace(' ', "_"))
 }
 
-fn recorded(source: &str, friction: &str, fit: &RigidFit<'_>, gain: &ForcePerVolt<'_>) -> Estimate {
+/// A rigid model as an estimate of `source`; `friction` names its law, `gain` is what made volts into forces.
+#[must_use]
+pub fn rigid(source: &str, friction: &str, fit: &RigidFit, gain: &ForcePerVolt<'_>) -> Estimate {
     let method = law_of(friction);
     let names: Vec<String> = fit.coefficients.iter().map(|c| in_formulas(&c.name)).collect();
-    let coefficients = fit.coefficients.iter().zip(&names).zip(fit.dof).map(|((c, name), dof)| {
+    let coefficients = fit.coefficients.iter().zip(&names).zip(&fit.dof).map(|((c, name), dof)| {
         let label = (*name != c.name).then(|| c.name.clone());
         let of_scatter = Coefficient { label, ..coefficient(c, finite(*dof)) };
         (name.clone(), combined(of_scatter, (c, *dof), &gain.scales, &radii))
@@ -126,7 +61,8 @@ fn recorded(source: &str, friction: &str, fit: &RigidFit<'_>, gain: &ForcePerVol
     let formula = formula(&names);
     let constants = IndexMap::from([("force_per_volt".to_owned(), measured(gain.n_v, "N/V"))]);
     let fewest = fit.dof.iter().copied().reduce(f64::min).and_then(finite);
-    let errors = errors_of(&gain.scales, fit.coefficients, &radii);
+    let errors = errors_of(&gain.scales, &fit.coefficients, &radii);
+    let pieces = if gain.drive.is_none() { with_bias(&fit.pieces) } else { fit.pieces.clone() };
     let exact = errors
         .is_empty()
         .then(|| "the force per volt is taken as exact: an error of it scales all coefficients alike; declare it by [[source.uncertainty]] with \
@@ -142,12 +78,17 @@ fn recorded(source: &str, friction: &str, fit: &RigidFit<'_>, gain: &ForcePerVol
         },
         law: law(&method, formula, constants),
         coefficients: coefficients.collect(),
-        type_a: type_a(names, fit.covariance, fit.dof, format!("scatter of the residuals ({})", fit.pieces)),
+        type_a: type_a(names, &fit.covariance, &fit.dof, format!("scatter of the residuals ({pieces})")),
         errors,
         sigma: IndexMap::from([(LOAD.to_owned(), measured(fit.sigma_n, "N"))]),
         dof: IndexMap::from([(LOAD.to_owned(), fewest)]),
         n_observations: fit.n_rows,
+        clusters: fit.runs.map(|n| Clusters { by: "run".to_owned(), n }),
+        interval: if fit.runs.is_some() { Interval::default() } else { of_one_excitation() },
+        derived: gain.drive.map_or_else(IndexMap::new, |drive| effective(fit, drive)),
+        validity: validity(fit),
         diagnostics: Diagnostics {
+            condition_number: fit.condition_number,
             relative_residual: IndexMap::from([(LOAD.to_owned(), fit.relative_force_error)]),
             notes: exact.into_iter().chain(fit.findings.iter().cloned()).collect(),
             ..Diagnostics::default()
@@ -291,7 +232,7 @@ fn derived(c: &ServoCoefficient, formula: String) -> Derived {
 
 /// J_eff, B_eff and C_eff, where the drive is declared. The radius that made a force of a torque makes it one again, and speeds rates: only K_T and
 /// the amplifier err in them.
-fn effective(report: &ServoReport, drive: &Drive) -> IndexMap<String, Derived> {
+fn effective(fit: &RigidFit, drive: &Drive) -> IndexMap<String, Derived> {
     let ratio = drive.motor.m_rad();
     let of = |c: ServoCoefficient| {
         let (from, power) = match c.name.as_str() {
@@ -299,8 +240,7 @@ fn effective(report: &ServoReport, drive: &Drive) -> IndexMap<String, Derived> {
             "B_eff" => ("F_v", 2),
             _ => ("F_c", 1),
         };
-        let dof =
-            report.coefficients.iter().zip(&report.spread.dof).find(|(own, _)| own.name == from).map(|(_, dof)| *dof);
+        let dof = fit.coefficients.iter().zip(&fit.dof).find(|(own, _)| own.name == from).map(|(_, dof)| *dof);
         let [torque_alone, _] = drive.scales();
         let dof = dof.unwrap_or(f64::INFINITY);
         let whole = combined(coefficient(&c, finite(dof)), (&c, dof), &[torque_alone], &|_| 1.0);
@@ -311,14 +251,14 @@ fn effective(report: &ServoReport, drive: &Drive) -> IndexMap<String, Derived> {
         };
         (c.name.clone(), number)
     };
-    crate::servo::report::effective(report, &drive.motor).into_iter().map(of).collect()
+    crate::servo::report::effective(fit, &drive.motor).into_iter().map(of).collect()
 }
 
 /// Range of the speeds and accelerations of the rows, from those of the columns of the regression; a column of one direction is 0 in the other.
-fn validity<'a>(columns: impl Iterator<Item = (&'a str, [f64; 2])>) -> IndexMap<String, Range> {
+fn validity(fit: &RigidFit) -> IndexMap<String, Range> {
     let mut out: IndexMap<String, Range> = IndexMap::new();
-    for (name, [low, high]) in columns {
-        let (key, unit) = match name {
+    for (c, [low, high]) in fit.coefficients.iter().zip(fit.ranges.iter().copied()) {
+        let (key, unit) = match c.name.as_str() {
             "M" => ("v_y_dot", "m/s^2"),
             "F_v" | "F_v+" | "F_v-" => ("v_y", "m/s"),
             _ => continue,
