@@ -17,8 +17,9 @@ use froude_fit::faer::Mat;
 use froude_fit::propagate::effective_dof;
 use froude_records::estimate::{
     Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed, OWN,
-    Output, Range, SharedError, Signs, Status, TypeA,
+    Range, SharedError, Signs, Status, TypeA,
 };
+use froude_records::number::finite;
 use indexmap::IndexMap;
 
 use crate::servo::motor::Drive;
@@ -55,12 +56,12 @@ pub fn rigid(source: &str, friction: &str, fit: &RigidFit, gain: &ForcePerVolt<'
     let names: Vec<String> = fit.coefficients.iter().map(|c| in_formulas(&c.name)).collect();
     let coefficients = fit.coefficients.iter().zip(&names).zip(&fit.dof).map(|((c, name), dof)| {
         let label = (*name != c.name).then(|| c.name.clone());
-        let of_scatter = Coefficient { label, ..coefficient(c, finite(*dof)) };
+        let of_scatter = Coefficient { label, ..coefficient(c, *dof) };
         (name.clone(), combined(of_scatter, (c, *dof), &gain.scales, &radii))
     });
     let formula = formula(&names);
-    let constants = IndexMap::from([("force_per_volt".to_owned(), measured(gain.n_v, "N/V"))]);
-    let fewest = fit.dof.iter().copied().reduce(f64::min).and_then(finite);
+    let constants = IndexMap::from([("force_per_volt".to_owned(), Measured::of(gain.n_v, "N/V"))]);
+    let fewest = finite(fit.dof.iter().copied().reduce(f64::min));
     let errors = errors_of(&gain.scales, &fit.coefficients, &radii);
     let pieces = if gain.drive.is_none() { with_bias(&fit.pieces) } else { fit.pieces.clone() };
     let exact = errors
@@ -71,19 +72,15 @@ pub fn rigid(source: &str, friction: &str, fit: &RigidFit, gain: &ForcePerVolt<'
     Estimate {
         id: format!("{source}/{method}"),
         source: source.to_owned(),
-        method: MethodUsed {
-            name: method.clone(),
-            version: 1,
-            words: format!("linear least squares; friction {friction}; {}", fit.preparation),
-        },
-        law: law(&method, formula, constants),
+        method: MethodUsed::of(&method, format!("linear least squares; friction {friction}; {}", fit.preparation)),
+        law: Law { constants, ..law(&method, formula) },
         coefficients: coefficients.collect(),
         type_a: type_a(names, &fit.covariance, &fit.dof, format!("scatter of the residuals ({pieces})")),
         errors,
-        sigma: IndexMap::from([(LOAD.to_owned(), measured(fit.sigma_n, "N"))]),
+        sigma: IndexMap::from([(LOAD.to_owned(), Measured::of(fit.sigma_n, "N"))]),
         dof: IndexMap::from([(LOAD.to_owned(), fewest)]),
         n_observations: fit.n_rows,
-        clusters: fit.runs.map(|n| Clusters { by: "run".to_owned(), n }),
+        clusters: fit.runs.map(|n| Clusters::of("run", n)),
         interval: if fit.runs.is_some() { Interval::default() } else { of_one_excitation() },
         derived: gain.drive.map_or_else(IndexMap::new, |drive| effective(fit, drive)),
         validity: validity(fit),
@@ -116,7 +113,7 @@ pub fn two_mass(source: &str, report: &FlexibleReport, drive: &Drive) -> Estimat
     };
     let coefficients = own.iter().enumerate().map(|(j, c)| {
         let (scatter, known) = (report.scatter[(j, j)].max(0.0), known(j, c));
-        let dof = finite(effective_dof(&[(scatter, report.dof[j]), (known, f64::INFINITY)]));
+        let dof = effective_dof(&[(scatter, report.dof[j]), (known, f64::INFINITY)]);
         let parts = Coefficient { type_a: Some(scatter.sqrt()), type_b: Some(known.sqrt()), ..coefficient(c, dof) };
         (c.name.clone(), parts)
     });
@@ -134,12 +131,8 @@ pub fn two_mass(source: &str, report: &FlexibleReport, drive: &Drive) -> Estimat
     Estimate {
         id: format!("{source}/{method}"),
         source: source.to_owned(),
-        method: MethodUsed {
-            name: method.to_owned(),
-            version: 1,
-            words: "prediction error of the motor's position, two masses and a chain".to_owned(),
-        },
-        law: law(method, None, IndexMap::new()),
+        method: MethodUsed::of(method, "prediction error of the motor's position, two masses and a chain"),
+        law: law(method, None),
         interval: of_one_excitation(),
         coefficients: coefficients.collect(),
         type_a: type_a(names, &report.scatter, &report.dof, "CR2 over stretches of the record".to_owned()),
@@ -166,15 +159,8 @@ fn on_the_chain() -> Estimate {
     }
 }
 
-fn law(name: &str, formula: Option<String>, constants: IndexMap<String, Measured>) -> Law {
-    let inputs = [("v_y", "m/s"), ("v_y_dot", "m/s^2")].map(|(name, unit)| (name.to_owned(), unit.to_owned()));
-    Law {
-        name: name.to_owned(),
-        version: 1,
-        inputs: inputs.into(),
-        outputs: IndexMap::from([(LOAD.to_owned(), Output { unit: "N".to_owned(), formula })]),
-        constants,
-    }
+fn law(name: &str, formula: Option<String>) -> Law {
+    Law::of(name, [("v_y", "m/s"), ("v_y_dot", "m/s^2")]).giving(LOAD, "N", formula)
 }
 
 /// A name as a formula can have it: a sign becomes a word.
@@ -203,31 +189,24 @@ fn formula(names: &[String]) -> Option<String> {
     Some(names.iter().map(of).collect::<Option<Vec<_>>>()?.join(" + "))
 }
 
-fn coefficient(c: &ServoCoefficient, dof: Option<f64>) -> Coefficient {
+fn coefficient(c: &ServoCoefficient, dof: f64) -> Coefficient {
     Coefficient {
-        label: None,
-        value: Some(c.value),
-        unit: c.unit.to_owned(),
-        status: Status::Free,
         nuisance: c.name == "offset",
-        standard_uncertainty: finite(c.block_std),
-        type_a: finite(c.block_std),
-        type_b: None,
-        interval_95: Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite())),
-        effective_dof: dof,
-        unconstrained: None,
-        range_95: None,
+        standard_uncertainty: finite(Some(c.block_std)),
+        type_a: finite(Some(c.block_std)),
+        interval_95: interval(c),
+        effective_dof: finite(Some(dof)),
+        ..Coefficient::of(Some(c.value), c.unit, Status::Free)
     }
 }
 
 fn derived(c: &ServoCoefficient, formula: String) -> Derived {
-    Derived {
-        formula,
-        value: Some(c.value),
-        unit: c.unit.to_owned(),
-        standard_uncertainty: finite(c.block_std),
-        interval_95: Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite())),
-    }
+    let standard_uncertainty = finite(Some(c.block_std));
+    Derived { standard_uncertainty, interval_95: interval(c), ..Derived::of(formula, Some(c.value), c.unit) }
+}
+
+fn interval(c: &ServoCoefficient) -> Option<[f64; 2]> {
+    Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite()))
 }
 
 /// J_eff, B_eff and C_eff, where the drive is declared. The radius that made a force of a torque makes it one again, and speeds rates: only K_T and
@@ -243,7 +222,7 @@ fn effective(fit: &RigidFit, drive: &Drive) -> IndexMap<String, Derived> {
         let dof = fit.coefficients.iter().zip(&fit.dof).find(|(own, _)| own.name == from).map(|(_, dof)| *dof);
         let [torque_alone, _] = drive.scales();
         let dof = dof.unwrap_or(f64::INFINITY);
-        let whole = combined(coefficient(&c, finite(dof)), (&c, dof), &[torque_alone], &|_| 1.0);
+        let whole = combined(coefficient(&c, dof), (&c, dof), &[torque_alone], &|_| 1.0);
         let number = Derived {
             standard_uncertainty: whole.standard_uncertainty,
             interval_95: whole.interval_95,
@@ -257,15 +236,14 @@ fn effective(fit: &RigidFit, drive: &Drive) -> IndexMap<String, Derived> {
 /// Range of the speeds and accelerations of the rows, from those of the columns of the regression; a column of one direction is 0 in the other.
 fn validity(fit: &RigidFit) -> IndexMap<String, Range> {
     let mut out: IndexMap<String, Range> = IndexMap::new();
-    for (c, [low, high]) in fit.coefficients.iter().zip(fit.ranges.iter().copied()) {
+    for (c, ends) in fit.coefficients.iter().zip(&fit.ranges) {
         let (key, unit) = match c.name.as_str() {
             "M" => ("v_y_dot", "m/s^2"),
             "F_v" | "F_v+" | "F_v-" => ("v_y", "m/s"),
             _ => continue,
         };
-        if low <= high {
-            let range = out.entry(key.to_owned()).or_insert_with(|| Range { low, high, unit: unit.to_owned() });
-            (range.low, range.high) = (range.low.min(low), range.high.max(high));
+        if ends[0] <= ends[1] {
+            out.entry(key.to_owned()).or_insert_with(|| Range::of(*ends, unit)).include(*ends);
         }
     }
     out
@@ -275,17 +253,9 @@ fn validity(fit: &RigidFit) -> IndexMap<String, Range> {
 fn type_a(names: Vec<String>, covariance: &Mat<f64>, dof: &[f64], kind: String) -> Option<TypeA> {
     let matrix = rows_of(covariance);
     let is_finite = matrix.iter().flatten().all(|x| x.is_finite());
-    is_finite.then(|| TypeA { names, matrix, dof: dof.iter().map(|d| finite(*d)).collect(), kind })
+    is_finite.then(|| TypeA::of(names, matrix, dof, kind))
 }
 
 fn rows_of(m: &Mat<f64>) -> Vec<Vec<f64>> {
     (0..m.nrows()).map(|i| (0..m.ncols()).map(|j| m[(i, j)]).collect()).collect()
-}
-
-fn finite(x: f64) -> Option<f64> {
-    Some(x).filter(|x| x.is_finite())
-}
-
-fn measured(value: f64, unit: &str) -> Measured {
-    Measured { value, unit: unit.to_owned() }
 }
