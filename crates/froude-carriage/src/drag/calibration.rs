@@ -110,7 +110,7 @@ struct Reading {
 ///
 /// # Errors
 ///
-/// [`DragError::Calibration`] with what is missing: weights, directions, repeats.
+/// [`DragError`] with what is missing: weights, directions, repeats.
 pub fn calibrate(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Calibration, DragError> {
     let mut readings = Readings::default();
     for run in runs {
@@ -157,7 +157,7 @@ impl Readings {
     pub fn calibrate(&self, setup: &CalibrationSetup) -> Result<Calibration, DragError> {
         if self.taken.is_empty() {
             let why = self.refused.clone().unwrap_or_else(|| "no calibration run".to_owned());
-            return Err(DragError::Calibration(why));
+            return Err(DragError::calibration(why));
         }
         calibrated(&self.taken, setup)
     }
@@ -179,13 +179,13 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let overhauled = total - driving.len();
     let weights = reach(&driving.iter().map(|r| r.weight_n).collect::<Vec<_>>());
     if driving.is_empty() || weights[1] <= 0.0 {
-        return Err(DragError::Calibration(
-            "no run in which the motor drives against a known weight; hang one over the pulley and lift it".to_owned(),
+        return Err(DragError::calibration(
+            "no run in which the motor drives against a known weight; hang one over the pulley and lift it",
         ));
     }
     let is_pulley_measured = driving.iter().any(|r| r.weight_n > 0.0 && r.direction < 0.0);
     if !is_pulley_measured && weights[0] > 0.9 * weights[1] {
-        return Err(DragError::Calibration(format!(
+        return Err(DragError::calibration(format!(
             "{}, all lifting {:.2} N: friction and weight cannot be distinguished; add runs without weight, or lower \
              a weight that is lighter than the friction",
             counted(total, "run", "runs"),
@@ -197,7 +197,7 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let (first, _) = fitted(&driving, loss, setup.ideal_force_per_volt_n)?;
     let first_k = 1.0 / take(&first, 1)?.value;
     if first_k <= 0.0 {
-        return Err(DragError::Calibration(format!(
+        return Err(DragError::calibration(format!(
             "lifting up to {:.1} N needs no more command than lifting nothing: check that the weights hung free over the whole travel (floor), \
              and check counts_per_revolution, which gives the distance travelled",
             weights[1]
@@ -281,14 +281,14 @@ fn fitted_with(
     let prior = Prior::new(2, loss.value / force_per_volt_n, loss.standard / force_per_volt_n);
     // Heavy weights scatter more: K_T drifts in proportion to the force.
     let options = Options { priors: vec![prior], covariance: CovarianceKind::Hc3, ..Options::default() };
-    fit(&Problem::single(design, response, names), &options).map_err(|e| DragError::Calibration(e.to_string()))
+    fit(&Problem::single(design, response, names), &options).map_err(DragError::calibration)
 }
 
 fn take(fitted: &Fit, j: usize) -> Result<Uncertain, DragError> {
     let c = &fitted.coefficients[j];
     match (c.value, c.standard, c.dof) {
         (Some(value), Some(standard), Some(dof)) => Ok(Uncertain { value, standard, dof }),
-        _ => Err(DragError::Calibration(format!(
+        _ => Err(DragError::calibration(format!(
             "{} not determine {} with degrees of freedom to spare; repeat every weight at least twice",
             counted(fitted.residuals.len(), "driving run does", "driving runs do"),
             c.name
@@ -352,16 +352,16 @@ fn notes(
 ///
 /// # Errors
 ///
-/// [`DragError::Calibration`] below two traverses, or for a distance that is not positive.
+/// [`DragError`] below two traverses, or for a distance that is not positive.
 pub fn encoder_scale(logged_m: &[f64], known_m: Uncertain) -> Result<Uncertain, DragError> {
     if logged_m.len() < 2 {
-        return Err(DragError::Calibration(format!(
+        return Err(DragError::calibration(format!(
             "{} traverse between the marks; two are needed to see how well they repeat",
             logged_m.len()
         )));
     }
     if known_m.value.is_nan() || known_m.value <= 0.0 {
-        return Err(DragError::Calibration(format!("the distance between the marks is {} m", known_m.value)));
+        return Err(DragError::calibration(format!("the distance between the marks is {} m", known_m.value)));
     }
     let n = logged_m.len() as f64;
     let average = logged_m.iter().map(|x| x.abs()).sum::<f64>() / n;

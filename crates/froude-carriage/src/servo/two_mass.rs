@@ -266,7 +266,6 @@ impl<'a> Record<'a> {
         let n = fitted.residuals.len() - 2;
         let covariance = self.covariance(fitted, n)?;
         let innovations = &fitted.residuals[..n];
-        let speed = self.speed(&self.log.position_m)?;
         let splits = [(6, "B_m/B"), (7, "C_m/C")].map(|(j, name)| {
             let half = covariance.half_width(&unit_vector(j, 1.0), 0.0);
             let interval = [theta[j] - half, theta[j] + half];
@@ -279,8 +278,6 @@ impl<'a> Record<'a> {
             coefficients: self.coefficients(theta, &covariance),
             axis: self.axis(theta),
             is_apparent: self.options.gear == Gear::Undeclared,
-            relative_speed_error: norm(&self.speed_error(theta)?) / norm(&speed),
-            innovation_m: norm(innovations) / (n as f64).sqrt(),
             whiteness: whiteness(innovations, self.rate_hz),
             n_rows: n,
             end: fitted.report,

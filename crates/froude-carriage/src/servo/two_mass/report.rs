@@ -108,11 +108,7 @@ pub struct FlexibleReport {
     pub axis: TwoMass,
     /// Whether what lies behind the gear is as it appears through it, because its efficiency is not declared.
     pub is_apparent: bool,
-    /// `‖speed − model‖/‖speed‖` of the motor in a free simulation.
-    pub relative_speed_error: f64,
-    /// Standard deviation of what is not predicted from sample to sample, m.
-    pub innovation_m: f64,
-    /// Whether that is white.
+    /// Whether what is not predicted from sample to sample is white.
     pub whiteness: Option<Whiteness>,
     /// Samples compared.
     pub n_rows: usize,
