@@ -130,12 +130,13 @@ impl FlexibleReport {
     /// Positions are differentiated over a third of the period of the fastest mode.
     #[must_use]
     pub fn flexible(&self) -> mbdp::Flexible {
+        let masses = self.axis.masses;
         mbdp::Flexible {
-            motor_mass_kg: self.axis.motor_mass_kg,
-            load_mass_kg: self.axis.load_mass_kg,
-            stiffness_n_m: self.axis.stiffness_n_m,
-            damping_n_s_m: self.axis.damping_n_s_m,
-            span_s: (3.0 * self.axis.resonance_hz()).recip(),
+            motor_mass_kg: masses.motor_mass_kg,
+            load_mass_kg: masses.load_mass_kg,
+            stiffness_n_m: masses.stiffness_n_m,
+            damping_n_s_m: masses.damping_n_s_m,
+            span_s: (3.0 * masses.resonance_hz()).recip(),
         }
     }
 }
