@@ -41,13 +41,6 @@ const SURELY_DRIVEN: f64 = 0.5;
 /// The pulley's loss is doubted this many standard uncertainties away from what is declared.
 const DOUBTED: f64 = 2.0;
 
-/// Newtons at the chain for a volt of the drive command, driving forward.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ForcePerVolt {
-    /// Its value, N/V.
-    pub force_per_volt_n: Uncertain,
-}
-
 /// What is declared about a calibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CalibrationSetup {
@@ -66,8 +59,8 @@ pub struct CalibrationSetup {
 /// Result of the calibration runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
-    /// Force per volt.
-    pub force_per_volt: ForcePerVolt,
+    /// Newtons at the chain for a volt of the drive command, driving forward, N/V.
+    pub force_per_volt: Uncertain,
     /// Its 95 % interval, N/V.
     pub interval_95: [f64; 2],
     /// Efficiency that it stands for: over the ideal force per volt, whose own uncertainty is in it.
@@ -112,11 +105,7 @@ struct Reading {
 ///
 /// [`DragError`] with what is missing: weights, directions, repeats.
 pub fn calibrate(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Calibration, DragError> {
-    let mut readings = Readings::default();
-    for run in runs {
-        readings.push(run, setup.steady);
-    }
-    readings.calibrate(setup)
+    Readings::of(runs, setup.steady).calibrate(setup)
 }
 
 /// What calibration runs showed, one after the other: no log has to stay in memory for it.
@@ -128,6 +117,14 @@ pub struct Readings {
 }
 
 impl Readings {
+    /// The readings of runs.
+    #[must_use]
+    pub fn of(runs: &[DragRun<'_>], steady: SteadySettings) -> Self {
+        let mut out = Self::default();
+        runs.iter().for_each(|run| out.push(run, steady));
+        out
+    }
+
     /// Takes the reading of a run; one of another kind has none.
     pub fn push(&mut self, run: &DragRun<'_>, steady: SteadySettings) {
         if run.kind != RunKind::Calibration {
@@ -227,7 +224,7 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let one_way_n = (fitted.coefficients.len() > ONE_WAY).then(|| take(&fitted, ONE_WAY)).transpose()?;
     let one_way_n = one_way_n.map(|d| Uncertain { value: d.value * k, standard: d.standard * k, dof: d.dof });
     Ok(Calibration {
-        force_per_volt: ForcePerVolt { force_per_volt_n: force },
+        force_per_volt: force,
         interval_95: [k - combined.expanded, k + combined.expanded],
         efficiency: Uncertain { value: k / ideal, standard: of_efficiency.standard / ideal, dof: of_efficiency.dof },
         type_a,
@@ -446,7 +443,7 @@ mod tests {
     #[test]
     fn what_is_declared_of_pulley_and_constants_is_no_scatter() {
         let lifting = calibrated(&quiet(), &[0.0, 20.0], |_| true).unwrap();
-        let k = lifting.force_per_volt.force_per_volt_n;
+        let k = lifting.force_per_volt;
         assert!(!lifting.is_pulley_measured && lifting.type_a < 0.1 * lifting.from_pulley, "{lifting:?}");
         // ∂k/∂λ = k/(1 + λ); the weight of the prior is that of a first fit, whose k is within 1 %.
         assert!((lifting.from_pulley / (k.value * PULLEY_LOSS.standard) - 1.0).abs() < 0.02, "{lifting:?}");
@@ -486,7 +483,7 @@ mod tests {
         scenario.pulley_loss = 0.013; // one standard uncertainty beside the declared one
         let heavy = calibrated(&scenario, &[0.0, 20.0], |_| true).unwrap();
         let both = calibrated(&scenario, &[0.0, 1.5, 20.0], |_| true).unwrap();
-        let off = |c: &Calibration| c.force_per_volt.force_per_volt_n.value / scenario.force_per_volt_n() - 1.0;
+        let off = |c: &Calibration| c.force_per_volt.value / scenario.force_per_volt_n() - 1.0;
         assert!((off(&heavy) + 0.003).abs() < 4e-4, "{}", off(&heavy));
         assert!(off(&both).abs() < 4e-4, "{}", off(&both));
         assert!((both.pulley_loss.value - 0.013).abs() < 5e-4);
@@ -528,7 +525,7 @@ mod tests {
         let scenario = Scenario { motor_coulomb_n: 0.9, ..quiet() };
         let found = calibrated(&scenario, &[0.0, 3.5, 10.0], |_| true).unwrap();
         assert_eq!((found.overhauled, found.used), (8, 16));
-        let off = found.force_per_volt.force_per_volt_n.value / scenario.force_per_volt_n() - 1.0;
+        let off = found.force_per_volt.value / scenario.force_per_volt_n() - 1.0;
         assert!(off.abs() < 4e-4, "{off}");
         let pushed = scenario.calibration_runs(&[3.5], 1, 1);
         let down = pushed[1].view();

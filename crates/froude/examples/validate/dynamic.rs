@@ -9,7 +9,6 @@ use std::path::Path;
 use froude::control::config::Config;
 use froude::control::request::{Move, Request};
 use froude::fit::budget::Uncertain;
-use froude::methods::carriage::drag::calibration::ForcePerVolt;
 use froude::methods::carriage::drag::coefficient::Coefficient;
 use froude::methods::carriage::drag::point::Method;
 use froude::methods::carriage::drag::run::RunKind;
@@ -137,7 +136,7 @@ fn campaign(twin: &TwinConfig, mut load: Load, control: &Config, d: f64, seed: u
     let mut declared = DragSetup::of_the_paper();
     declared.reference_area_m2 = Some(0.04);
     declared.speed_scale_relative = 0.0;
-    declared.calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
+    declared.calibration = Some(Uncertain::new(k, CALIBRATED_TO * k));
     declared.ballast = froude::methods::carriage::drag::setup::Ballast::Matched {
         carried_kg: Some(Uncertain::new(load.balancing_ballast_kg(), 0.0)),
     };

@@ -32,7 +32,7 @@ pub struct Known {
 /// The calibration as an estimate of `source`.
 #[must_use]
 pub fn calibrated(source: &str, c: &Calibration, known: &Known) -> Estimate {
-    let k = c.force_per_volt.force_per_volt_n;
+    let k = c.force_per_volt;
     let from_weights = k.value * known.weight_relative;
     // The covariance is that of what errs, alike in every calibration that has it; the slope is this calibration's (GUM F.1.2).
     let error = |names: [&str; 2], standard, slope| SharedError::declared(names, standard, f64::INFINITY, [slope]);

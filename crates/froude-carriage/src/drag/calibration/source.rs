@@ -198,7 +198,7 @@ fn section(c: Option<&Calibration>, setup: &DragSetup, results: &[Answer], jogs:
 }
 
 fn sentences(c: &Calibration, setup: &DragSetup) -> Vec<String> {
-    let k = c.force_per_volt.force_per_volt_n;
+    let k = c.force_per_volt;
     let mut out = vec![
         format!(
             "The drive gives {} N per volt of its command, 95 % interval {} N/V, from {}; {} left out.",
