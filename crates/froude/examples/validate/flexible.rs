@@ -124,7 +124,9 @@ fn of_case(claims: &mut Claims, case: &Case, seeds: u64) -> Result<(), ServoErro
     let converged = reports.iter().filter(|r| r.end.end == froude::fit::End::Converged).count();
     let line = format!("{}, searches that converged", case.name);
     claims.add(SECTION, &line, "all", format!("{converged} of {n}"), Verdict::Measured);
-    for (k, truth) in [(0, share_of(case.axis.masses.motor_viscous_n_s_m, case.axis.masses.load_viscous_n_s_m)), (1, 0.35)] {
+    for (k, truth) in
+        [(0, share_of(case.axis.masses.motor_viscous_n_s_m, case.axis.masses.load_viscous_n_s_m)), (1, 0.35)]
+    {
         let splits = || reports.iter().map(|r| &r.splits[k]);
         let identified = splits().filter(|s| s.is_identified).count();
         let inside = splits().filter(|s| s.interval[0] <= truth && truth <= s.interval[1]).count();
