@@ -125,8 +125,6 @@ pub struct Truth {
     pub load_position_m: f64,
     /// ẏ, m/s.
     pub load_speed_m_s: f64,
-    /// ÿ over the last tick, m/s².
-    pub load_acceleration_m_s2: f64,
     /// Rθ/n, m.
     pub motor_position_m: f64,
     /// Its speed, m/s.
@@ -395,7 +393,6 @@ impl Twin {
         Truth {
             load_position_m: a.plant.load_position_m(),
             load_speed_m_s: v,
-            load_acceleration_m_s2: a.acceleration_m_s2,
             motor_position_m: a.plant.motor_position_m(),
             motor_speed_m_s: a.plant.motor_speed_m_s(),
             drag_n: a.config.load.drag_n_s2_m2() * v * v.abs(),

@@ -210,9 +210,8 @@ fn a_fault_ends_the_run_and_the_run_is_kept_and_marked() {
     driven.twin_mut().inject(Scheduled { tick: 400_000, axis: 0, injection: Injection::Encoder(EncoderFault::Stuck) });
     let mut hand = Hand::default();
     match run(folder.path(), &mut hand, &mut driven).unwrap_err() {
-        RunnerError::Fault { fault, category, run } => {
+        RunnerError::Fault { fault, run } => {
             assert!(Injection::Encoder(EncoderFault::Stuck).accepted().contains(&fault), "{fault:?} in {run}");
-            assert_eq!(category, fault.category() as u8);
         }
         other => panic!("{other}"),
     }
