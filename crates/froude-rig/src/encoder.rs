@@ -63,18 +63,16 @@ impl Encoder {
     pub fn read(&mut self, motor_position_m: f64, tick_s: f64, rng: &mut Pcg64Mcg) -> u32 {
         let count = self.true_count(motor_position_m);
         match self.fault {
-            None => {}
             Some(EncoderFault::Silent) => return self.frozen,
             Some(EncoderFault::Stuck) => return self.frozen.wrapping_add((count & 1) as u32),
             Some(EncoderFault::Reversed) => return self.offset.wrapping_add((2 * self.pivot - count) as u32),
-            Some(EncoderFault::BitFlips { per_second }) => {
-                if rng.random::<f64>() < f64::from(per_second) * tick_s {
-                    self.errors = self.errors.wrapping_add(1);
-                    let lost = rng.random_range(1..=2_u32);
-                    self.offset =
-                        if rng.random() { self.offset.wrapping_add(lost) } else { self.offset.wrapping_sub(lost) };
-                }
+            Some(EncoderFault::BitFlips { per_second }) if rng.random::<f64>() < f64::from(per_second) * tick_s => {
+                self.errors = self.errors.wrapping_add(1);
+                let lost = rng.random_range(1..=2_u32);
+                self.offset =
+                    if rng.random() { self.offset.wrapping_add(lost) } else { self.offset.wrapping_sub(lost) };
             }
+            Some(EncoderFault::BitFlips { .. }) | None => {}
         }
         self.frozen = self.offset.wrapping_add(count as u32);
         self.frozen

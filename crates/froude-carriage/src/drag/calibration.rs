@@ -121,7 +121,9 @@ impl Readings {
     #[must_use]
     pub fn of(runs: &[DragRun<'_>], steady: SteadySettings) -> Self {
         let mut out = Self::default();
-        runs.iter().for_each(|run| out.push(run, steady));
+        for run in runs {
+            out.push(run, steady);
+        }
         out
     }
 
