@@ -25,7 +25,7 @@ use crate::servo::report::{effective, of_runs as of_several};
 use crate::servo::rows::Rows;
 use crate::servo::scale::ForcePerVolt;
 use crate::servo::two_mass::FlexibleReport;
-use crate::servo::{Chain, Friction, ServoCoefficient, ServoLog, ServoReport, identify_servo, record};
+use crate::servo::{Chain, Friction, RigidFit, ServoCoefficient, ServoLog, ServoReport, identify_servo, record};
 use crate::source::file_of;
 use crate::two_masses::{motor_of, pulses, relative_errors, servo_log, two_masses};
 
@@ -157,7 +157,7 @@ pub fn of_table(
     findings.extend(not_fitted);
     findings.push(one_excitation());
     let files = files_of_table(path, sidecar);
-    let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, gain), files.clone());
+    let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report.fit, gain), files.clone());
     Ok(AxisModels { estimates: models.iter().map(rigid).collect(), models, findings, ..AxisModels::default() })
 }
 
@@ -209,15 +209,15 @@ fn files_of_table(path: &Path, sidecar: Option<&Path>) -> Vec<ReadFile> {
 }
 
 fn reported(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
-    findings.extend(models.iter().flat_map(|m| doubts(&m.name, &m.report.findings, &m.report.excitation)));
+    findings.extend(models.iter().flat_map(|m| doubts(&m.name, &m.report.fit)));
     findings
 }
 
 /// What is doubtful of a model, and what the motion does not determine of it.
-fn doubts(name: &str, said: &[String], weak: &[String]) -> Vec<Finding> {
+fn doubts(name: &str, fit: &RigidFit) -> Vec<Finding> {
     let of = |(code, text): (&str, &String)| Finding::new(Severity::Warning, code, format!("{name}: {text}"));
-    let said = said.iter().map(|text| ("servo", text));
-    said.chain(weak.iter().map(|text| ("weak-excitation", text))).map(of).collect()
+    let said = fit.findings.iter().map(|text| ("servo", text));
+    said.chain(fit.excitation.iter().map(|text| ("weak-excitation", text))).map(of).collect()
 }
 
 /// The models that came out, and a finding and error for each that did not: it costs its own row and no other.
@@ -315,7 +315,7 @@ pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModel
         rig: rig_key(runs, Some(constants)).unwrap_or_else(|| format!("{OWN}rig")),
     };
     let gain = ForcePerVolt::of_drive(&drive);
-    let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, &gain), files(&slow));
+    let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report.fit, &gain), files(&slow));
     let excited: Vec<&RunLog> = pulses(&runs.logs).into_iter().collect();
     let two_mass = |report: &FlexibleReport| (record::two_mass(name, report, &drive), files(&excited));
     let estimates = models.iter().map(rigid).chain(flexible.as_ref().map(two_mass)).collect();
@@ -364,11 +364,9 @@ fn moving(log: &RunLog) -> Result<Option<RunLog>, MethodError> {
 /// All slow runs as rows of one regression; the run is the piece of evidence.
 fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<ServoReport, MethodError> {
     let mut chain = Chain::new(motor.force_per_volt_n_v(), friction);
-    let mut record_rate_hz = 0.0;
     let mut runs: Vec<Rows> = Vec::new();
     for log in logs {
         let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
-        record_rate_hz = rate_hz;
         chain = Chain {
             corner_hz: RIGID_CORNER_HZ,
             decimation: (rate_hz / ROW_RATE_HZ).round().max(1.0) as usize,
@@ -383,22 +381,20 @@ fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<Se
             "no run with steady motion",
         ));
     }
-    let mut report = of_several(runs, &chain).map_err(MethodError::refused)?;
-    report.record_rate_hz = record_rate_hz;
-    Ok(report)
+    of_several(runs, &chain).map_err(MethodError::refused)
 }
 
 /// Whether friction differs with the direction: the symmetric model then has a mean of both, and of neither. Two differences are looked at, each at
 /// half of 5 %.
 fn by_direction(models: &[Model]) -> Option<Finding> {
-    let report = &models.iter().find(|m| m.name == ASYMMETRIC)?.report;
-    let place = |name: String| report.coefficients.iter().position(|c| c.name == name);
+    let fit = &models.iter().find(|m| m.name == ASYMMETRIC)?.report.fit;
+    let place = |name: String| fit.coefficients.iter().position(|c| c.name == name);
     let differences = ["F_v", "F_c"].into_iter().filter_map(|name| {
         let (i, j) = (place(format!("{name}+"))?, place(format!("{name}-"))?);
-        let (a, b) = (&report.coefficients[i], &report.coefficients[j]);
-        let c = &report.spread.covariance;
+        let (a, b) = (&fit.coefficients[i], &fit.coefficients[j]);
+        let c = &fit.covariance;
         let variance = c[(i, i)] + c[(j, j)] - 2.0 * c[(i, j)];
-        let half = coverage_factor(0.975, report.spread.dof[i].min(report.spread.dof[j])) * variance.max(0.0).sqrt();
+        let half = coverage_factor(0.975, fit.dof[i].min(fit.dof[j])) * variance.max(0.0).sqrt();
         let difference = a.value - b.value;
         (difference.abs() > half).then(|| {
             format!(
@@ -423,7 +419,7 @@ fn by_direction(models: &[Model]) -> Option<Finding> {
 /// Whether a constant friction stands for one that changes along the travel: its interval is then that of a mean, and of no place.
 /// `None` without both models.
 fn varies(models: &[Model]) -> Option<Finding> {
-    let of = |name: &str| models.iter().find(|m| m.name == name).map(|m| &m.report);
+    let of = |name: &str| models.iter().find(|m| m.name == name).map(|m| &m.report.fit);
     let constant = of(CONSTANT)?.coefficient("F_c")?;
     let map: Vec<&ServoCoefficient> =
         of(OVER_POSITION)?.coefficients.iter().filter(|c| c.name.starts_with("F_c(")).collect();
@@ -452,8 +448,8 @@ fn varies(models: &[Model]) -> Option<Finding> {
 
 /// Identified friction that is not the declared one, by more than bodies and bearings explain.
 fn contradicted(models: &[Model], motor: &MotorSide, declared: Declared) -> Option<Finding> {
-    let report = &models.iter().find(|m| m.name == CONSTANT)?.report;
-    let found = effective(report, motor).into_iter().find(|c| c.name == "C_eff")?;
+    let fit = &models.iter().find(|m| m.name == CONSTANT)?.report.fit;
+    let found = effective(fit, motor).into_iter().find(|c| c.name == "C_eff")?;
     let ratio = found.value / declared.value;
     (!(0.5..=2.0).contains(&ratio)).then(|| {
         Finding::new(

@@ -258,11 +258,7 @@ pub fn calibration_of(
     campaign: Option<&DrivenCampaign>,
     setup: &DragSetup,
 ) -> (Option<Calibration>, Option<Finding>) {
-    let mut readings = Readings::default();
-    for run in runs {
-        readings.push(run, setup.steady);
-    }
-    calibration_from(&readings, campaign, setup)
+    calibration_from(&Readings::of(runs, setup.steady), campaign, setup)
 }
 
 /// False-alarm probability of reporting friction by direction.

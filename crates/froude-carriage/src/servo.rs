@@ -5,7 +5,7 @@
 //!
 //! | model                 | module           | equation                                                             |
 //! |-----------------------|------------------|----------------------------------------------------------------------|
-//! | rigid, the chain      | [`chain`], [`friction`] | `M q̈ + F_v q̇ + F_c sgn q̇ + offset = g u`, asymmetric, Stribeck, over position, over load |
+//! | rigid, the chain      | [`chain`], [`friction`] | `M q̈ + F_v q̇ + F_c sgn q̇ + offset = g u`, asymmetric, Stribeck, over position |
 //! | two masses and a chain | [`two_mass`]    | MCD eq. 2a, 2b from motor-side signals                                |
 //!
 //! A record of hours goes through [`long`] a chunk at a time.
@@ -42,7 +42,7 @@ pub use chain::Chain;
 pub use error::ServoError;
 pub use friction::Friction;
 pub use log::ServoLog;
-pub use long::{LongReport, LongServo};
+pub use long::LongServo;
 pub use motor::MotorSide;
-pub use report::{ServoCoefficient, ServoReport, identify_servo};
+pub use report::{RigidFit, ServoCoefficient, ServoReport, identify_servo};
 pub use two_mass::identify_flexible;

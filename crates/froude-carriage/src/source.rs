@@ -59,7 +59,7 @@ impl Method for Carriage {
 }
 
 /// Motion and command of a run.
-const DRIVEN: &[&str] = &["position", "reference_velocity", "command"];
+pub(crate) const DRIVEN: &[&str] = &["position", "reference_velocity", "command"];
 /// What calibrates all that read the motor's current; without it the gear's declared efficiency does.
 const WEIGHTS: Need = Need { is_optional: true, is_observed: false, ..Need::of(&["calibration"], DRIVEN) };
 
@@ -104,9 +104,7 @@ pub(crate) fn lacking_in(needs: &[Need], runs: &Runs) -> Option<String> {
 
 /// Reduces the runs of a source: a result for each method, in the order asked for.
 fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)) -> Result<Found, MethodError> {
-    let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
-    progress("reading the runs");
-    let runs = read(paths, &roles(), campaign.as_deref())?;
+    let Some(runs) = runs_of(source, &roles(), progress)? else { return Ok(Found::default()) };
     progress("reducing the runs");
     let mut reduction = reduce(runs, methods)?;
     let (summary, blocks) = sections(&reduction);
@@ -121,8 +119,7 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
             if !source.methods.is_empty() {
                 let why = lacking_in(needs(method), runs);
                 let why = why.unwrap_or_else(|| "their windows give no point for it".to_owned());
-                let text = format!("{} ({}): {why}", method.name(), method.words());
-                report.findings.push(Finding::new(Severity::Warning, "not-fitted", text));
+                report.findings.push(not_fitted(method.name(), method.words(), &why));
             }
             continue;
         };
@@ -141,11 +138,7 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
         ));
     }
     if out.is_empty() {
-        let why: String = report.findings.iter().map(|finding| format!("; {}", finding.message)).collect();
-        return Err(MethodError::input(
-            source.input.path(),
-            format!("none of the methods asked for can use these runs{why}"),
-        ));
+        return Err(nothing_fitted(source, "none of the methods asked for can use these runs", &report.findings));
     }
     Ok(Found {
         results: out,
@@ -156,6 +149,24 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
         is_part: runs.beside > 0,
         ..Found::default()
     })
+}
+
+/// The runs of a source in these roles; `None` of any other source.
+pub(crate) fn runs_of(source: &Source, roles: &[Role], progress: &dyn Fn(&str)) -> Result<Option<Runs>, MethodError> {
+    let Input::Runs { paths, campaign } = &source.input else { return Ok(None) };
+    progress("reading the runs");
+    Ok(Some(read(paths, roles, campaign.as_deref())?))
+}
+
+/// That a method somebody named has no result.
+pub(crate) fn not_fitted(name: &str, words: &str, why: &str) -> Finding {
+    Finding::new(Severity::Warning, "not-fitted", format!("{name} ({words}): {why}"))
+}
+
+/// That there is no result at all, with all that was found on the way.
+pub(crate) fn nothing_fitted(source: &Source, what: &str, findings: &[Finding]) -> MethodError {
+    let why: String = findings.iter().map(|finding| format!("; {}", finding.message)).collect();
+    MethodError::input(source.input.path(), format!("{what}{why}"))
 }
 
 /// What a campaign declares beside runs, which know their own: it is not used for them, and that is said.

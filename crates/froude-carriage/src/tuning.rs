@@ -106,64 +106,26 @@ impl LoopGains {
     }
 }
 
-/// Why an experiment gives no answer.
+/// Why an experiment gives no answer, in words.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum TuningError {
-    /// The record is too short for what is asked.
-    #[error("{what}: found {found}, at least {least} are needed; {advice}")]
-    TooFew {
-        /// What is counted.
-        what: &'static str,
-        /// How many there are.
-        found: usize,
-        /// How many it takes.
-        least: usize,
-        /// What to do.
-        advice: &'static str,
-    },
-    /// The columns differ in length.
-    #[error("columns of {first} and {second} samples: one row per tick is expected in each")]
-    Lengths {
-        /// One length.
-        first: usize,
-        /// Another.
-        second: usize,
-    },
+#[error("{0}")]
+pub struct TuningError(String);
+
+impl TuningError {
+    /// The record is too short for what is asked; `advice` is what to do.
+    fn too_few(what: &str, found: usize, least: usize, advice: &str) -> Self {
+        Self(format!("{what}: found {found}, at least {least} are needed; {advice}"))
+    }
+
     /// A number that must be positive and finite is not.
-    #[error("{name} = {value}: a positive, finite number is expected")]
-    Number {
-        /// Its name.
-        name: &'static str,
-        /// What was found.
-        value: f64,
-    },
-    /// No crossover on the measured response meets the margins.
-    #[error(
-        "no crossover between {low_hz:.2} and {high_hz:.2} Hz keeps a phase margin of {phase_deg:.0}° and a maximum \
-         sensitivity of {sensitivity:.1}, with the whole loop inside; measure over a wider band, or ask for less"
-    )]
-    NoCrossover {
-        /// Lowest frequency tried.
-        low_hz: f64,
-        /// Highest.
-        high_hz: f64,
-        /// Phase margin asked for.
-        phase_deg: f64,
-        /// Sensitivity allowed.
-        sensitivity: f64,
-    },
-    /// The two-mass model does not follow the response.
-    #[error(
-        "the two-mass model leaves {residual_percent:.0} % of the response unexplained: it has no single antiresonance \
-         and resonance between {low_hz:.1} and {high_hz:.1} Hz"
-    )]
-    NoModes {
-        /// Root-mean-square relative residual.
-        residual_percent: f64,
-        /// Lowest frequency.
-        low_hz: f64,
-        /// Highest.
-        high_hz: f64,
-    },
+    fn number(name: &str, value: f64) -> Self {
+        Self(format!("{name} = {value}: a positive, finite number is expected"))
+    }
+
+    /// A sample of one column for each of the other.
+    fn unless_paired(first: &[f64], second: &[f64]) -> Result<(), Self> {
+        let (first, second) = (first.len(), second.len());
+        let what = || format!("columns of {first} and {second} samples: one row per tick is expected in each");
+        if first == second { Ok(()) } else { Err(Self(what())) }
+    }
 }

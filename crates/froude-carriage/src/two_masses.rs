@@ -23,7 +23,6 @@ pub fn servo_log(log: &RunLog) -> Result<ServoLog, MethodError> {
         time_s: log.time_s.clone(),
         position_m: column("position", Dimension::LENGTH)?,
         command_v: column("command", Dimension::VOLTAGE)?,
-        load_n: None,
     })
 }
 

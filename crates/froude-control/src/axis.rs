@@ -8,7 +8,7 @@
 //! ```
 
 use crate::config::AxisConfig;
-use crate::config::{SPEED_NOISE_M_S, over_speed_m_s};
+use crate::config::SPEED_NOISE_M_S;
 use crate::encoder::Unwrap;
 use crate::excite::{Asked, Exciter};
 use crate::fault::{Fault, StopCategory};
@@ -160,7 +160,7 @@ impl Axis {
             }
         }
         let is_free = self.is_homed && self.phase != Phase::Homing;
-        if libm::fabs(self.speed_m_s) <= over_speed_m_s(&self.law.limits, is_free) {
+        if libm::fabs(self.speed_m_s) <= self.law.limits.over_speed_m_s(is_free) {
             return None;
         }
         self.monitor.polarity_so_far(&self.law, self.error_m()).or(Some(Fault::OverSpeed))
@@ -287,7 +287,7 @@ impl Axis {
     pub(crate) fn distrust(&mut self, fault: Fault) {
         if matches!(fault, Fault::EncoderStuck | Fault::EncoderJump | Fault::EncoderIllegal | Fault::Polarity) {
             self.is_homed = false;
-            let top_m_s = over_speed_m_s(&self.law.limits, true);
+            let top_m_s = self.law.limits.over_speed_m_s(true);
             let slowest_m_s2 = libm::fmax(self.law.coast.coulomb_m_s2, 1e-3);
             self.coast_ticks = self.law.ticks(top_m_s / slowest_m_s2);
         }

@@ -94,7 +94,11 @@ impl Limits {
     /// Speed at which the over-speed fault comes, m/s: before homing, and in it, the cap is low.
     #[must_use]
     pub fn over_speed_m_s(&self, is_homed: bool) -> f64 {
-        over_speed_m_s(self, is_homed)
+        if is_homed {
+            OVER_SPEED_FACTOR * self.speed_m_s + SPEED_NOISE_M_S
+        } else {
+            UNHOMED_OVER_SPEED_FACTOR * self.unhomed_speed_m_s + SPEED_NOISE_M_S
+        }
     }
 }
 
@@ -128,7 +132,7 @@ pub struct Config {
     pub host_silence_us: u32,
 }
 
-/// Gains as the paper prints them: per encoder count and, for the integral, per tick; times a scale that it does not give.
+/// Gains per encoder count and, for the integral, per tick, in volts; the paper prints them so, times a scale that it does not give.
 ///
 /// K_p/(4000 K_i) = 1.003 s at 4 kHz, hence K_i sums the error each tick while K_d (K_d/K_p = 0.100 s) takes its derivative per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,32 +143,17 @@ pub struct CountGains {
     pub derivative: f64,
     /// Per count, summed each tick.
     pub integral: f64,
-    /// Volts of drive command per unit of the controller's output.
-    pub volts_per_unit: f64,
 }
 
 impl CountGains {
-    /// In SI, for a motor with `counts_per_revolution` and a tick of `tick_us`.
+    /// From SI, for a motor with `counts_per_revolution` and a tick of `tick_us`.
     #[must_use]
-    pub fn to_si(&self, counts_per_revolution: f64, tick_us: u32, derivative_filter_hz: f64) -> Gains {
-        let scale = self.volts_per_unit * counts_per_revolution / (2.0 * core::f64::consts::PI);
-        Gains {
-            proportional_v_rad: scale * self.proportional,
-            derivative_v_s_rad: scale * self.derivative,
-            integral_v_rad_s: scale * self.integral * 1e6 / f64::from(tick_us),
-            derivative_filter_hz,
-        }
-    }
-
-    /// From SI; the inverse of [`Self::to_si`] to rounding.
-    #[must_use]
-    pub fn from_si(gains: &Gains, counts_per_revolution: f64, tick_us: u32, volts_per_unit: f64) -> Self {
-        let scale = 2.0 * core::f64::consts::PI / (volts_per_unit * counts_per_revolution);
+    pub fn from_si(gains: &Gains, counts_per_revolution: f64, tick_us: u32) -> Self {
+        let scale = 2.0 * core::f64::consts::PI / counts_per_revolution;
         Self {
             proportional: scale * gains.proportional_v_rad,
             derivative: scale * gains.derivative_v_s_rad,
             integral: scale * gains.integral_v_rad_s * f64::from(tick_us) * 1e-6,
-            volts_per_unit,
         }
     }
 }
@@ -263,12 +252,3 @@ pub(crate) const UNHOMED_OVER_SPEED_FACTOR: f64 = 1.5;
 
 /// Four counts of the speed estimate at 4 kHz, m/s.
 pub(crate) const SPEED_NOISE_M_S: f64 = 5e-3;
-
-/// Speed at which the over-speed fault comes, m/s.
-pub(crate) fn over_speed_m_s(limits: &crate::config::Limits, is_homed: bool) -> f64 {
-    if is_homed {
-        OVER_SPEED_FACTOR * limits.speed_m_s + SPEED_NOISE_M_S
-    } else {
-        UNHOMED_OVER_SPEED_FACTOR * limits.unhomed_speed_m_s + SPEED_NOISE_M_S
-    }
-}

@@ -121,11 +121,4 @@ impl SpeedRamp {
         };
         State { position_m: self.start_m + way, speed_m_s: speed, acceleration_m_s2: acceleration }
     }
-
-    /// The same change elsewhere: for when homing moves the coordinate.
-    #[must_use]
-    pub fn shifted(mut self, by_m: f64) -> Self {
-        self.start_m += by_m;
-        self
-    }
 }

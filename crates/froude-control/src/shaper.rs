@@ -78,12 +78,6 @@ impl ShapedProfile {
         self.duration_s
     }
 
-    /// The profile before shaping.
-    #[must_use]
-    pub fn profile(&self) -> &Profile {
-        &self.profile
-    }
-
     /// State at `time_s`; the target, to the last bit, from the end on.
     #[must_use]
     pub fn sample(&self, time_s: f64) -> State {

@@ -58,8 +58,6 @@ pub struct Preflight {
     pub refusal: Option<Refusal>,
     /// Duration with shaping, s.
     pub duration_s: f64,
-    /// Largest speed reached, m/s.
-    pub peak_speed_m_s: f64,
     /// Largest drive command that the model foresees, V.
     pub command_v: f64,
     /// Drive command that range and peak current allow, V.
@@ -170,7 +168,6 @@ fn foresee(law: &Law, start_m: f64, asked: &Move) -> (Preflight, ShapedProfile) 
     let foreseen = Preflight {
         refusal: None,
         duration_s: shaped.duration_s(),
-        peak_speed_m_s: speed,
         command_v: law.volts_for(acceleration, speed, 1.0),
         available_v: law.limit_v,
         soft_low_m: law.soft_low_m,

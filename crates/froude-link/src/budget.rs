@@ -2,7 +2,7 @@
 //!
 //! A byte takes ten bit times (8N1). Telemetry may fill four fifths of the line from board to host; the rest belongs to events,
 //! acknowledgements and clock replies. At 3 Mbaud that is exactly every tick; a slower line carries every second, fourth, fifth …
-//! tick, and both ends say so: the board in its hello, the recorder in the run's log ([`Decimation`] prints the sentence).
+//! tick, and the board says so in its hello.
 
 use crate::frame::OVERHEAD;
 use crate::telemetry::BODY_BYTES;
@@ -28,8 +28,6 @@ const _: () = assert!(Decimation::of(921_600).every == 4, "the decimation at 921
 /// Every how many ticks telemetry is sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Decimation {
-    /// Baud rate that it was chosen for.
-    pub baud: u32,
     /// A frame every so many ticks; a divisor of the tick rate.
     pub every: u16,
 }
@@ -47,7 +45,7 @@ impl Decimation {
             }
             every += 1;
         }
-        Self { baud, every: every as u16 }
+        Self { every: every as u16 }
     }
 
     /// Whether this tick is sent.
@@ -60,36 +58,15 @@ impl Decimation {
     }
 }
 
-/// The sentence for the run's log.
-impl core::fmt::Display for Decimation {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let Self { baud, every } = self;
-        if *every <= 1 {
-            return write!(f, "every tick is recorded ({TICKS_PER_S} Hz at {baud} baud)");
-        }
-        let rate = TICKS_PER_S / u32::from(*every);
-        write!(
-            f,
-            "one tick in {every} is recorded ({rate} Hz): {baud} baud cannot carry {TICKS_PER_S} Hz; \
-             use {FULL_RATE_BAUD} baud for every tick"
-        )
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::*;
-    use std::string::ToString;
 
     #[test]
-    fn three_megabaud_carry_every_tick_and_921600_every_fourth_and_the_log_says_so() {
+    fn three_megabaud_carry_every_tick_and_921600_every_fourth() {
         assert_eq!(TELEMETRY_BAUD, 2_400_000);
-        assert_eq!(Decimation::of(3_000_000).to_string(), "every tick is recorded (4000 Hz at 3000000 baud)");
-        assert_eq!(
-            Decimation::of(921_600).to_string(),
-            "one tick in 4 is recorded (1000 Hz): 921600 baud cannot carry 4000 Hz; use 3000000 baud for every tick"
-        );
+        assert_eq!(Decimation::of(3_000_000).every, 1);
+        assert_eq!(Decimation::of(921_600).every, 4);
         assert_eq!(Decimation::of(115_200).every, 32);
         assert_eq!(Decimation::of(0).every, 4000);
     }

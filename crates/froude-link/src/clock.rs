@@ -84,8 +84,6 @@ pub struct Alignment {
     pub drift_std: f64,
     /// Half of the shortest time on the line, µs: the offset cannot be wrong by more.
     pub offset_bound_us: f64,
-    /// Exchanges that the line goes through.
-    pub used: usize,
 }
 
 impl Alignment {
@@ -185,7 +183,6 @@ impl Aligner {
             offset_std_us: libm::sqrt(variance / n + asymmetry_variance + step_variance),
             drift_std: if stt > 0.0 { libm::sqrt(variance / stt) } else { f64::INFINITY },
             offset_bound_us: 0.5 * quickest,
-            used: self.len,
         })
     }
 }

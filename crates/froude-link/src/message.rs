@@ -105,28 +105,6 @@ pub enum FromBoard {
     TurnedAway(TurnedAway),
 }
 
-/// The two ends do not speak the same version.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct VersionMismatch {
-    /// The board's.
-    pub board: u16,
-    /// Ours.
-    pub host: u16,
-}
-
-impl core::fmt::Display for VersionMismatch {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let Self { board, host } = self;
-        write!(
-            f,
-            "the board speaks protocol {board}, this program {host}: flash the firmware of this release, \
-             or use the program that came with the board"
-        )
-    }
-}
-
-impl core::error::Error for VersionMismatch {}
-
 fn put_hello(to: &mut Writer<'_>, version: u16) {
     MAGIC.put(to);
     version.put(to);

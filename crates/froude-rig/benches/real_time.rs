@@ -7,7 +7,7 @@ use froude_control::status::Phase;
 use froude_control::tick::{AxisCommand, Command};
 use froude_rig::closed_loop::ClosedLoop;
 use froude_rig::defaults::control_config;
-use froude_rig::load::{Load, Mounting};
+use froude_rig::load::{BodyState, Load};
 use froude_rig::twin::{Twin, TwinConfig};
 
 /// Ticks a sample: ten simulated seconds.
@@ -31,7 +31,7 @@ fn to_and_fro(tick: u64, is_x_moving: bool) -> Command {
 /// The twin alone, in open loop; y moves, x holds or moves.
 #[divan::bench(args = [false, true])]
 fn twin_alone(bencher: Bencher<'_, '_>, is_x_moving: bool) {
-    let config = TwinConfig::loaded(Load::mounted(Mounting::Wet));
+    let config = TwinConfig::loaded(Load::mounted(BodyState::Wet));
     bencher.counter(ItemsCount::new(TICKS)).with_inputs(|| Twin::new(&config, 1)).bench_local_refs(|twin| {
         for i in 0..TICKS {
             twin.tick(to_and_fro(i, is_x_moving));
@@ -43,7 +43,7 @@ fn twin_alone(bencher: Bencher<'_, '_>, is_x_moving: bool) {
 /// Twin and controller: homed, then to and fro on y while x holds (the paper's campaign), or on both axes.
 #[divan::bench(args = [false, true])]
 fn twin_and_controller(bencher: Bencher<'_, '_>, is_x_moving: bool) {
-    let load = Load::mounted(Mounting::Wet);
+    let load = Load::mounted(BodyState::Wet);
     let mut config = TwinConfig::loaded(load);
     for axis in &mut config.axes {
         axis.start_m = 0.1;

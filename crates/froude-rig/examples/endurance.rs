@@ -8,7 +8,7 @@
 use froude_control::request::{Move, Request};
 use froude_control::status::Phase;
 use froude_rig::defaults::control_config;
-use froude_rig::{AxisParameters, ClosedLoop, Load, Mounting, Truth, TwinConfig};
+use froude_rig::{AxisParameters, BodyState, ClosedLoop, Load, Truth, TwinConfig};
 use std::time::Instant;
 
 #[path = "../tests/faults/mod.rs"]
@@ -34,7 +34,7 @@ fn main() -> std::process::ExitCode {
 
 /// To and fro on both axes for so many hours; the hash at the end and whether count and truth agreed throughout.
 fn to_and_fro(hours: f64) -> ([Truth; 2], bool) {
-    let load = Load::mounted(Mounting::Wet);
+    let load = Load::mounted(BodyState::Wet);
     let mut config = TwinConfig::loaded(load);
     for axis in &mut config.axes {
         axis.start_m = 0.1;

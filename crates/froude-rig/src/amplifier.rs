@@ -46,11 +46,8 @@ impl Default for AmplifierConfig {
 }
 
 /// What is wrong with the amplifier.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AmplifierFault {
-    /// Nothing.
-    #[default]
-    None,
     /// It switched itself off: no current, not ready.
     Off,
     /// It gives its peak current whatever it is commanded, while enabled.
@@ -83,7 +80,7 @@ pub struct Amplifier {
     demand_a: f64,
     current_a: f64,
     is_enabled: bool,
-    fault: AmplifierFault,
+    fault: Option<AmplifierFault>,
     refused_inputs: u64,
 }
 
@@ -101,7 +98,7 @@ impl Amplifier {
             demand_a: 0.0,
             current_a: 0.0,
             is_enabled: false,
-            fault: AmplifierFault::None,
+            fault: None,
             refused_inputs: 0,
             config,
         }
@@ -109,7 +106,7 @@ impl Amplifier {
 
     /// Takes a command. One that is not finite counts as 0 V and is remembered ([`Self::refused_inputs`]).
     pub fn command(&mut self, volts: f64, is_enabled: bool) {
-        self.is_enabled = is_enabled && self.fault != AmplifierFault::Off;
+        self.is_enabled = is_enabled && self.fault != Some(AmplifierFault::Off);
         let volts = if volts.is_finite() {
             volts
         } else {
@@ -120,7 +117,7 @@ impl Amplifier {
         let peak_a = self.config.peak_a;
         self.demand_a = match (self.is_enabled, self.fault) {
             (false, _) => 0.0,
-            (true, AmplifierFault::Runaway) => peak_a,
+            (true, Some(AmplifierFault::Runaway)) => peak_a,
             (true, _) => (self.config.gain_a_v * volts).clamp(-peak_a, peak_a),
         };
     }
@@ -157,7 +154,7 @@ impl Amplifier {
     /// The ready output: the drive has no fault.
     #[must_use]
     pub fn is_ready(&self) -> bool {
-        self.fault != AmplifierFault::Off
+        self.fault != Some(AmplifierFault::Off)
     }
 
     /// Commands that were not finite.
@@ -168,7 +165,7 @@ impl Amplifier {
 
     /// Breaks or repairs it.
     pub fn set_fault(&mut self, fault: AmplifierFault) {
-        self.fault = fault;
+        self.fault = Some(fault);
     }
 }
 

@@ -8,11 +8,8 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 /// What is wrong with the encoder, from the tick at which it is set.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EncoderFault {
-    /// Nothing.
-    #[default]
-    None,
     /// Both lines are dead: the counter stays.
     Silent,
     /// One line is dead: the counter toggles between two neighbours with the other.
@@ -32,7 +29,7 @@ pub struct Encoder {
     counts_per_m: f64,
     /// What is added to the true count: start value, jumps, lost counts.
     offset: u32,
-    fault: EncoderFault,
+    fault: Option<EncoderFault>,
     frozen: u32,
     pivot: i64,
     errors: u32,
@@ -42,7 +39,7 @@ impl Encoder {
     /// A counter that reads `start` at count zero; `counts_per_m` carries the sign.
     #[must_use]
     pub fn new(counts_per_m: f64, start: u32) -> Self {
-        Self { counts_per_m, offset: start, fault: EncoderFault::None, frozen: start, pivot: 0, errors: 0 }
+        Self { counts_per_m, offset: start, fault: None, frozen: start, pivot: 0, errors: 0 }
     }
 
     /// A counter that reads `start` where the motor stands at power-up.
@@ -66,18 +63,16 @@ impl Encoder {
     pub fn read(&mut self, motor_position_m: f64, tick_s: f64, rng: &mut Pcg64Mcg) -> u32 {
         let count = self.true_count(motor_position_m);
         match self.fault {
-            EncoderFault::None => {}
-            EncoderFault::Silent => return self.frozen,
-            EncoderFault::Stuck => return self.frozen.wrapping_add((count & 1) as u32),
-            EncoderFault::Reversed => return self.offset.wrapping_add((2 * self.pivot - count) as u32),
-            EncoderFault::BitFlips { per_second } => {
-                if rng.random::<f64>() < f64::from(per_second) * tick_s {
-                    self.errors = self.errors.wrapping_add(1);
-                    let lost = rng.random_range(1..=2_u32);
-                    self.offset =
-                        if rng.random() { self.offset.wrapping_add(lost) } else { self.offset.wrapping_sub(lost) };
-                }
+            Some(EncoderFault::Silent) => return self.frozen,
+            Some(EncoderFault::Stuck) => return self.frozen.wrapping_add((count & 1) as u32),
+            Some(EncoderFault::Reversed) => return self.offset.wrapping_add((2 * self.pivot - count) as u32),
+            Some(EncoderFault::BitFlips { per_second }) if rng.random::<f64>() < f64::from(per_second) * tick_s => {
+                self.errors = self.errors.wrapping_add(1);
+                let lost = rng.random_range(1..=2_u32);
+                self.offset =
+                    if rng.random() { self.offset.wrapping_add(lost) } else { self.offset.wrapping_sub(lost) };
             }
+            Some(EncoderFault::BitFlips { .. }) | None => {}
         }
         self.frozen = self.offset.wrapping_add(count as u32);
         self.frozen
@@ -93,7 +88,7 @@ impl Encoder {
     pub fn set_fault(&mut self, fault: EncoderFault, motor_position_m: f64) {
         self.pivot = self.true_count(motor_position_m);
         self.frozen = self.offset.wrapping_add(self.pivot as u32);
-        self.fault = fault;
+        self.fault = Some(fault);
     }
 
     /// The counter jumps.

@@ -3,23 +3,18 @@
 //! An [`Injection`] takes effect at a tick on an axis and stays.
 //! [`crate::injection`].
 
+use crate::amplifier::AmplifierFault;
+use crate::encoder::EncoderFault;
+
 /// One thing that breaks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Injection {
-    /// Both encoder lines die.
-    EncoderSilent,
-    /// One encoder line dies: the count toggles.
-    EncoderStuck,
+    /// The encoder or one of its lines fails.
+    Encoder(EncoderFault),
     /// The counter jumps by so many counts.
     EncoderJump(i32),
-    /// Illegal transitions, so many a second.
-    EncoderFlips(u32),
-    /// The encoder counts the other way.
-    EncoderReversed,
-    /// The amplifier switches itself off and is no longer ready.
-    AmplifierOff,
-    /// The amplifier gives its peak current while enabled.
-    CurrentRunaway,
+    /// The amplifier fails.
+    Amplifier(AmplifierFault),
     /// The emergency-stop chain opens; hardware cuts the drive.
     EmergencyStop,
     /// The low end switch or its wire opens.

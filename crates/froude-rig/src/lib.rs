@@ -23,9 +23,9 @@
 //!
 //! ```
 //! use froude_control::request::{Move, Request};
-//! use froude_rig::{ClosedLoop, Load, Mounting, TwinConfig, defaults::control_config};
+//! use froude_rig::{BodyState, ClosedLoop, Load, TwinConfig, defaults::control_config};
 //!
-//! let load = Load::mounted(Mounting::Wet);
+//! let load = Load::mounted(BodyState::Wet);
 //! let mut config = TwinConfig::loaded(load);
 //! config.axes[0].start_m = 0.05; // near the switch that homing looks for
 //! config.axes[1].start_m = 0.05;
@@ -66,6 +66,6 @@ pub mod weight_tow;
 
 pub use closed_loop::ClosedLoop;
 pub use injection::{Injection, Scheduled};
-pub use load::{HungWeight, Load, Mounting, Strut, TowedBody};
+pub use load::{BodyState, HungWeight, Load, Strut, TowedBody};
 pub use parameters::AxisParameters;
 pub use twin::{AxisTwin, Spread, Truth, Twin, TwinConfig};

@@ -14,17 +14,7 @@
 use crate::parameters::AxisParameters;
 use froude_hydro::similarity::GRAVITY_M_S2;
 
-/// Where the body is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Mounting {
-    /// No body.
-    #[default]
-    None,
-    /// On top of the platform, in air.
-    Dry,
-    /// Below the platform, under water.
-    Wet,
-}
+pub use froude_records::run::BodyState;
 
 /// When the strut is in the water.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -90,7 +80,7 @@ pub struct Load {
     /// The body.
     pub body: TowedBody,
     /// Where it is.
-    pub mounting: Mounting,
+    pub mounting: BodyState,
     /// Ballast on the carriage, kg. [`Load::balancing_ballast_kg`] gives the wet run the dry run's wheel load.
     pub ballast_kg: f64,
     /// Density of the water, kg/m³.
@@ -107,7 +97,7 @@ impl Default for Load {
     fn default() -> Self {
         Self {
             body: TowedBody::CYLINDER,
-            mounting: Mounting::None,
+            mounting: BodyState::None,
             ballast_kg: 0.0,
             density_kg_m3: 1000.0,
             hung: HungWeight::default(),
@@ -120,12 +110,12 @@ impl Default for Load {
 impl Load {
     /// This load with the body mounted so.
     #[must_use]
-    pub fn mounted(mounting: Mounting) -> Self {
+    pub fn mounted(mounting: BodyState) -> Self {
         Self { mounting, ..Self::default() }
     }
 
     fn is_wet(&self) -> bool {
-        self.mounting == Mounting::Wet
+        self.mounting == BodyState::Wet
     }
 
     /// Buoyancy of the submerged body as a mass, ρV, kg: the ballast that restores the dry wheel load in the wet run.
@@ -138,9 +128,9 @@ impl Load {
     #[must_use]
     pub fn body_inertia_kg(&self) -> f64 {
         match self.mounting {
-            Mounting::None => 0.0,
-            Mounting::Dry => self.body.mass_kg,
-            Mounting::Wet => self.body.mass_kg + self.body.body_water_kg + self.body.added_mass_kg,
+            BodyState::None => 0.0,
+            BodyState::Dry => self.body.mass_kg,
+            BodyState::Wet => self.body.mass_kg + self.body.body_water_kg + self.body.added_mass_kg,
         }
     }
 
@@ -154,9 +144,9 @@ impl Load {
     #[must_use]
     pub fn wheel_load_n(&self, axis: &AxisParameters) -> f64 {
         let carried_kg = match self.mounting {
-            Mounting::None => 0.0,
-            Mounting::Dry => self.body.mass_kg,
-            Mounting::Wet => self.body.mass_kg - self.balancing_ballast_kg(),
+            BodyState::None => 0.0,
+            BodyState::Dry => self.body.mass_kg,
+            BodyState::Wet => self.body.mass_kg - self.balancing_ballast_kg(),
         };
         ((axis.load_mass_kg + self.ballast_kg + carried_kg) * GRAVITY_M_S2).max(0.0)
     }
@@ -187,19 +177,19 @@ mod tests {
     fn the_paper_cylinder_takes_62_newton_off_the_wheels() {
         let y = AxisParameters::long();
         let load = |mounting| Load::mounted(mounting).wheel_load_n(&y);
-        let relief_n = load(Mounting::Dry) - load(Mounting::Wet);
+        let relief_n = load(BodyState::Dry) - load(BodyState::Wet);
         // pi 0.1^2 0.2 m^3 of water.
         assert!((relief_n - 61.617).abs() < 1e-3, "{relief_n}");
         // At 0.01 that is the 0.6 N of friction which an unballasted pair of runs takes for drag.
         let friction = |mounting| y.load_friction_n(load(mounting));
-        assert!((friction(Mounting::Dry) - friction(Mounting::Wet) - 0.616).abs() < 1e-3);
+        assert!((friction(BodyState::Dry) - friction(BodyState::Wet) - 0.616).abs() < 1e-3);
     }
 
     #[test]
     fn balancing_ballast_restores_the_dry_wheel_load() {
         let y = AxisParameters::long();
-        let dry = Load::mounted(Mounting::Dry);
-        let wet = Load { ballast_kg: dry.balancing_ballast_kg(), ..Load::mounted(Mounting::Wet) };
+        let dry = Load::mounted(BodyState::Dry);
+        let wet = Load { ballast_kg: dry.balancing_ballast_kg(), ..Load::mounted(BodyState::Wet) };
         assert!((wet.wheel_load_n(&y) - dry.wheel_load_n(&y)).abs() < 1e-12);
     }
 }

@@ -13,8 +13,8 @@
 //!
 //! Not here: coupling between axes, waves and wake, temperature, torque ripple, quadrature below one count.
 
-use crate::amplifier::{Amplifier, AmplifierConfig, AmplifierFault};
-use crate::encoder::{Encoder, EncoderFault};
+use crate::amplifier::{Amplifier, AmplifierConfig};
+use crate::encoder::Encoder;
 use crate::force_sensor::{ForceSensor, ForceSensorConfig};
 use crate::injection::{Injection, Scheduled};
 use crate::load::Load;
@@ -125,8 +125,6 @@ pub struct Truth {
     pub load_position_m: f64,
     /// ẏ, m/s.
     pub load_speed_m_s: f64,
-    /// ÿ over the last tick, m/s².
-    pub load_acceleration_m_s2: f64,
     /// Rθ/n, m.
     pub motor_position_m: f64,
     /// Its speed, m/s.
@@ -346,15 +344,9 @@ impl Twin {
             let Some(axis) = self.axes.get_mut(s.axis) else { continue };
             let at_m = axis.plant.motor_position_m();
             match s.injection {
-                Injection::EncoderSilent => axis.encoder.set_fault(EncoderFault::Silent, at_m),
-                Injection::EncoderStuck => axis.encoder.set_fault(EncoderFault::Stuck, at_m),
-                Injection::EncoderReversed => axis.encoder.set_fault(EncoderFault::Reversed, at_m),
-                Injection::EncoderFlips(per_second) => {
-                    axis.encoder.set_fault(EncoderFault::BitFlips { per_second }, at_m);
-                }
+                Injection::Encoder(fault) => axis.encoder.set_fault(fault, at_m),
                 Injection::EncoderJump(counts) => axis.encoder.jump(counts),
-                Injection::AmplifierOff => axis.amplifier.set_fault(AmplifierFault::Off),
-                Injection::CurrentRunaway => axis.amplifier.set_fault(AmplifierFault::Runaway),
+                Injection::Amplifier(fault) => axis.amplifier.set_fault(fault),
                 Injection::EmergencyStop => self.is_estop_open = true,
                 Injection::LowEndSwitch => axis.is_low_wire_cut = true,
                 Injection::HighEndSwitch => axis.is_high_wire_cut = true,
@@ -401,7 +393,6 @@ impl Twin {
         Truth {
             load_position_m: a.plant.load_position_m(),
             load_speed_m_s: v,
-            load_acceleration_m_s2: a.acceleration_m_s2,
             motor_position_m: a.plant.motor_position_m(),
             motor_speed_m_s: a.plant.motor_speed_m_s(),
             drag_n: a.config.load.drag_n_s2_m2() * v * v.abs(),

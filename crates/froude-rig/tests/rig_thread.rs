@@ -227,7 +227,9 @@ fn a_fault_or_a_lost_port_while_a_person_is_asked_ends_the_prompt_and_says_what_
     let mut rig = Running::new();
     rig.twin.twin_mut().inject(Scheduled { tick: 2_000, axis: 0, injection: Injection::EmergencyStop });
     match run(folder.path(), &mut rig, &StopSwitch::default(), &mut asked, &mut |_, _| {}).unwrap_err() {
-        RunnerError::FaultAtRest { fault: Fault::EmergencyStop, category: 0 } => {}
+        error @ RunnerError::FaultAtRest { fault: Fault::EmergencyStop } => {
+            assert!(error.to_string().contains("EmergencyStop (category 0 stop)"), "{error}");
+        }
         other => panic!("{other}"),
     }
     let mut rig = Running { gone: 2_000, ..Running::new() };

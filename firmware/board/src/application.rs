@@ -44,7 +44,8 @@ pub struct Application {
     tick: u32,
     operator: Operator,
     requests: Requests,
-    lock_step: Option<LockStep>,
+    /// The last answer to a host that gives the ticks, one by one.
+    lock_step: Option<LockStepReply>,
     link: Link,
     overruns: u32,
     worst_step_us: u32,
@@ -78,12 +79,6 @@ struct Requests {
     waiting: Deque<Waiting, 8>,
     /// The last answer to the host that has the board, for when it did not get it.
     answered: Option<Ack>,
-}
-
-/// The host gives the ticks, one by one.
-#[derive(Clone)]
-struct LockStep {
-    reply: LockStepReply,
 }
 
 /// Both directions of the serial line.
@@ -454,10 +449,10 @@ impl Application {
     /// Steps with the host's inputs. The same number again gets the same answer; any other but the next one gets none.
     fn lock_step(&mut self, session: u32, number: u32, tick: &Tick) {
         let Some(controller) = &mut self.controller else { return };
-        let next = self.lock_step.as_ref().map_or(0, |last| last.reply.number.wrapping_add(1));
+        let next = self.lock_step.as_ref().map_or(0, |last| last.number.wrapping_add(1));
         if number == next {
             let Output { command, status } = controller.step(tick);
-            let reply = LockStepReply {
+            self.lock_step = Some(LockStepReply {
                 session,
                 number,
                 command,
@@ -466,11 +461,9 @@ impl Application {
                 phases: status.axes.map(|axis| axis.phase),
                 fault: status.fault.map(|(fault, _)| fault),
                 refusal: status.refusal,
-            };
-            self.lock_step = Some(LockStep { reply });
+            });
         }
-        if let Some(last) = self.lock_step.as_ref().filter(|last| last.reply.number == number) {
-            let reply = last.reply;
+        if let Some(reply) = self.lock_step.filter(|last| last.number == number) {
             self.link.say(FromBoard::LockStep(reply));
         }
     }

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{BufWriter, Read, Write};
 use std::path::Path;
 
-use froude_carriage::servo::{Chain, Friction, LongServo};
+use froude_carriage::servo::{Chain, Friction, LongServo, ServoCoefficient};
 
 use crate::Outcome;
 use crate::make::Normal;
@@ -51,7 +51,7 @@ pub fn make(dir: &Path, seconds: f64) -> Outcome<()> {
 /// M, F_v, F_c, offset and their standard deviations, classical and HAC, read as the file goes by.
 pub fn identify(dir: &Path) -> Outcome<Row> {
     let mut chain = Chain::new(6.0, Friction::symmetric());
-    chain.intervals.hac_lag_s = Some(1.0);
+    chain.hac_lag_s = Some(1.0);
     measure(3, || {
         let mut file = File::open(dir.join(FILE))?;
         let mut servo = LongServo::new(&chain, RATE_HZ)?;
@@ -64,13 +64,14 @@ pub fn identify(dir: &Path) -> Outcome<Row> {
             command_v.clear();
             position_m.extend(rows.iter().map(|row| f64::from_le_bytes(row[0])));
             command_v.extend(rows.iter().map(|row| f64::from_le_bytes(row[1])));
-            servo.push(&position_m, &command_v, None)?;
+            servo.push(&position_m, &command_v)?;
             if taken < bytes.len() {
                 break;
             }
         }
-        let report = servo.finish()?;
-        Ok([report.coefficients, report.classical, report.hac].concat())
+        let found = servo.finish()?.coefficients;
+        let of = |number: fn(&ServoCoefficient) -> f64| found.iter().map(number).collect::<Vec<f64>>();
+        Ok([of(|c| c.value), of(|c| c.classical_std), of(|c| c.hac_std)].concat())
     })
 }
 

@@ -6,7 +6,6 @@
 
 use std::path::Path;
 
-use froude_fit::distribution::coverage_factor;
 use froude_identify::answer::Made;
 use froude_identify::large::MOST_KEPT;
 use froude_identify::method::{Found, MethodError};
@@ -22,9 +21,8 @@ use super::page::{Pieces, coefficient_table, with_declared};
 use super::{AxisModel, friction_of, one_excitation};
 use crate::runs::implausible;
 use crate::servo::log::{is_even, rate_of};
-use crate::servo::report::negative;
 use crate::servo::scale::ForcePerVolt;
-use crate::servo::{Chain, LongReport, LongServo, ServoCoefficient, ServoError, record};
+use crate::servo::{Chain, LongServo, ServoError, record};
 
 /// Whether a log has more rows than are kept.
 pub(super) fn is_long(path: &Path) -> bool {
@@ -132,10 +130,7 @@ pub(super) fn of_table(
         if let Some(what) = wild::sample_of("position", "m", times, position_m, &[]) {
             return Err(MethodError::input(path, format!("{what}; correct the sample, or cut the log there")));
         }
-        under_way
-            .iter_mut()
-            .try_for_each(|(_, servo)| servo.push(position_m, command_v, None))
-            .map_err(MethodError::refused)
+        under_way.iter_mut().try_for_each(|(_, servo)| servo.push(position_m, command_v)).map_err(MethodError::refused)
     })?;
     let text = format!(
         "the log has {} rows, more than the {} that are kept: it was read in chunks. Its intervals are those of HAC, with no test whether residuals \
@@ -149,37 +144,24 @@ pub(super) fn of_table(
     };
     let mut tables: Vec<Block> = Vec::new();
     for (words, servo) in under_way {
-        let report = servo.finish().map_err(MethodError::refused)?;
-        let coefficients = coefficients(&report);
-        let doubts: Vec<String> = negative(&coefficients).collect();
-        out.findings.extend(super::doubts(words, &doubts, &report.excitation));
-        let mut estimate = record::long(name, words, (&report, &coefficients), &doubts, gain);
+        let fit = servo.finish().map_err(MethodError::refused)?;
+        out.findings.extend(super::doubts(words, &fit));
+        let mut estimate = record::rigid(name, words, &fit, gain);
         kind.clone_into(&mut estimate.kind);
         let caption = format!(
-            "Rigid model, friction {words} (relative force error {}), {} rows at {} Hz, HAC with a lag of {:.1} s.",
-            number::percent(report.relative_force_error),
-            number::count(report.n_rows),
-            number::plain(report.rate_hz, 4),
-            report.hac_lag_s
+            "Rigid model, friction {words} (relative force error {}), {} rows at {} Hz, {}.",
+            number::percent(fit.relative_force_error),
+            number::count(fit.n_rows),
+            number::plain(fit.rate_hz, 4),
+            fit.pieces
         );
-        let table = coefficient_table(&estimate.method.name, caption, &coefficients, Pieces::Hac);
+        let table = coefficient_table(&estimate.method.name, caption, &fit.coefficients, Pieces::Hac);
         tables.push(with_declared(table, Some(&estimate)).into());
         let name = format!("{name}, {}", estimate.method.name);
         out.results.push(Made { name, estimate, files: super::files_of_table(path, sidecar) }.into());
     }
     out.summary = Some(Section::new("Axis by every model", tables));
     Ok(out)
-}
-
-/// Values with the intervals of HAC.
-fn coefficients(report: &LongReport) -> Vec<ServoCoefficient> {
-    let coverage = coverage_factor(0.95, report.dof);
-    let of = |(j, (name, unit)): (usize, &(String, &'static str))| {
-        let hac_std = if report.is_told[j] { report.hac[j] } else { f64::NAN };
-        let std = [report.classical[j], hac_std, hac_std];
-        ServoCoefficient::new(name, unit, report.coefficients[j], std, coverage * hac_std)
-    };
-    report.names.iter().enumerate().map(of).collect()
 }
 
 #[cfg(test)]

@@ -19,10 +19,10 @@ use crate::servo::two_mass::FlexibleReport;
 pub fn sections(outcome: &AxisModels) -> (Section, Vec<Section>) {
     let mut blocks: Vec<Block> = Vec::new();
     for model in &outcome.models {
-        let (r, law) = (&model.report, law_of(&model.name));
+        let (r, law) = (&model.report.fit, law_of(&model.name));
         let (body, error) = (mounted(&outcome.rigid_mounts), number::percent(r.relative_force_error));
         let caption = format!("Rigid model, friction {}{body} (relative force error {error}).", model.name);
-        let pieces = if r.spread.runs.is_some() { Pieces::Clusters } else { Pieces::Blocks };
+        let pieces = if r.runs.is_some() { Pieces::Clusters } else { Pieces::Blocks };
         let estimate = outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.method.name == law);
         let table = coefficient_table(&law, caption, &r.coefficients, pieces);
         blocks.push(with_declared(table, estimate).into());
@@ -46,13 +46,13 @@ pub fn sections(outcome: &AxisModels) -> (Section, Vec<Section>) {
 
 /// How a rigid model was fitted, and what its residuals say.
 fn of_fit(model: &Model) -> Vec<String> {
-    let r = &model.report;
+    let (r, fit) = (&model.report, &model.report.fit);
     let mut out = vec![format!(
         "{} rows at {} Hz ({}); relative force error {}.",
-        number::count(r.n_rows),
-        number::plain(r.rate_hz, 4),
-        r.preparation,
-        number::percent(r.relative_force_error)
+        number::count(fit.n_rows),
+        number::plain(fit.rate_hz, 4),
+        fit.preparation,
+        number::percent(fit.relative_force_error)
     )];
     out.extend(r.whiteness.as_ref().map(|w| {
         format!(
@@ -62,7 +62,7 @@ fn of_fit(model: &Model) -> Vec<String> {
             w.lags,
             w.ljung_box,
             number::p_equation(w.p),
-            r.spread.pieces()
+            fit.pieces
         )
     }));
     out

@@ -5,18 +5,16 @@ use froude_identify::answer::Made;
 use froude_identify::method::{Found, Logs, Method, MethodError, Need};
 use froude_identify::uncertainty::common_key;
 use froude_records::Place;
-use froude_records::campaign::{Campaign, Input, Shared, Source};
+use froude_records::campaign::{Campaign, Shared, Source};
 use froude_records::estimate::OWN;
-use froude_records::finding::{Finding, Severity};
 use froude_records::run::{TOW, is_servo_log};
 use froude_records::units::Dimension;
 
 use super::cross::hold_against;
 use super::page::sections;
 use super::{AxisModel, AxisModels, KINDS, force_per_volt_n_v, long, of_runs, of_table};
-use crate::runs::read;
 use crate::servo::scale::{ForcePerVolt, Scale};
-use crate::source::{lacking_in, named};
+use crate::source::{DRIVEN, lacking_in, named, not_fitted, nothing_fitted, runs_of};
 
 /// The models of an axis.
 #[derive(Debug)]
@@ -44,8 +42,7 @@ fn model_of(name: &str) -> Option<AxisModel> {
 }
 
 /// What moves slowly enough for a rigid axis.
-const SLOW: &[&str] = &["position", "reference_velocity", "command"];
-const RIGID: [Need; 1] = [Need::of(&["friction", "dry"], SLOW)];
+const RIGID: [Need; 1] = [Need::of(&["friction", "dry"], DRIVEN)];
 const OF_LOG: [Need; 2] = [RIGID[0], Need { is_optional: true, ..Need::of(&["table"], &["position", "command"]) }];
 const EXCITED: [Need; 1] = [Need::of(&["excitation"], &["position", "command"])];
 
@@ -88,28 +85,20 @@ impl Method for Servo {
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
         let asked: Vec<AxisModel> = asked.iter().filter_map(|name| model_of(name)).collect();
-        match &source.input {
-            Input::Runs { paths, campaign } => {
-                progress("reading the runs");
-                let runs = read(paths, &KINDS, campaign.as_deref())?;
-                progress("identifying the axis");
-                let axis = of_runs(&runs, &asked, &named(source, &runs, "servo"))?;
-                let mut found = found(axis, source, &asked, |model| lacking_in(needs(model), &runs))?;
-                found.beside = Some(runs.results("servo"));
-                found.is_part = runs.beside > 0;
-                Ok(found)
-            }
-            input => {
-                let (path, sidecar) = (input.path(), source.sidecar.as_deref());
-                let gain = declared_gain(source, &campaign.key)?;
-                if long::is_long(path) {
-                    progress("identifying the axis from a long log");
-                    return long::of_table(path, sidecar, (&source.name, source.kind.name()), &gain, &asked);
-                }
-                progress("identifying the axis");
-                found(of_table(path, sidecar, &source.name, &asked, &gain)?, source, &asked, |_| None)
-            }
+        if let Some(runs) = runs_of(source, &KINDS, progress)? {
+            progress("identifying the axis");
+            let axis = of_runs(&runs, &asked, &named(source, &runs, "servo"))?;
+            let found = found(axis, source, &asked, |model| lacking_in(needs(model), &runs))?;
+            return Ok(Found { beside: Some(runs.results("servo")), is_part: runs.beside > 0, ..found });
         }
+        let (path, sidecar) = (source.input.path(), source.sidecar.as_deref());
+        let gain = declared_gain(source, &campaign.key)?;
+        if long::is_long(path) {
+            progress("identifying the axis from a long log");
+            return long::of_table(path, sidecar, (&source.name, source.kind.name()), &gain, &asked);
+        }
+        progress("identifying the axis");
+        found(of_table(path, sidecar, &source.name, &asked, &gain)?, source, &asked, |_| None)
     }
 }
 
@@ -194,18 +183,12 @@ fn found(
             }
             // Whoever names no model gets those that the runs allow; a fit that failed has said so.
             None if source.methods.is_empty() => {}
-            None => findings.extend(lacking(model).map(|why| {
-                let text = format!("{} ({}): {why}", model.name(), model.words());
-                Finding::new(Severity::Warning, "not-fitted", text)
-            })),
+            None => findings.extend(lacking(model).map(|why| not_fitted(model.name(), model.words(), &why))),
         }
     }
     if out.is_empty() {
-        let why: String = findings.iter().map(|finding| format!("; {}", finding.message)).collect();
-        return Err(MethodError::input(
-            source.input.path(),
-            format!("none of the models asked for can be identified from these runs{why}"),
-        ));
+        let what = "none of the models asked for can be identified from these runs";
+        return Err(nothing_fitted(source, what, &findings));
     }
     Ok(Found { results: out, summary: Some(summary), blocks, findings, ..Found::default() })
 }

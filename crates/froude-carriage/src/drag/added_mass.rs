@@ -157,7 +157,7 @@ pub fn added_mass(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<AddedMass> 
     let moved = of(None)?;
     let (scatter, dof) = jackknife_of_one(pairs.len(), |g| of(Some(pairs[g])))?;
     let scale = match (setup.calibration, setup.efficiency) {
-        (Some(c), _) => c.force_per_volt_n.relative(),
+        (Some(force_per_volt), _) => force_per_volt.relative(),
         (None, Efficiency::Declared(e)) => e.relative().hypot(setup.torque_constant_relative),
         (None, Efficiency::Undeclared) => return None,
     };

@@ -41,13 +41,6 @@ const SURELY_DRIVEN: f64 = 0.5;
 /// The pulley's loss is doubted this many standard uncertainties away from what is declared.
 const DOUBTED: f64 = 2.0;
 
-/// Newtons at the chain for a volt of the drive command, driving forward.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ForcePerVolt {
-    /// Its value, N/V.
-    pub force_per_volt_n: Uncertain,
-}
-
 /// What is declared about a calibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CalibrationSetup {
@@ -66,8 +59,8 @@ pub struct CalibrationSetup {
 /// Result of the calibration runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
-    /// Force per volt.
-    pub force_per_volt: ForcePerVolt,
+    /// Newtons at the chain for a volt of the drive command, driving forward, N/V.
+    pub force_per_volt: Uncertain,
     /// Its 95 % interval, N/V.
     pub interval_95: [f64; 2],
     /// Efficiency that it stands for: over the ideal force per volt, whose own uncertainty is in it.
@@ -110,13 +103,9 @@ struct Reading {
 ///
 /// # Errors
 ///
-/// [`DragError::Calibration`] with what is missing: weights, directions, repeats.
+/// [`DragError`] with what is missing: weights, directions, repeats.
 pub fn calibrate(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Calibration, DragError> {
-    let mut readings = Readings::default();
-    for run in runs {
-        readings.push(run, setup.steady);
-    }
-    readings.calibrate(setup)
+    Readings::of(runs, setup.steady).calibrate(setup)
 }
 
 /// What calibration runs showed, one after the other: no log has to stay in memory for it.
@@ -128,6 +117,16 @@ pub struct Readings {
 }
 
 impl Readings {
+    /// The readings of runs.
+    #[must_use]
+    pub fn of(runs: &[DragRun<'_>], steady: SteadySettings) -> Self {
+        let mut out = Self::default();
+        for run in runs {
+            out.push(run, steady);
+        }
+        out
+    }
+
     /// Takes the reading of a run; one of another kind has none.
     pub fn push(&mut self, run: &DragRun<'_>, steady: SteadySettings) {
         if run.kind != RunKind::Calibration {
@@ -157,7 +156,7 @@ impl Readings {
     pub fn calibrate(&self, setup: &CalibrationSetup) -> Result<Calibration, DragError> {
         if self.taken.is_empty() {
             let why = self.refused.clone().unwrap_or_else(|| "no calibration run".to_owned());
-            return Err(DragError::Calibration(why));
+            return Err(DragError::calibration(why));
         }
         calibrated(&self.taken, setup)
     }
@@ -179,13 +178,13 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let overhauled = total - driving.len();
     let weights = reach(&driving.iter().map(|r| r.weight_n).collect::<Vec<_>>());
     if driving.is_empty() || weights[1] <= 0.0 {
-        return Err(DragError::Calibration(
-            "no run in which the motor drives against a known weight; hang one over the pulley and lift it".to_owned(),
+        return Err(DragError::calibration(
+            "no run in which the motor drives against a known weight; hang one over the pulley and lift it",
         ));
     }
     let is_pulley_measured = driving.iter().any(|r| r.weight_n > 0.0 && r.direction < 0.0);
     if !is_pulley_measured && weights[0] > 0.9 * weights[1] {
-        return Err(DragError::Calibration(format!(
+        return Err(DragError::calibration(format!(
             "{}, all lifting {:.2} N: friction and weight cannot be distinguished; add runs without weight, or lower \
              a weight that is lighter than the friction",
             counted(total, "run", "runs"),
@@ -197,7 +196,7 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let (first, _) = fitted(&driving, loss, setup.ideal_force_per_volt_n)?;
     let first_k = 1.0 / take(&first, 1)?.value;
     if first_k <= 0.0 {
-        return Err(DragError::Calibration(format!(
+        return Err(DragError::calibration(format!(
             "lifting up to {:.1} N needs no more command than lifting nothing: check that the weights hung free over the whole travel (floor), \
              and check counts_per_revolution, which gives the distance travelled",
             weights[1]
@@ -227,7 +226,7 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let one_way_n = (fitted.coefficients.len() > ONE_WAY).then(|| take(&fitted, ONE_WAY)).transpose()?;
     let one_way_n = one_way_n.map(|d| Uncertain { value: d.value * k, standard: d.standard * k, dof: d.dof });
     Ok(Calibration {
-        force_per_volt: ForcePerVolt { force_per_volt_n: force },
+        force_per_volt: force,
         interval_95: [k - combined.expanded, k + combined.expanded],
         efficiency: Uncertain { value: k / ideal, standard: of_efficiency.standard / ideal, dof: of_efficiency.dof },
         type_a,
@@ -281,14 +280,14 @@ fn fitted_with(
     let prior = Prior::new(2, loss.value / force_per_volt_n, loss.standard / force_per_volt_n);
     // Heavy weights scatter more: K_T drifts in proportion to the force.
     let options = Options { priors: vec![prior], covariance: CovarianceKind::Hc3, ..Options::default() };
-    fit(&Problem::single(design, response, names), &options).map_err(|e| DragError::Calibration(e.to_string()))
+    fit(&Problem::single(design, response, names), &options).map_err(DragError::calibration)
 }
 
 fn take(fitted: &Fit, j: usize) -> Result<Uncertain, DragError> {
     let c = &fitted.coefficients[j];
     match (c.value, c.standard, c.dof) {
         (Some(value), Some(standard), Some(dof)) => Ok(Uncertain { value, standard, dof }),
-        _ => Err(DragError::Calibration(format!(
+        _ => Err(DragError::calibration(format!(
             "{} not determine {} with degrees of freedom to spare; repeat every weight at least twice",
             counted(fitted.residuals.len(), "driving run does", "driving runs do"),
             c.name
@@ -352,16 +351,16 @@ fn notes(
 ///
 /// # Errors
 ///
-/// [`DragError::Calibration`] below two traverses, or for a distance that is not positive.
+/// [`DragError`] below two traverses, or for a distance that is not positive.
 pub fn encoder_scale(logged_m: &[f64], known_m: Uncertain) -> Result<Uncertain, DragError> {
     if logged_m.len() < 2 {
-        return Err(DragError::Calibration(format!(
+        return Err(DragError::calibration(format!(
             "{} traverse between the marks; two are needed to see how well they repeat",
             logged_m.len()
         )));
     }
     if known_m.value.is_nan() || known_m.value <= 0.0 {
-        return Err(DragError::Calibration(format!("the distance between the marks is {} m", known_m.value)));
+        return Err(DragError::calibration(format!("the distance between the marks is {} m", known_m.value)));
     }
     let n = logged_m.len() as f64;
     let average = logged_m.iter().map(|x| x.abs()).sum::<f64>() / n;
@@ -446,7 +445,7 @@ mod tests {
     #[test]
     fn what_is_declared_of_pulley_and_constants_is_no_scatter() {
         let lifting = calibrated(&quiet(), &[0.0, 20.0], |_| true).unwrap();
-        let k = lifting.force_per_volt.force_per_volt_n;
+        let k = lifting.force_per_volt;
         assert!(!lifting.is_pulley_measured && lifting.type_a < 0.1 * lifting.from_pulley, "{lifting:?}");
         // ∂k/∂λ = k/(1 + λ); the weight of the prior is that of a first fit, whose k is within 1 %.
         assert!((lifting.from_pulley / (k.value * PULLEY_LOSS.standard) - 1.0).abs() < 0.02, "{lifting:?}");
@@ -486,7 +485,7 @@ mod tests {
         scenario.pulley_loss = 0.013; // one standard uncertainty beside the declared one
         let heavy = calibrated(&scenario, &[0.0, 20.0], |_| true).unwrap();
         let both = calibrated(&scenario, &[0.0, 1.5, 20.0], |_| true).unwrap();
-        let off = |c: &Calibration| c.force_per_volt.force_per_volt_n.value / scenario.force_per_volt_n() - 1.0;
+        let off = |c: &Calibration| c.force_per_volt.value / scenario.force_per_volt_n() - 1.0;
         assert!((off(&heavy) + 0.003).abs() < 4e-4, "{}", off(&heavy));
         assert!(off(&both).abs() < 4e-4, "{}", off(&both));
         assert!((both.pulley_loss.value - 0.013).abs() < 5e-4);
@@ -528,7 +527,7 @@ mod tests {
         let scenario = Scenario { motor_coulomb_n: 0.9, ..quiet() };
         let found = calibrated(&scenario, &[0.0, 3.5, 10.0], |_| true).unwrap();
         assert_eq!((found.overhauled, found.used), (8, 16));
-        let off = found.force_per_volt.force_per_volt_n.value / scenario.force_per_volt_n() - 1.0;
+        let off = found.force_per_volt.value / scenario.force_per_volt_n() - 1.0;
         assert!(off.abs() < 4e-4, "{off}");
         let pushed = scenario.calibration_runs(&[3.5], 1, 1);
         let down = pushed[1].view();

@@ -32,14 +32,8 @@ pub struct Detectability {
     pub dof: f64,
     /// Standard deviation of the sensor's still windows from one side of a run to the other, N; `None` without sensor.
     pub zero_change_n: Option<f64>,
-    /// Part of its variance that all runs of a pair share: only more pairs make it smaller.
-    pub pair_share: f64,
-    /// Standard deviation of D_d from all differences, N s²/m², and its degrees of freedom.
-    pub slope_n_s2_m2: f64,
-    /// See [`Detectability::slope_n_s2_m2`].
-    pub slope_dof: f64,
-    /// The part of that which no pairing takes off: from what runs of one pair do not share, N s²/m², and its degrees of freedom. No
-    /// wet repeats can truly scatter less.
+    /// Standard deviation of D_d from all differences which no pairing takes off: from what runs of one pair do not share, N s²/m², and its degrees
+    /// of freedom. No wet repeats can truly scatter less.
     pub floor_n_s2_m2: (f64, f64),
     /// Differences at each speed that the campaign has or plans.
     pub differences: usize,
@@ -142,9 +136,6 @@ pub fn predict(means: &[DryMean], differences: usize, pairs: usize, setup: &Drag
         dof,
         zero_change_n: None,
         differences,
-        pair_share: scatter.between / variance,
-        slope_n_s2_m2: of_slope,
-        slope_dof,
         floor_n_s2_m2: ((2.0 * rest / (differences_at_each * quartic)).sqrt(), rest_dof),
         expanded_n: coverage_factor(0.95, mean_dof) * (2.0 * of_mean).sqrt(),
         smallest_n_s2_m2: coverage_factor(0.95, slope_dof) * of_slope,

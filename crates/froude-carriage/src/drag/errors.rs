@@ -17,8 +17,7 @@ pub(super) fn shared(method: Method, points: &[Point], measured: f64, setup: &Dr
     let mut out = Vec::new();
     if method.is_sensorless() {
         match (setup.calibration, setup.efficiency) {
-            (Some(c), _) => {
-                let f = c.force_per_volt_n;
+            (Some(f), _) => {
                 let error = of("force per volt, calibrated", &of_force, f.relative(), f.dof);
                 out.push(error.known_as(setup.keys.calibration.clone(), "force_per_volt"));
             }

@@ -18,7 +18,12 @@ use crate::drag::point::Point;
 ///
 /// [`Rejected`] without a usable window or zero.
 pub fn point(run: &DragRun<'_>, drift_half_width_n: f64, settings: SteadySettings) -> Result<Point, Rejected> {
-    let no_zero = || Rejected::NoZero { run: run.id.to_owned(), needed_s: settings.shortest_s };
+    let no_zero = || {
+        Rejected::Unusable(format!(
+            "run {:?}: no still window of {:.2} s before or after the tow to take the sensor's zero from",
+            run.id, settings.shortest_s
+        ))
+    };
     let sensed = run.force_n.ok_or_else(no_zero)?;
     let zero = Zero::of(run, sensed, drift_half_width_n, settings).ok_or_else(no_zero)?;
     let force: Vec<f64> = sensed.iter().zip(run.time_s).map(|(f, t)| f - zero.at_n(*t)).collect();

@@ -81,7 +81,11 @@ fn on_the_map(wet: &DragRun<'_>, friction: &Friction, settings: SteadySettings) 
     let [from_m, to_m] = reach(w.of(wet.position_m));
     let [low, high] = friction.range_m;
     if friction.coulomb_v.len() > 1 && (from_m < low - BEYOND_M || to_m > high + BEYOND_M) {
-        return Err(Rejected::OffTheMap { run: wet.id.to_owned(), from_m, to_m, known_from_m: low, known_to_m: high });
+        return Err(Rejected::Unusable(format!(
+            "run {:?}: towed from {from_m:.2} to {to_m:.2} m, where the friction is not known (dry runs cover \
+             {low:.2} to {high:.2} m)",
+            wet.id
+        )));
     }
     Ok(w)
 }

@@ -36,12 +36,12 @@ pub fn point(
     let shared_m = wet_high.min(dry_high) - wet_low.max(dry_low);
     let needed_m = SHARED * (wet_high - wet_low);
     if shared_m < needed_m {
-        return Err(Rejected::NoOverlap {
-            wet: wet.id.to_owned(),
-            dry: dry.id.to_owned(),
-            shared_m: shared_m.max(0.0),
-            needed_m,
-        });
+        return Err(Rejected::Unusable(format!(
+            "runs {:?} and {:?}: the steady windows share {:.2} m, {needed_m:.2} m are needed",
+            wet.id,
+            dry.id,
+            shared_m.max(0.0)
+        )));
     }
     let (difference_v, used) = difference(wet, in_wet, dry, in_dry);
     let slack = NO_MATTER * (difference_v.iter().sum::<f64>() / difference_v.len().max(1) as f64).abs();

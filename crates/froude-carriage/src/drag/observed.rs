@@ -116,11 +116,12 @@ impl<'r, 'a> Tows<'r, 'a> {
         let k = setup.force_per_volt_n();
         let all = self.wet.iter().map(|w| match self.dry.iter().find(|d| d.is_partner_of(w)) {
             Some(d) => mcd::point(w, d, k, setup.steady),
-            None => Err(Rejected::NoPartner {
-                run: w.id.to_owned(),
-                pair: w.pair,
-                speed_m_s: w.target_speed_m_s * w.direction,
-            }),
+            None => Err(Rejected::Unusable(format!(
+                "run {:?}: no dry run of pair {} at {} m/s in this direction",
+                w.id,
+                w.pair,
+                w.target_speed_m_s * w.direction
+            ))),
         });
         let points = keep(all, Method::Mcd, reported);
         let promised = self.promised(&points, setup);

@@ -95,7 +95,6 @@ fn pairs_needed(c: &Coefficient, n: usize, target: f64, setup: &DragSetup) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drag::calibration::ForcePerVolt;
     use crate::drag::point::slope;
     use crate::drag::setup::Efficiency;
     use froude_fit::budget::Uncertain;
@@ -115,7 +114,7 @@ mod tests {
 
     /// Force per volt known to a part, five looks.
     fn setup(relative: f64) -> DragSetup {
-        let calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(4.8, 4.8 * relative) });
+        let calibration = Some(Uncertain::new(4.8, 4.8 * relative));
         DragSetup { calibration, looks: 5, ..DragSetup::of_the_paper() }
     }
 

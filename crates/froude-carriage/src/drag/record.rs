@@ -82,11 +82,10 @@ fn observations(points: &[Point], setup: &DragSetup) -> Dataset {
 
 /// What the record says beside the fit.
 fn stated(method: Method, name: String, setup: &DragSetup) -> Stated {
-    let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
-    let mut refers_to = IndexMap::from([("density".to_owned(), measured(setup.density_kg_m3, "kg/m^3"))]);
+    let mut refers_to = IndexMap::from([("density".to_owned(), Measured::of(setup.density_kg_m3, "kg/m^3"))]);
     let mut derived = Vec::new();
     if let Some(area) = setup.reference_area_m2 {
-        refers_to.insert("area".to_owned(), measured(area, "m^2"));
+        refers_to.insert("area".to_owned(), Measured::of(area, "m^2"));
         derived.push(Derived {
             name: "C_D".to_owned(),
             formula: format!("2*{name}/(density*area)"),
@@ -97,7 +96,7 @@ fn stated(method: Method, name: String, setup: &DragSetup) -> Stated {
     }
     let mut constants = IndexMap::new();
     if method.is_sensorless() {
-        constants.insert("force_per_volt".to_owned(), measured(setup.force_per_volt_n(), "N/V"));
+        constants.insert("force_per_volt".to_owned(), Measured::of(setup.force_per_volt_n(), "N/V"));
     }
     Stated {
         method: method.name().to_owned(),
@@ -129,7 +128,7 @@ fn validity(points: &[Point], setup: &DragSetup) -> IndexMap<String, Range> {
     };
     std::iter::once(&("speed", speeds, "m/s"))
         .chain(ranges)
-        .map(|&(name, [low, high], unit)| (name.to_owned(), Range { low, high, unit: unit.to_owned() }))
+        .map(|&(name, ends, unit)| (name.to_owned(), Range::of(ends, unit)))
         .collect()
 }
 

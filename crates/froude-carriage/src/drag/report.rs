@@ -67,7 +67,8 @@ pub fn drag_by(runs: &[DragRun<'_>], setup: &DragSetup, methods: &[Method]) -> R
     check(runs, setup)?;
     let tows = Tows::of(runs, setup);
     if tows.wet.is_empty() {
-        return Err(DragError::NoWetRuns { n: runs.len() });
+        let given = counted(runs.len(), "run", "runs");
+        return Err(DragError(format!("no wet run among {given}: drag needs tows with the body in the water")));
     }
     let mut reported = Reported::default();
     let mut coefficients: Vec<Coefficient> = Vec::new();
@@ -369,21 +370,21 @@ fn check(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<(), DragError> {
         for (column, values) in columns {
             let Some(values) = values else { continue };
             if values.len() != n {
-                return Err(DragError::Length { run: run.id.to_owned(), column, found: values.len(), expected: n });
+                let found = values.len();
+                return Err(DragError(format!("run {:?}: {column} has {found} samples where time has {n}", run.id)));
             }
             if let Some(index) = values.iter().position(|x| !x.is_finite()) {
-                return Err(DragError::NotFinite { run: run.id.to_owned(), column, index });
+                return Err(DragError(format!("run {:?}: {column} at sample {index} is not finite", run.id)));
             }
         }
     }
-    let positive = "positive and finite";
     for (what, value) in [
         ("force per volt", setup.force_per_volt_n()),
         ("density", setup.density_kg_m3),
         ("reference area", setup.reference_area_m2.unwrap_or(1.0)),
     ] {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(DragError::Declared { what, value, must: positive });
+            return Err(DragError(format!("{what} is {value}; it must be positive and finite")));
         }
     }
     Ok(())

@@ -3,7 +3,6 @@
 use froude_fit::budget::Uncertain;
 use froude_records::campaign::BodyAxis;
 
-use crate::drag::calibration::ForcePerVolt;
 use crate::drag::mbdp::Flexible;
 use crate::drag::steady::SteadySettings;
 
@@ -83,8 +82,8 @@ pub struct DragSetup {
     pub torque_constant_drift_relative: f64,
     /// What is known about the gear; counts only without a calibration.
     pub efficiency: Efficiency,
-    /// Force per volt as calibrated.
-    pub calibration: Option<ForcePerVolt>,
+    /// Force per volt as calibrated, N/V.
+    pub calibration: Option<Uncertain>,
     /// The sensor, if the rig has one.
     pub sensor: SensorBudget,
     /// Standard uncertainty of the length that an encoder count stands for, as a part.
@@ -164,7 +163,7 @@ impl DragSetup {
     #[must_use]
     pub fn force_per_volt_n(&self) -> f64 {
         match (self.calibration, self.efficiency) {
-            (Some(c), _) => c.force_per_volt_n.value,
+            (Some(force_per_volt), _) => force_per_volt.value,
             (None, Efficiency::Declared(e)) => self.ideal_force_per_volt_n * e.value,
             (None, Efficiency::Undeclared) => self.ideal_force_per_volt_n,
         }

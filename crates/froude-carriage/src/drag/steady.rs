@@ -40,42 +40,6 @@ const RIPPLE_PERIODS: std::ops::Range<usize> = 3..40;
 /// Why a run gives no steady point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Rejected {
-    /// Constant speed is too short after settling.
-    #[error(
-        "run {run:?}: {found_s:.2} s of constant speed are left after {dropped_s:.2} s of settling, {needed_s:.2} s are \
-         needed; tow slower or further"
-    )]
-    TooShort {
-        /// The run.
-        run: String,
-        /// What is left, s.
-        found_s: f64,
-        /// Dropped at its start, s.
-        dropped_s: f64,
-        /// What is needed, s.
-        needed_s: f64,
-    },
-    /// The reference never holds the target speed.
-    #[error("run {run:?}: the reference never holds {target_m_s} m/s")]
-    NeverConstant {
-        /// The run.
-        run: String,
-        /// Speed asked for, m/s.
-        target_m_s: f64,
-    },
-    /// The force still changes when the window ends.
-    #[error(
-        "run {run:?}: the force still drifts by {trend_n:.3} N over the window after {dropped_s:.2} s of settling; wait \
-         longer between runs, or tow further"
-    )]
-    NotSettled {
-        /// The run.
-        run: String,
-        /// Change over the window, N (V for a command).
-        trend_n: f64,
-        /// Dropped, s.
-        dropped_s: f64,
-    },
     /// The load swings on the chain until the window ends.
     #[error(
         "run {run:?}: the load swings on the chain so far that the motor's command falls to {least:.0} % of what friction alone needs \
@@ -90,53 +54,18 @@ pub enum Rejected {
         /// What is needed, in per cent.
         needed: f64,
     },
-    /// No run to take the difference with.
-    #[error("run {run:?}: no dry run of pair {pair} at {speed_m_s} m/s in this direction")]
-    NoPartner {
-        /// The wet run.
-        run: String,
-        /// Its pair.
-        pair: u32,
-        /// Its speed, m/s, signed.
-        speed_m_s: f64,
-    },
-    /// Wet and dry windows share no positions.
-    #[error("runs {wet:?} and {dry:?}: the steady windows share {shared_m:.2} m, {needed_m:.2} m are needed")]
-    NoOverlap {
-        /// The wet run.
-        wet: String,
-        /// The dry run.
-        dry: String,
-        /// Length in common, m.
-        shared_m: f64,
-        /// Length needed, m.
-        needed_m: f64,
-    },
-    /// No sensor, or no still window for its zero.
-    #[error("run {run:?}: no still window of {needed_s:.2} s before or after the tow to take the sensor's zero from")]
-    NoZero {
-        /// The run.
-        run: String,
-        /// Length needed, s.
-        needed_s: f64,
-    },
-    /// The friction map does not reach there.
-    #[error(
-        "run {run:?}: towed from {from_m:.2} to {to_m:.2} m, where the friction is not known (dry runs cover \
-         {known_from_m:.2} to {known_to_m:.2} m)"
-    )]
-    OffTheMap {
-        /// The run.
-        run: String,
-        /// Start of the window, m.
-        from_m: f64,
-        /// Its end, m.
-        to_m: f64,
-        /// Start of the map, m.
-        known_from_m: f64,
-        /// Its end, m.
-        known_to_m: f64,
-    },
+    /// It has no steady part, or nothing to compare that with; in words.
+    #[error("{0}")]
+    Unusable(String),
+}
+
+/// Constant speed that is too short after settling.
+fn too_short(run: &DragRun<'_>, found_s: f64, dropped_s: f64, needed_s: f64) -> Rejected {
+    Rejected::Unusable(format!(
+        "run {:?}: {found_s:.2} s of constant speed are left after {dropped_s:.2} s of settling, {needed_s:.2} s are \
+         needed; tow slower or further",
+        run.id
+    ))
 }
 
 /// A stretch of samples, `first..end`.
@@ -199,18 +128,13 @@ pub fn window(run: &DragRun<'_>, settings: SteadySettings) -> Result<Window, Rej
     let held = stretches(run.reference_speed_m_s, |v| (v - target).abs() <= slack)
         .into_iter()
         .max_by_key(|w| w.len())
-        .ok_or_else(|| Rejected::NeverConstant { run: run.id.to_owned(), target_m_s: target })?;
+        .ok_or_else(|| Rejected::Unusable(format!("run {:?}: the reference never holds {target} m/s", run.id)))?;
     let step = run.step_s();
     let (dropped, corner) = (run.samples(settings.settle_s), run.samples(settings.corner_s));
     let found_s = (held.len() as f64 - (dropped + corner) as f64) * step;
     // A run of one sample has no step.
     if found_s.is_nan() || found_s < settings.shortest_s {
-        return Err(Rejected::TooShort {
-            run: run.id.to_owned(),
-            found_s: found_s.max(0.0),
-            dropped_s: settings.settle_s,
-            needed_s: settings.shortest_s,
-        });
+        return Err(too_short(run, found_s.max(0.0), settings.settle_s, settings.shortest_s));
     }
     Ok(Window { first: held.first + dropped, end: held.end - corner })
 }
@@ -255,23 +179,20 @@ pub fn settled_part(
             break;
         }
         if split as f64 > MOST_SETTLING * force.len() as f64 {
-            return Err(Rejected::NotSettled {
-                run: run.id.to_owned(),
-                trend_n: -change,
-                dropped_s: settings.settle_s + now.first as f64 * step,
-            });
+            return Err(Rejected::Unusable(format!(
+                "run {:?}: the force still drifts by {:.3} N over the window after {:.2} s of settling; wait \
+                 longer between runs, or tow further",
+                run.id,
+                -change,
+                settings.settle_s + now.first as f64 * step
+            )));
         }
         now.first = split;
     }
     let now = whole_periods(force, now);
     let found_s = now.len() as f64 * step;
     if found_s < settings.shortest_s {
-        return Err(Rejected::TooShort {
-            run: run.id.to_owned(),
-            found_s,
-            dropped_s: settings.settle_s + now.first as f64 * step,
-            needed_s: settings.shortest_s,
-        });
+        return Err(too_short(run, found_s, settings.settle_s + now.first as f64 * step, settings.shortest_s));
     }
     Ok(now)
 }
@@ -479,10 +400,8 @@ mod tests {
         assert!(error(settled) < 0.3 * error(plain), "{} {}", error(settled), error(plain));
         // A force that never stops drifting is refused.
         let drifting: Vec<f64> = time.iter().zip(&force).map(|(t, f)| f + 0.2 * t).collect();
-        assert!(matches!(
-            settled_window(&r, &drifting, 0.0, SteadySettings::default()),
-            Err(Rejected::NotSettled { .. })
-        ));
+        let error = settled_window(&r, &drifting, 0.0, SteadySettings::default()).unwrap_err().to_string();
+        assert!(error.contains("the force still drifts by "), "{error}");
     }
 
     /// 5½ periods of a ripple of 1 N: the half period left over would move the mean by 2/π/11 N.

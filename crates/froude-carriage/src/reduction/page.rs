@@ -22,7 +22,7 @@ pub fn sections(reduction: &Reduction) -> (Section, Vec<Section>) {
     if let Some(c) = calibration {
         let value = format!(
             "{} N/V with its interval {} N/V, from {}; the gear's efficiency is {}.",
-            number::short_form(c.force_per_volt.force_per_volt_n.value, c.force_per_volt.force_per_volt_n.standard),
+            number::short_form(c.force_per_volt.value, c.force_per_volt.standard),
             number::interval(c.interval_95),
             counted(c.used, "driving run", "driving runs"),
             number::short_form(c.efficiency.value, c.efficiency.standard),

@@ -17,7 +17,6 @@ use froude_signal::{butterworth, decimate, differences, zero_phase};
 
 use crate::servo::error::ServoError;
 use crate::servo::friction::{Friction, Regressor};
-use crate::servo::interval::IntervalOptions;
 use crate::servo::log::ServoLog;
 use crate::servo::rows::Rows;
 
@@ -52,8 +51,8 @@ pub struct Chain {
     pub is_moving: bool,
     /// Friction law.
     pub friction: Friction,
-    /// How intervals are made.
-    pub intervals: IntervalOptions,
+    /// Lag of HAC, s; `None` for the automatic one.
+    pub hac_lag_s: Option<f64>,
 }
 
 impl Chain {
@@ -69,7 +68,7 @@ impl Chain {
             is_held: false,
             is_moving: false,
             friction,
-            intervals: IntervalOptions::default(),
+            hac_lag_s: None,
         }
     }
 
@@ -144,7 +143,7 @@ impl Chain {
         let rate_hz = log.rate_hz()?;
         let motion = self.motion(&log.position_m, rate_hz)?;
         let force_n = self.force_n(&log.command_v, None);
-        let regressors = self.regressors(&motion, log.load_n.as_deref())?;
+        let regressors = self.regressors(&motion)?;
         if !self.is_moving {
             return self.decimated(&log.time_s, &force_n, regressors, rate_hz);
         }
@@ -162,9 +161,9 @@ impl Chain {
     }
 
     /// Columns at the full rate: inertia, then friction.
-    pub(crate) fn regressors(&self, motion: &Motion, load_n: Option<&[f64]>) -> Result<Vec<Regressor>, ServoError> {
+    pub(crate) fn regressors(&self, motion: &Motion) -> Result<Vec<Regressor>, ServoError> {
         let inertia = Regressor { name: "M".to_owned(), unit: "kg", values: motion.acceleration_m_s2.clone() };
-        let friction = self.friction.regressors(&motion.velocity_m_s, &motion.position_m, load_n)?;
+        let friction = self.friction.regressors(&motion.velocity_m_s, &motion.position_m)?;
         Ok(std::iter::once(inertia).chain(friction).collect())
     }
 

@@ -66,15 +66,6 @@ pub enum ServoError {
         must: &'static str,
     },
 
-    /// A column that the model needs is not in the log.
-    #[error("the model needs {column}, which the log does not have; {instead}")]
-    Missing {
-        /// The column.
-        column: &'static str,
-        /// What else can be done.
-        instead: &'static str,
-    },
-
     /// The simulation ran away: the parameters are far off, or the loop is not the one that was recorded.
     #[error("the simulated axis diverges at {time_s} s; check the loop's gains and the starting values")]
     RanAway {

@@ -31,18 +31,8 @@ const RUN_AWAY_M: f64 = 1e3;
 /// A motor and a load joined by a chain, at the chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwoMass {
-    /// `J_m (n/R)²`, kg.
-    pub motor_mass_kg: f64,
-    /// `M`, kg.
-    pub load_mass_kg: f64,
-    /// `K_e`, N/m.
-    pub stiffness_n_m: f64,
-    /// `B_e`, N s/m.
-    pub damping_n_s_m: f64,
-    /// `B_m (n/R)²`, N s/m.
-    pub motor_viscous_n_s_m: f64,
-    /// `B`, N s/m.
-    pub load_viscous_n_s_m: f64,
+    /// The linear part.
+    pub masses: TwoMasses,
     /// `C_m n/R`, N.
     pub motor_coulomb_n: f64,
     /// `C`, N.
@@ -60,46 +50,19 @@ pub struct TwoMass {
 }
 
 impl TwoMass {
-    /// No force but the motor's, no mass: for `..TwoMass::BARE` where gear, drag and delay play no part.
-    pub const BARE: Self = Self {
-        motor_mass_kg: 0.0,
-        load_mass_kg: 0.0,
-        stiffness_n_m: 0.0,
-        damping_n_s_m: 0.0,
-        motor_viscous_n_s_m: 0.0,
-        load_viscous_n_s_m: 0.0,
-        motor_coulomb_n: 0.0,
-        load_coulomb_n: 0.0,
-        force_per_volt_n_v: 0.0,
-        efficiency_forward: 1.0,
-        efficiency_backward: 1.0,
-        load_drag_n_s2_m2: 0.0,
-        delay_s: 0.0,
-    };
-
-    /// The linear part.
+    /// No force but the motor's, and none of that: for `..TwoMass::of(masses)` where friction, gear, drag or delay play no part.
     #[must_use]
-    pub fn masses(&self) -> TwoMasses {
-        TwoMasses {
-            motor_mass_kg: self.motor_mass_kg,
-            load_mass_kg: self.load_mass_kg,
-            stiffness_n_m: self.stiffness_n_m,
-            damping_n_s_m: self.damping_n_s_m,
-            motor_viscous_n_s_m: self.motor_viscous_n_s_m,
-            load_viscous_n_s_m: self.load_viscous_n_s_m,
+    pub const fn of(masses: TwoMasses) -> Self {
+        Self {
+            masses,
+            motor_coulomb_n: 0.0,
+            load_coulomb_n: 0.0,
+            force_per_volt_n_v: 0.0,
+            efficiency_forward: 1.0,
+            efficiency_backward: 1.0,
+            load_drag_n_s2_m2: 0.0,
+            delay_s: 0.0,
         }
-    }
-
-    /// Frequency at which the load swings against a held motor, `√(K/M)/2π`, Hz.
-    #[must_use]
-    pub fn antiresonance_hz(&self) -> f64 {
-        self.masses().antiresonance_hz()
-    }
-
-    /// Frequency at which both swing against each other, Hz.
-    #[must_use]
-    pub fn resonance_hz(&self) -> f64 {
-        self.masses().resonance_hz()
     }
 }
 
@@ -161,9 +124,9 @@ impl Stepper {
     /// [`ServoError::Setting`] for a mass or stiffness that is not positive, Coulomb friction that drives, a gear that gives
     /// power, or a negative delay.
     pub fn new(axis: &TwoMass, sample_s: f64, longest_step_s: f64) -> Result<Self, ServoError> {
-        let TwoMass { motor_mass_kg: m, load_mass_kg: load, stiffness_n_m: k, damping_n_s_m: d, .. } = *axis;
+        let masses = axis.masses;
         let limit_n = [axis.motor_coulomb_n, axis.load_coulomb_n];
-        let numbers = [m, load, k];
+        let numbers = [masses.motor_mass_kg, masses.load_mass_kg, masses.stiffness_n_m];
         let is_possible = numbers.iter().all(|x| x.is_finite() && *x > 0.0) && limit_n.iter().all(|c| *c >= 0.0);
         if !is_possible {
             let found = numbers.into_iter().chain(limit_n).fold(f64::INFINITY, f64::min);
@@ -181,7 +144,6 @@ impl Stepper {
             return Err(ServoError::Setting { what: "delay (s)", found: axis.delay_s, must });
         }
         let steps = (sample_s / longest_step_s - 1e-9).ceil().max(1.0);
-        let masses = axis.masses();
         let over = |step_s: f64| both(&masses, step_s, 0.5 * (drive + driven));
         let late = axis.delay_s / sample_s;
         Ok(Self {
@@ -190,8 +152,8 @@ impl Stepper {
             sample: over(sample_s),
             limit_n,
             gear_loss: 0.5 * (drive - driven),
-            stiffness_n_m: k,
-            damping_n_s_m: d,
+            stiffness_n_m: masses.stiffness_n_m,
+            damping_n_s_m: masses.damping_n_s_m,
             load_drag_n_s2_m2: axis.load_drag_n_s2_m2,
             force_per_volt_n_v: axis.force_per_volt_n_v,
             delay: (late as usize, late.fract()),
@@ -359,14 +321,15 @@ mod tests {
     use super::*;
 
     fn axis() -> TwoMass {
-        TwoMass {
+        let masses = TwoMasses {
             motor_mass_kg: 2.0,
             load_mass_kg: 4.0,
             stiffness_n_m: 2.0e4,
             damping_n_s_m: 10.0,
-            force_per_volt_n_v: 6.0,
-            ..TwoMass::BARE
-        }
+            motor_viscous_n_s_m: 0.0,
+            load_viscous_n_s_m: 0.0,
+        };
+        TwoMass { force_per_volt_n_v: 6.0, ..TwoMass::of(masses) }
     }
 
     #[test]
@@ -379,7 +342,8 @@ mod tests {
 
     #[test]
     fn steps_of_any_length_agree_where_friction_does_not_reverse() {
-        let axis = TwoMass { motor_coulomb_n: 1.0, load_coulomb_n: 1.5, load_viscous_n_s_m: 2.0, ..axis() };
+        let masses = TwoMasses { load_viscous_n_s_m: 2.0, ..axis().masses };
+        let axis = TwoMass { masses, motor_coulomb_n: 1.0, load_coulomb_n: 1.5, ..axis() };
         let coarse = Stepper::new(&axis, 1e-3, 1e-3).unwrap().run(&vec![2.0; 3000], 0.0).unwrap();
         let fine = Stepper::new(&axis, 1e-3, 1e-5).unwrap().run(&vec![2.0; 3000], 0.0).unwrap();
         // Only the piece in which the load breaks away is rounded: 1.5 N over 1/32 ms on 6 kg, coasting for 3 s.
@@ -397,8 +361,8 @@ mod tests {
     #[test]
     fn both_modes_have_their_textbook_frequencies() {
         // √(K/M) and √(K(1/m + 1/M)).
-        assert!((axis().antiresonance_hz() - 5000.0_f64.sqrt() / TAU).abs() < 1e-12);
-        assert!((axis().resonance_hz() - 15000.0_f64.sqrt() / TAU).abs() < 1e-12);
+        assert!((axis().masses.antiresonance_hz() - 5000.0_f64.sqrt() / TAU).abs() < 1e-12);
+        assert!((axis().masses.resonance_hz() - 15000.0_f64.sqrt() / TAU).abs() < 1e-12);
     }
 
     /// Driven up by a constant force, the gear's load is the chain's force over η; coasting, η_b times it.

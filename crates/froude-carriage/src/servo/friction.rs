@@ -5,7 +5,6 @@
 //! | viscous       | `v`, or `v` of each direction         | `F_v`; `F_v+`, `F_v-`          |
 //! | Coulomb       | `sgn v`, or one of each direction     | `F_c`; `F_c+`, `F_c-`          |
 //! | over position | `sgn v` times a hat over each knot    | `F_c(y = …)`, linear between   |
-//! | over load     | `N sgn v`                             | `mu`                           |
 //! | Stribeck      | `sgn v exp(−(v/v_s)²)`                | `F_s`, with `v_s` given         |
 //! | offset        | 1                                     | `offset`                       |
 //!
@@ -25,8 +24,6 @@ pub struct Friction {
     pub stribeck_speed_m_s: Option<f64>,
     /// Knots of Coulomb friction over position, m, rising; empty for one number everywhere.
     pub knots_m: Vec<f64>,
-    /// Coulomb friction in proportion to the load on the guides.
-    pub is_loaded: bool,
 }
 
 /// One column of the regression.
@@ -53,17 +50,12 @@ impl Friction {
         Self { is_asymmetric: true, ..Self::default() }
     }
 
-    /// Columns at every sample, from speed, position and (if needed) load.
+    /// Columns at every sample, from speed and position.
     ///
     /// # Errors
     ///
-    /// [`ServoError::Missing`] without the load, [`ServoError::Setting`] for knots that do not rise or a speed that is not positive.
-    pub fn regressors(
-        &self,
-        velocity_m_s: &[f64],
-        position_m: &[f64],
-        load_n: Option<&[f64]>,
-    ) -> Result<Vec<Regressor>, ServoError> {
+    /// [`ServoError::Setting`] for knots that do not rise or a speed that is not positive.
+    pub fn regressors(&self, velocity_m_s: &[f64], position_m: &[f64]) -> Result<Vec<Regressor>, ServoError> {
         self.check()?;
         let sign: Vec<f64> = velocity_m_s.iter().map(|v| signum(*v)).collect();
         let mut out = Vec::new();
@@ -79,18 +71,13 @@ impl Friction {
             }
         } else {
             add("F_v".to_owned(), "N s/m", velocity_m_s.to_vec());
-            if self.knots_m.is_empty() && !self.is_loaded {
+            if self.knots_m.is_empty() {
                 add("F_c".to_owned(), "N", sign.clone());
             }
         }
         for (k, &knot_m) in self.knots_m.iter().enumerate() {
             let hats = position_m.iter().map(|y| hat(&self.knots_m, k, *y));
             add(format!("F_c(y = {knot_m} m)"), "N", hats.zip(&sign).map(|(h, s)| h * s).collect());
-        }
-        if self.is_loaded {
-            let instead = "leave friction over load out";
-            let load = load_n.ok_or(ServoError::Missing { column: "the load on the guides", instead })?;
-            add("mu".to_owned(), "1", load.iter().zip(&sign).map(|(n, s)| n * s).collect());
         }
         if let Some(speed_m_s) = self.stribeck_speed_m_s {
             let bump = |v: &f64| signum(*v) * (-(v / speed_m_s).powi(2)).exp();
@@ -166,21 +153,11 @@ mod tests {
     #[test]
     fn the_columns_of_both_directions_add_up_to_the_symmetric_ones() {
         let v = [0.3, -0.2, 0.0, 1.0];
-        let one = Friction::symmetric().regressors(&v, &v, None).unwrap();
-        let two = Friction::asymmetric().regressors(&v, &v, None).unwrap();
+        let one = Friction::symmetric().regressors(&v, &v).unwrap();
+        let two = Friction::asymmetric().regressors(&v, &v).unwrap();
         for i in 0..4 {
             assert_eq!(one[0].values[i], two[0].values[i] + two[1].values[i]);
             assert_eq!(one[1].values[i], two[2].values[i] + two[3].values[i]);
         }
-    }
-
-    #[test]
-    fn friction_over_load_without_a_load_says_so() {
-        let friction = Friction { is_loaded: true, ..Friction::symmetric() };
-        let error = friction.regressors(&[1.0], &[0.0], None).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "the model needs the load on the guides, which the log does not have; leave friction over load out"
-        );
     }
 }

@@ -17,7 +17,6 @@
 
 use froude_fit::autocorrelation::{autocorrelation, integrated_time};
 use froude_fit::diagnostics::ljung_box;
-use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
 use froude_fit::long_run::{self, automatic_lag};
 use froude_fit::stream::Solution;
@@ -32,29 +31,15 @@ use crate::servo::rows::Rows;
 /// Lags of the whiteness test.
 const LAGS: usize = 25;
 
-/// Shortest block, s.
-const SHORTEST_BLOCK_S: f64 = 1.0;
+/// Length of a block, s: shorter ones do not contain the correlation of a servo.
+pub(crate) const BLOCK_S: f64 = 1.0;
 
-/// How intervals are made.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct IntervalOptions {
-    /// Length of a block, s, 1 or more.
-    pub block_s: f64,
-    /// How many resamples.
-    pub resamples: usize,
-    /// Seed of the resamples.
-    pub seed: u64,
-    /// Lag of HAC, s; `None` for the automatic one.
-    pub hac_lag_s: Option<f64>,
-    /// Probability of the intervals.
-    pub confidence: f64,
-}
+/// Probability of the intervals.
+pub(crate) const CONFIDENCE: f64 = 0.95;
 
-impl Default for IntervalOptions {
-    fn default() -> Self {
-        Self { block_s: 1.0, resamples: 2000, seed: 1, hac_lag_s: None, confidence: 0.95 }
-    }
-}
+/// How many resamples of blocks, and their seed.
+const RESAMPLES: u64 = 2000;
+const SEED: u64 = 1;
 
 /// Whether residuals are white.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,25 +73,19 @@ pub fn whiteness(residuals: &[f64], rate_hz: f64) -> Option<Whiteness> {
     Some(Whiteness { r1, ljung_box: statistic, p, lags: LAGS, correlation_time_s })
 }
 
-/// Standard deviations of the coefficients, three ways.
+/// How far the coefficients scatter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spread {
-    /// White residuals.
-    pub classical: Vec<f64>,
-    /// HAC.
+    /// Standard deviations by HAC.
     pub hac: Vec<f64>,
     /// Lag of HAC, s.
     pub hac_lag_s: f64,
-    /// Moving blocks.
-    pub blocks: Vec<f64>,
     /// Length of a block, s.
     pub block_s: f64,
     /// Runs whose scatter stands in the place of the blocks'; `None` for a single record.
     pub runs: Option<usize>,
     /// Degrees of freedom of each interval: blocks side by side less coefficients, or those of the clusters' variance.
     pub dof: Vec<f64>,
-    /// Half-width of each interval over the standard deviation of the blocks.
-    pub coverage_factor: Vec<f64>,
     /// Covariance over the blocks' resamples, or over the runs.
     pub covariance: Mat<f64>,
 }
@@ -119,33 +98,22 @@ impl Spread {
     }
 }
 
-/// Standard deviations of a least-squares solution of `rows`.
-///
-/// `columns` are those of the rows, or the instruments' projections of them: rows are then refitted the same way.
+/// Scatter of a least-squares solution of `rows`.
 ///
 /// # Errors
 ///
-/// [`ServoError::Setting`] for a block below 1 s, [`ServoError::TooFewRows`] where the record has too few blocks.
-pub fn spread(rows: &Rows, solution: &Solution, options: &IntervalOptions) -> Result<Spread, ServoError> {
+/// [`ServoError::TooFewRows`] where the record has too few blocks.
+pub fn spread(rows: &Rows, solution: &Solution, hac_lag_s: Option<f64>) -> Result<Spread, ServoError> {
     let residuals = rows.residuals_n(&solution.coefficients);
     let refit = |chosen: &[usize]| {
         let pick = |column: &[f64]| chosen.iter().map(|&i| column[i]).collect::<Vec<f64>>();
         let columns: Vec<Vec<f64>> = rows.columns.iter().map(|c| pick(c)).collect();
         solve(&columns, &pick(&rows.force_n)).ok().map(|s| s.coefficients)
     };
-    let (hac, hac_lag_s) = hac(&rows.columns, &residuals, &inverse_gram(solution), rows.rate_hz, options.hac_lag_s);
-    let over = over_blocks(residuals.len(), rows.rate_hz, solution.coefficients.len(), options, refit)?;
-    Ok(Spread {
-        classical: solution.standard.clone(),
-        hac,
-        hac_lag_s,
-        blocks: diagonal_roots(&over.covariance),
-        block_s: over.block_s,
-        runs: None,
-        dof: vec![over.dof; solution.coefficients.len()],
-        coverage_factor: vec![coverage_factor(options.confidence, over.dof); solution.coefficients.len()],
-        covariance: over.covariance,
-    })
+    let (hac, hac_lag_s) = hac(&rows.columns, &residuals, &inverse_gram(solution), rows.rate_hz, hac_lag_s);
+    let over = over_blocks(residuals.len(), rows.rate_hz, solution.coefficients.len(), refit)?;
+    let dof = vec![over.dof; solution.coefficients.len()];
+    Ok(Spread { hac, hac_lag_s, block_s: over.block_s, runs: None, dof, covariance: over.covariance })
 }
 
 /// As [`spread`], the runs (ranges of rows) being the clusters.
@@ -153,25 +121,15 @@ pub(crate) fn over_runs(
     rows: &Rows,
     solution: &Solution,
     runs: &[std::ops::Range<usize>],
-    options: &IntervalOptions,
+    hac_lag_s: Option<f64>,
 ) -> Result<Spread, ServoError> {
     let residuals = rows.residuals_n(&solution.coefficients);
-    let (hac, hac_lag_s) = hac(&rows.columns, &residuals, &inverse_gram(solution), rows.rate_hz, options.hac_lag_s);
+    let (hac, hac_lag_s) = hac(&rows.columns, &residuals, &inverse_gram(solution), rows.rate_hz, hac_lag_s);
     let clustered = Clustered::new(&rows.columns, &residuals, runs, None, Enlarged::Jackknife)?;
     let p = solution.coefficients.len();
     let of_one = |j: usize| clustered.dof(&(0..p).map(|k| f64::from(u8::from(k == j))).collect::<Vec<f64>>());
-    let dof: Vec<f64> = (0..p).map(of_one).collect();
-    Ok(Spread {
-        classical: solution.standard.clone(),
-        hac,
-        hac_lag_s,
-        blocks: diagonal_roots(&clustered.covariance),
-        block_s: options.block_s,
-        runs: Some(runs.len()),
-        coverage_factor: dof.iter().map(|dof| coverage_factor(options.confidence, *dof)).collect(),
-        dof,
-        covariance: clustered.covariance,
-    })
+    let dof = (0..p).map(of_one).collect();
+    Ok(Spread { hac, hac_lag_s, block_s: BLOCK_S, runs: Some(runs.len()), dof, covariance: clustered.covariance })
 }
 
 /// HAC standard deviations, and the lag used, s.
@@ -212,22 +170,15 @@ pub(crate) fn over_blocks(
     rows: usize,
     rate_hz: f64,
     p: usize,
-    options: &IntervalOptions,
     refit: impl Fn(&[usize]) -> Option<Vec<f64>> + Sync,
 ) -> Result<OverBlocks, ServoError> {
-    let is_long = options.block_s >= SHORTEST_BLOCK_S;
-    if !is_long {
-        let must = "blocks must last 1 s or more: shorter ones do not contain the correlation of a servo";
-        return Err(ServoError::Setting { what: "block (s)", found: options.block_s, must });
-    }
-    let block = (options.block_s * rate_hz).ceil() as usize;
+    let block = (BLOCK_S * rate_hz).ceil() as usize;
     let needed = block * (p + 2);
     if rows < needed {
         return Err(ServoError::TooFewRows { rows, needed });
     }
-    let blocks = MovingBlocks::new(rows, block, options.seed)?;
-    let draws: Vec<Vec<f64>> =
-        (0..options.resamples as u64).into_par_iter().filter_map(|k| refit(&blocks.resample(k))).collect();
+    let blocks = MovingBlocks::new(rows, block, SEED)?;
+    let draws: Vec<Vec<f64>> = (0..RESAMPLES).into_par_iter().filter_map(|k| refit(&blocks.resample(k))).collect();
     let n = draws.len() as f64;
     let mean: Vec<f64> = (0..p).map(|j| draws.iter().map(|d| d[j]).sum::<f64>() / n).collect();
     let covariance =

@@ -37,8 +37,6 @@ pub struct ServoLog {
     pub position_m: Vec<f64>,
     /// Command to the drive, V.
     pub command_v: Vec<f64>,
-    /// Load that presses on the guides (weight less buoyancy), N; needed by friction over load.
-    pub load_n: Option<Vec<f64>>,
 }
 
 impl ServoLog {
@@ -52,8 +50,7 @@ impl ServoLog {
         if n < 3 {
             return Err(ServoError::TooFewRows { rows: n, needed: 3 });
         }
-        let columns = [("position", &self.position_m), ("command", &self.command_v)].into_iter();
-        for (column, values) in columns.chain(self.load_n.as_ref().map(|load| ("load", load))) {
+        for (column, values) in [("position", &self.position_m), ("command", &self.command_v)] {
             if values.len() != n {
                 return Err(ServoError::Length { column, found: values.len(), expected: n });
             }
@@ -72,11 +69,6 @@ impl ServoLog {
     #[must_use]
     pub fn part(&self, rows: std::ops::Range<usize>) -> Self {
         let of = |column: &Vec<f64>| column[rows.clone()].to_vec();
-        Self {
-            time_s: of(&self.time_s),
-            position_m: of(&self.position_m),
-            command_v: of(&self.command_v),
-            load_n: self.load_n.as_ref().map(of),
-        }
+        Self { time_s: of(&self.time_s), position_m: of(&self.position_m), command_v: of(&self.command_v) }
     }
 }

@@ -27,49 +27,15 @@ use froude_signal::stream::{Differences, Link, SecondDifferences, ZeroPhase};
 use crate::servo::chain::{Chain, MOST_NEAR_REST, Motion};
 use crate::servo::error::ServoError;
 use crate::servo::excitation::{Column, excitation};
-use crate::servo::interval::diagonal_roots;
+use crate::servo::interval::{BLOCK_S, diagonal_roots};
 use crate::servo::regression::{inverse_gram, solve};
+use crate::servo::report::{NO_RANGE, RigidFit, coefficients, negative, widened};
 
 /// Samples taken in at a time, so that the memory does not grow with a chunk.
 const BITE: usize = 8192;
 
 /// Rows of the beginning that scores are taken from, at least.
 const BEGINNING: usize = 4096;
-
-/// What a long record says about an axis.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LongReport {
-    /// Name and unit of each coefficient, in the order of the regression.
-    pub names: Vec<(String, &'static str)>,
-    /// Values.
-    pub coefficients: Vec<f64>,
-    /// Standard deviations if residuals were white.
-    pub classical: Vec<f64>,
-    /// Standard deviations by HAC, including the bias that a disturbance can cause.
-    pub hac: Vec<f64>,
-    /// Their covariance.
-    pub covariance: Mat<f64>,
-    /// Degrees of freedom of that, 1.5 n/(lag + 1): Bartlett's window at frequency zero (Priestley 1981, 6.2).
-    pub dof: f64,
-    /// Lag of HAC, s.
-    pub hac_lag_s: f64,
-    /// Standard deviation of the residuals, N.
-    pub sigma_n: f64,
-    /// `‖force − model‖/‖force‖`.
-    pub relative_force_error: f64,
-    /// Least and largest value of each regressor.
-    pub ranges: Vec<[f64; 2]>,
-    /// Coefficients that the motion does not determine, which have no interval, and a motion that would determine them.
-    pub excitation: Vec<String>,
-    /// Whether the motion determines each coefficient.
-    pub is_told: Vec<bool>,
-    /// How the rows of the regression were made, in words.
-    pub preparation: String,
-    /// Rows of the regression.
-    pub n_rows: usize,
-    /// Their rate, Hz.
-    pub rate_hz: f64,
-}
 
 /// An identification under way.
 ///
@@ -88,11 +54,11 @@ pub struct LongReport {
 ///             (6.0 * a + 2.0 * v + 2.5 * v.signum()) / 6.0
 ///         })
 ///         .collect();
-///     servo.push(&position_m, &command_v, None)?;
+///     servo.push(&position_m, &command_v)?;
 /// }
-/// let report = servo.finish()?;
-/// assert_eq!(report.names[0].0, "M");
-/// assert!((report.coefficients[0] - 6.0).abs() < 0.01);
+/// let fit = servo.finish()?;
+/// assert_eq!(fit.coefficients[0].name, "M");
+/// assert!((fit.coefficients[0].value - 6.0).abs() < 0.01);
 /// # Ok::<(), froude_carriage::servo::ServoError>(())
 /// ```
 #[derive(Debug)]
@@ -107,8 +73,6 @@ pub struct LongServo {
     acceleration: Acceleration,
     /// Filtered and differentiated, not yet made into regressors; the three end at different samples.
     motion: Motion,
-    /// Load on the guides of those samples.
-    load_n: Vec<f64>,
     /// Force of the samples whose motion is not yet complete.
     force_n: Vec<f64>,
     /// The command before the next one.
@@ -174,7 +138,7 @@ struct Decimated {
 impl LongServo {
     /// Begins a record sampled at `rate_hz`.
     ///
-    /// HAC's lag is the chain's `hac_lag_s`, or the length of its blocks where that is left open: the automatic lag needs
+    /// HAC's lag is the chain's `hac_lag_s`, or the length of a block where that is left open: the automatic lag needs
     /// the residuals first.
     ///
     /// # Errors
@@ -183,7 +147,7 @@ impl LongServo {
     pub fn new(chain: &Chain, rate_hz: f64) -> Result<Self, ServoError> {
         let low_pass = butterworth::low_pass(chain.filter_order, chain.corner_hz, rate_hz)?;
         let row_rate_hz = rate_hz / chain.decimation as f64;
-        let lag_s = chain.intervals.hac_lag_s.unwrap_or(chain.intervals.block_s);
+        let lag_s = chain.hac_lag_s.unwrap_or(BLOCK_S);
         if !(0.0..f64::INFINITY).contains(&lag_s) {
             return Err(ServoError::Setting {
                 what: "lag of HAC (s)",
@@ -192,7 +156,7 @@ impl LongServo {
             });
         }
         let none = Motion { position_m: Vec::new(), velocity_m_s: Vec::new(), acceleration_m_s2: Vec::new() };
-        let names: Vec<_> = (chain.regressors(&none, Some(&[]))?.into_iter()).map(|r| (r.name, r.unit)).collect();
+        let names: Vec<_> = (chain.regressors(&none)?.into_iter()).map(|r| (r.name, r.unit)).collect();
         let decimator = Decimator::new(chain.decimation)?;
         let trim = (chain.trim_s * row_rate_hz).round() as usize;
         Ok(Self {
@@ -203,7 +167,6 @@ impl LongServo {
             velocity: Differences::new(rate_hz.recip())?,
             acceleration: Acceleration::new(chain, rate_hz)?,
             motion: none,
-            load_n: Vec::new(),
             force_n: Vec::new(),
             before_v: None,
             force: decimator.clone(),
@@ -220,31 +183,25 @@ impl LongServo {
             squares_n2: 0.0,
             squares: vec![0.0; names.len()],
             fitted: 0,
-            ranges: vec![[f64::INFINITY, f64::NEG_INFINITY]; names.len()],
+            ranges: vec![NO_RANGE; names.len()],
             chain: chain.clone(),
             names,
         })
     }
 
-    /// Takes the next samples; the load on the guides is needed by friction over load only.
+    /// Takes the next samples.
     ///
     /// # Errors
     ///
-    /// [`ServoError::Length`], [`ServoError::Missing`], [`ServoError::Fit`] for a number that is none.
-    pub fn push(&mut self, position_m: &[f64], command_v: &[f64], load_n: Option<&[f64]>) -> Result<(), ServoError> {
-        let load_n = load_n.filter(|_| self.chain.friction.is_loaded);
-        let columns = [("command", Some(command_v)), ("load", load_n)];
-        for (column, values) in columns.into_iter().filter_map(|(c, v)| v.map(|v| (c, v))) {
-            if values.len() != position_m.len() {
-                return Err(ServoError::Length { column, found: values.len(), expected: position_m.len() });
-            }
+    /// [`ServoError::Length`], [`ServoError::Fit`] for a number that is none.
+    pub fn push(&mut self, position_m: &[f64], command_v: &[f64]) -> Result<(), ServoError> {
+        let (found, expected) = (command_v.len(), position_m.len());
+        if found != expected {
+            return Err(ServoError::Length { column: "command", found, expected });
         }
         for start in (0..position_m.len()).step_by(BITE) {
             let bite = start..position_m.len().min(start + BITE);
             self.taken += bite.len();
-            if let Some(load_n) = load_n {
-                self.load_n.extend_from_slice(&load_n[bite.clone()]);
-            }
             let command_v = &command_v[bite.clone()];
             self.force_n.extend(self.chain.force_n(command_v, self.before_v));
             self.before_v = command_v.last().copied();
@@ -274,9 +231,7 @@ impl LongServo {
             velocity_m_s: part(velocity_m_s),
             acceleration_m_s2: part(acceleration_m_s2),
         };
-        let load_n = self.load_n.get(..n).filter(|_| self.chain.friction.is_loaded);
-        let mut regressors = self.chain.regressors(&motion, load_n)?;
-        self.load_n.drain(..n.min(self.load_n.len()));
+        let mut regressors = self.chain.regressors(&motion)?;
         let mut force_n: Vec<f64> = self.force_n.drain(..n).collect();
         let near = self.chain.near_rest(&motion);
         self.near_rest.take(&near, &mut self.decimated.near_rest);
@@ -312,7 +267,7 @@ impl LongServo {
         self.windows.push(&regressors, response);
         self.squares_n2 += response.iter().map(|f| f * f).sum::<f64>();
         for (range, column) in self.ranges.iter_mut().zip(&regressors) {
-            *range = column.iter().fold(*range, |[low, high], x| [low.min(*x), high.max(*x)]);
+            *range = widened(*range, column);
         }
         for (squares, column) in self.squares.iter_mut().zip(&regressors) {
             *squares += column.iter().map(|x| x * x).sum::<f64>();
@@ -325,13 +280,14 @@ impl LongServo {
         Ok(())
     }
 
-    /// Ends the record.
+    /// Ends the record. Its intervals are those of HAC, with 1.5 n/(lag + 1) degrees of freedom: Bartlett's window at frequency zero (Priestley
+    /// 1981, 6.2).
     ///
     /// # Errors
     ///
     /// [`ServoError::TooFewRows`], [`ServoError::Signal`] for a record shorter than the filter, [`ServoError::Fit`] where
     /// it does not determine the coefficients.
-    pub fn finish(mut self) -> Result<LongReport, ServoError> {
+    pub fn finish(mut self) -> Result<RigidFit, ServoError> {
         let total = self.taken.div_ceil(self.chain.decimation);
         let (rows, needed) = (total.saturating_sub(2 * self.trim), self.names.len() + 2);
         if rows < needed {
@@ -376,22 +332,24 @@ impl LongServo {
             covariance += &found.moved;
             (weak, is_told) = (found.findings, found.is_told);
         }
-        Ok(LongReport {
+        let hac = diagonal_roots(&covariance);
+        let dof = vec![(1.5 * windows).min(solution.dof); p];
+        let coefficients = coefficients(&self.names, &solution, [&hac, &hac, &dof], &is_told);
+        Ok(RigidFit {
+            findings: negative(&coefficients).collect(),
             excitation: weak,
-            is_told,
-            hac: diagonal_roots(&covariance),
+            coefficients,
             covariance,
-            dof: (1.5 * windows).min(solution.dof),
-            relative_force_error: (solution.residual_squares / self.squares_n2).sqrt(),
+            dof,
+            pieces: format!("HAC with a lag of {:.1} s", self.windows.lag as f64 / rate_hz),
+            runs: None,
             ranges: self.ranges,
-            hac_lag_s: self.windows.lag as f64 / rate_hz,
-            names: self.names,
-            coefficients: solution.coefficients,
-            classical: solution.standard,
-            sigma_n: solution.sigma,
             preparation: self.chain.words(self.rate_hz),
             n_rows: rows,
             rate_hz,
+            relative_force_error: (solution.residual_squares / self.squares_n2).sqrt(),
+            sigma_n: solution.sigma,
+            condition_number: None,
         })
     }
 }
@@ -547,10 +505,11 @@ mod tests {
     use crate::servo::interval::hac;
     use crate::servo::log::ServoLog;
     use crate::servo::regression::least_squares;
+    use crate::servo::report::ServoCoefficient;
     use proptest::prelude::*;
 
     /// Two tones that reverse every few seconds, a command with friction, a ripple nobody records; 60 s at 1 kHz.
-    fn record(load_n: bool) -> ServoLog {
+    fn record() -> ServoLog {
         let time_s: Vec<f64> = (0..60_000).map(|i| 1e-3 * f64::from(i)).collect();
         let position_m = time_s.iter().map(|t| 0.2 * (1.3 * t).sin() + 0.1 * (3.1 * t).sin()).collect();
         let command_v = (time_s.iter())
@@ -560,8 +519,7 @@ mod tests {
                 (6.0 * a + 2.0 * v + 2.5 * v.signum() + 0.3 + 0.1 * (17.0 * t).sin()) / 6.0
             })
             .collect();
-        let load_n = load_n.then(|| time_s.iter().map(|t| 20.0 + (0.05 * t).sin()).collect());
-        ServoLog { time_s, position_m, command_v, load_n }
+        ServoLog { time_s, position_m, command_v }
     }
 
     /// Both sides round alike but in another order: some 6000 roundings times a condition of some 100 are 1.3e-10.
@@ -579,7 +537,7 @@ mod tests {
         let rows = chain.rows(log).unwrap();
         let whole = least_squares(&rows).unwrap();
         let residuals = rows.residuals_n(&whole.coefficients);
-        let lag_s = chain.intervals.hac_lag_s;
+        let lag_s = chain.hac_lag_s;
         let (mut expected, lag_s) = hac(&rows.columns, &residuals, &inverse_gram(&whole), rows.rate_hz, lag_s);
         if chain.is_moving {
             let rms = |x: &[f64]| (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt();
@@ -594,23 +552,26 @@ mod tests {
         let mut servo = LongServo::new(chain, 1000.0).unwrap();
         for start in (0..log.time_s.len()).step_by(cut) {
             let part = log.part(start..log.time_s.len().min(start + cut));
-            servo.push(&part.position_m, &part.command_v, part.load_n.as_deref()).unwrap();
+            servo.push(&part.position_m, &part.command_v).unwrap();
         }
-        let report = servo.finish().unwrap();
-        assert_eq!(report.n_rows, rows.force_n.len());
-        assert_eq!(report.names, rows.names);
-        assert!((report.hac_lag_s - lag_s).abs() < 1e-9);
-        same(&report.coefficients, &whole.coefficients);
-        same(&report.classical, &whole.standard);
-        same(&report.hac, &expected);
-        same(&[report.relative_force_error], &[rows.relative_error(&whole.coefficients)]);
+        assert_eq!(servo.windows.lag, (lag_s * rows.rate_hz).round() as usize);
+        let fit = servo.finish().unwrap();
+        assert_eq!(fit.n_rows, rows.force_n.len());
+        let own = |of: fn(&ServoCoefficient) -> f64| fit.coefficients.iter().map(of).collect::<Vec<f64>>();
+        for (c, (name, unit)) in fit.coefficients.iter().zip(&rows.names) {
+            assert_eq!((&c.name, c.unit), (name, *unit));
+        }
+        same(&own(|c| c.value), &whole.coefficients);
+        same(&own(|c| c.classical_std), &whole.standard);
+        same(&own(|c| c.hac_std), &expected);
+        same(&[fit.relative_force_error], &[rows.relative_error(&whole.coefficients)]);
     }
 
     #[test]
     fn however_it_is_cut_a_record_gives_what_it_gives_in_memory() {
         let mut chain = Chain::new(6.0, Friction::symmetric());
-        chain.intervals.hac_lag_s = Some(0.77);
-        let log = record(false);
+        chain.hac_lag_s = Some(0.77);
+        let log = record();
         for cut in [997, 10_000, 60_000] {
             compare(&log, &chain, cut);
         }
@@ -619,22 +580,22 @@ mod tests {
     #[test]
     fn any_log_gives_the_same_result_in_chunks_as_in_memory() {
         let mut chain = Chain::of_log(6.0, 1000.0, Friction::asymmetric());
-        chain.intervals.hac_lag_s = Some(0.77);
+        chain.hac_lag_s = Some(0.77);
         for cut in [997, 60_000] {
-            compare(&record(false), &chain, cut);
+            compare(&record(), &chain, cut);
         }
     }
 
     #[test]
     fn every_law_of_friction_and_a_lag_of_none() {
-        let log = record(true);
+        let log = record();
         for friction in [
             Friction::asymmetric(),
             Friction { knots_m: vec![-0.2, 0.0, 0.2], ..Friction::default() },
-            Friction { is_loaded: true, stribeck_speed_m_s: Some(0.05), ..Friction::default() },
+            Friction { stribeck_speed_m_s: Some(0.05), ..Friction::default() },
         ] {
             let mut chain = Chain::new(6.0, friction);
-            chain.intervals.hac_lag_s = Some(0.0);
+            chain.hac_lag_s = Some(0.0);
             compare(&log, &chain, 7001);
         }
     }
@@ -642,7 +603,7 @@ mod tests {
     #[test]
     fn a_record_of_a_moment_is_refused_with_both_numbers() {
         let mut servo = LongServo::new(&Chain::new(6.0, Friction::symmetric()), 1000.0).unwrap();
-        servo.push(&[0.0; 300], &[0.0; 300], None).unwrap();
+        servo.push(&[0.0; 300], &[0.0; 300]).unwrap();
         let error = servo.finish().unwrap_err();
         assert_eq!(error, ServoError::TooFewRows { rows: 0, needed: 6 });
     }

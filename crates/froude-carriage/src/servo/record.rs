@@ -17,13 +17,13 @@ use froude_fit::faer::Mat;
 use froude_fit::propagate::effective_dof;
 use froude_records::estimate::{
     Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed, OWN,
-    Output, Range, SharedError, Signs, Status, TypeA,
+    Range, SharedError, Signs, Status, TypeA,
 };
+use froude_records::number::finite;
 use indexmap::IndexMap;
 
-use crate::servo::long::LongReport;
 use crate::servo::motor::Drive;
-use crate::servo::report::{ServoCoefficient, ServoReport};
+use crate::servo::report::{RigidFit, ServoCoefficient};
 use crate::servo::scale::{ForcePerVolt, combined, errors_of};
 use crate::servo::two_mass::{CHAIN_PARAMETERS, FlexibleReport, radius_power};
 
@@ -32,58 +32,6 @@ pub const TWO_MASS: &str = "servo_two_mass";
 
 /// The load that the laws give.
 const LOAD: &str = "drive_force";
-
-/// A rigid model as an estimate of `source`; `friction` names its law, `gain` is what made volts into forces.
-#[must_use]
-pub fn rigid(source: &str, friction: &str, report: &ServoReport, gain: &ForcePerVolt<'_>) -> Estimate {
-    let fit = RigidFit {
-        coefficients: &report.coefficients,
-        dof: &report.spread.dof,
-        covariance: &report.spread.covariance,
-        pieces: if gain.drive.is_none() { with_bias(&report.spread.pieces()) } else { report.spread.pieces() },
-        sigma_n: report.sigma_n,
-        preparation: &report.preparation,
-        n_rows: report.n_rows,
-        relative_force_error: report.relative_force_error,
-        findings: &report.findings,
-    };
-    let recorded = recorded(source, friction, &fit, gain);
-    Estimate {
-        clusters: report.spread.runs.map(|n| Clusters { by: "run".to_owned(), n }),
-        interval: if report.spread.runs.is_some() { Interval::default() } else { of_one_excitation() },
-        derived: gain.drive.map_or_else(IndexMap::new, |drive| effective(report, drive)),
-        validity: validity(report.rows.names.iter().zip(&report.rows.columns).map(|((name, _), column)| {
-            let bounds = [f64::INFINITY, f64::NEG_INFINITY];
-            (name.as_str(), column.iter().fold(bounds, |[low, high], x| [low.min(*x), high.max(*x)]))
-        })),
-        diagnostics: Diagnostics { condition_number: report.condition_number, ..recorded.diagnostics },
-        ..recorded
-    }
-}
-
-/// The same of a record of hours, whose rows were not kept. `coefficients` are those of the report with their intervals.
-#[must_use]
-pub fn long(
-    source: &str,
-    friction: &str,
-    (report, coefficients): (&LongReport, &[ServoCoefficient]),
-    findings: &[String],
-    gain: &ForcePerVolt<'_>,
-) -> Estimate {
-    let fit = RigidFit {
-        coefficients,
-        dof: &vec![report.dof; coefficients.len()],
-        covariance: &report.covariance,
-        pieces: with_bias(&format!("HAC with a lag of {:.1} s", report.hac_lag_s)),
-        sigma_n: report.sigma_n,
-        preparation: &report.preparation,
-        n_rows: report.n_rows,
-        relative_force_error: report.relative_force_error,
-        findings,
-    };
-    let ranges = report.names.iter().zip(&report.ranges).map(|((name, _), range)| (name.as_str(), *range));
-    Estimate { validity: validity(ranges), interval: of_one_excitation(), ..recorded(source, friction, &fit, gain) }
-}
 
 /// What an interval of a log includes.
 fn with_bias(pieces: &str) -> String {
@@ -95,38 +43,27 @@ fn of_one_excitation() -> Interval {
     Interval { of: "excitation".to_owned(), ..Interval::default() }
 }
 
-/// The fit of a rigid model as its record wants it.
-struct RigidFit<'a> {
-    coefficients: &'a [ServoCoefficient],
-    dof: &'a [f64],
-    covariance: &'a Mat<f64>,
-    /// What was taken as one piece of evidence.
-    pieces: String,
-    sigma_n: f64,
-    preparation: &'a str,
-    n_rows: usize,
-    relative_force_error: f64,
-    findings: &'a [String],
-}
-
 /// Name of the law of a rigid model with this friction.
 #[must_use]
 pub fn law_of(friction: &str) -> String {
     format!("servo_{}", friction.replace(' ', "_"))
 }
 
-fn recorded(source: &str, friction: &str, fit: &RigidFit<'_>, gain: &ForcePerVolt<'_>) -> Estimate {
+/// A rigid model as an estimate of `source`; `friction` names its law, `gain` is what made volts into forces.
+#[must_use]
+pub fn rigid(source: &str, friction: &str, fit: &RigidFit, gain: &ForcePerVolt<'_>) -> Estimate {
     let method = law_of(friction);
     let names: Vec<String> = fit.coefficients.iter().map(|c| in_formulas(&c.name)).collect();
-    let coefficients = fit.coefficients.iter().zip(&names).zip(fit.dof).map(|((c, name), dof)| {
+    let coefficients = fit.coefficients.iter().zip(&names).zip(&fit.dof).map(|((c, name), dof)| {
         let label = (*name != c.name).then(|| c.name.clone());
-        let of_scatter = Coefficient { label, ..coefficient(c, finite(*dof)) };
+        let of_scatter = Coefficient { label, ..coefficient(c, *dof) };
         (name.clone(), combined(of_scatter, (c, *dof), &gain.scales, &radii))
     });
     let formula = formula(&names);
-    let constants = IndexMap::from([("force_per_volt".to_owned(), measured(gain.n_v, "N/V"))]);
-    let fewest = fit.dof.iter().copied().reduce(f64::min).and_then(finite);
-    let errors = errors_of(&gain.scales, fit.coefficients, &radii);
+    let constants = IndexMap::from([("force_per_volt".to_owned(), Measured::of(gain.n_v, "N/V"))]);
+    let fewest = finite(fit.dof.iter().copied().reduce(f64::min));
+    let errors = errors_of(&gain.scales, &fit.coefficients, &radii);
+    let pieces = if gain.drive.is_none() { with_bias(&fit.pieces) } else { fit.pieces.clone() };
     let exact = errors
         .is_empty()
         .then(|| "the force per volt is taken as exact: an error of it scales all coefficients alike; declare it by [[source.uncertainty]] with \
@@ -135,19 +72,20 @@ fn recorded(source: &str, friction: &str, fit: &RigidFit<'_>, gain: &ForcePerVol
     Estimate {
         id: format!("{source}/{method}"),
         source: source.to_owned(),
-        method: MethodUsed {
-            name: method.clone(),
-            version: 1,
-            words: format!("linear least squares; friction {friction}; {}", fit.preparation),
-        },
-        law: law(&method, formula, constants),
+        method: MethodUsed::of(&method, format!("linear least squares; friction {friction}; {}", fit.preparation)),
+        law: Law { constants, ..law(&method, formula) },
         coefficients: coefficients.collect(),
-        type_a: type_a(names, fit.covariance, fit.dof, format!("scatter of the residuals ({})", fit.pieces)),
+        type_a: type_a(names, &fit.covariance, &fit.dof, format!("scatter of the residuals ({pieces})")),
         errors,
-        sigma: IndexMap::from([(LOAD.to_owned(), measured(fit.sigma_n, "N"))]),
+        sigma: IndexMap::from([(LOAD.to_owned(), Measured::of(fit.sigma_n, "N"))]),
         dof: IndexMap::from([(LOAD.to_owned(), fewest)]),
         n_observations: fit.n_rows,
+        clusters: fit.runs.map(|n| Clusters::of("run", n)),
+        interval: if fit.runs.is_some() { Interval::default() } else { of_one_excitation() },
+        derived: gain.drive.map_or_else(IndexMap::new, |drive| effective(fit, drive)),
+        validity: validity(fit),
         diagnostics: Diagnostics {
+            condition_number: fit.condition_number,
             relative_residual: IndexMap::from([(LOAD.to_owned(), fit.relative_force_error)]),
             notes: exact.into_iter().chain(fit.findings.iter().cloned()).collect(),
             ..Diagnostics::default()
@@ -175,7 +113,7 @@ pub fn two_mass(source: &str, report: &FlexibleReport, drive: &Drive) -> Estimat
     };
     let coefficients = own.iter().enumerate().map(|(j, c)| {
         let (scatter, known) = (report.scatter[(j, j)].max(0.0), known(j, c));
-        let dof = finite(effective_dof(&[(scatter, report.dof[j]), (known, f64::INFINITY)]));
+        let dof = effective_dof(&[(scatter, report.dof[j]), (known, f64::INFINITY)]);
         let parts = Coefficient { type_a: Some(scatter.sqrt()), type_b: Some(known.sqrt()), ..coefficient(c, dof) };
         (c.name.clone(), parts)
     });
@@ -193,12 +131,8 @@ pub fn two_mass(source: &str, report: &FlexibleReport, drive: &Drive) -> Estimat
     Estimate {
         id: format!("{source}/{method}"),
         source: source.to_owned(),
-        method: MethodUsed {
-            name: method.to_owned(),
-            version: 1,
-            words: "prediction error of the motor's position, two masses and a chain".to_owned(),
-        },
-        law: law(method, None, IndexMap::new()),
+        method: MethodUsed::of(method, "prediction error of the motor's position, two masses and a chain"),
+        law: law(method, None),
         interval: of_one_excitation(),
         coefficients: coefficients.collect(),
         type_a: type_a(names, &report.scatter, &report.dof, "CR2 over stretches of the record".to_owned()),
@@ -225,15 +159,8 @@ fn on_the_chain() -> Estimate {
     }
 }
 
-fn law(name: &str, formula: Option<String>, constants: IndexMap<String, Measured>) -> Law {
-    let inputs = [("v_y", "m/s"), ("v_y_dot", "m/s^2")].map(|(name, unit)| (name.to_owned(), unit.to_owned()));
-    Law {
-        name: name.to_owned(),
-        version: 1,
-        inputs: inputs.into(),
-        outputs: IndexMap::from([(LOAD.to_owned(), Output { unit: "N".to_owned(), formula })]),
-        constants,
-    }
+fn law(name: &str, formula: Option<String>) -> Law {
+    Law::of(name, [("v_y", "m/s"), ("v_y_dot", "m/s^2")]).giving(LOAD, "N", formula)
 }
 
 /// A name as a formula can have it: a sign becomes a word.
@@ -262,36 +189,29 @@ fn formula(names: &[String]) -> Option<String> {
     Some(names.iter().map(of).collect::<Option<Vec<_>>>()?.join(" + "))
 }
 
-fn coefficient(c: &ServoCoefficient, dof: Option<f64>) -> Coefficient {
+fn coefficient(c: &ServoCoefficient, dof: f64) -> Coefficient {
     Coefficient {
-        label: None,
-        value: Some(c.value),
-        unit: c.unit.to_owned(),
-        status: Status::Free,
         nuisance: c.name == "offset",
-        standard_uncertainty: finite(c.block_std),
-        type_a: finite(c.block_std),
-        type_b: None,
-        interval_95: Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite())),
-        effective_dof: dof,
-        unconstrained: None,
-        range_95: None,
+        standard_uncertainty: finite(Some(c.block_std)),
+        type_a: finite(Some(c.block_std)),
+        interval_95: interval(c),
+        effective_dof: finite(Some(dof)),
+        ..Coefficient::of(Some(c.value), c.unit, Status::Free)
     }
 }
 
 fn derived(c: &ServoCoefficient, formula: String) -> Derived {
-    Derived {
-        formula,
-        value: Some(c.value),
-        unit: c.unit.to_owned(),
-        standard_uncertainty: finite(c.block_std),
-        interval_95: Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite())),
-    }
+    let standard_uncertainty = finite(Some(c.block_std));
+    Derived { standard_uncertainty, interval_95: interval(c), ..Derived::of(formula, Some(c.value), c.unit) }
+}
+
+fn interval(c: &ServoCoefficient) -> Option<[f64; 2]> {
+    Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite()))
 }
 
 /// J_eff, B_eff and C_eff, where the drive is declared. The radius that made a force of a torque makes it one again, and speeds rates: only K_T and
 /// the amplifier err in them.
-fn effective(report: &ServoReport, drive: &Drive) -> IndexMap<String, Derived> {
+fn effective(fit: &RigidFit, drive: &Drive) -> IndexMap<String, Derived> {
     let ratio = drive.motor.m_rad();
     let of = |c: ServoCoefficient| {
         let (from, power) = match c.name.as_str() {
@@ -299,11 +219,10 @@ fn effective(report: &ServoReport, drive: &Drive) -> IndexMap<String, Derived> {
             "B_eff" => ("F_v", 2),
             _ => ("F_c", 1),
         };
-        let dof =
-            report.coefficients.iter().zip(&report.spread.dof).find(|(own, _)| own.name == from).map(|(_, dof)| *dof);
+        let dof = fit.coefficients.iter().zip(&fit.dof).find(|(own, _)| own.name == from).map(|(_, dof)| *dof);
         let [torque_alone, _] = drive.scales();
         let dof = dof.unwrap_or(f64::INFINITY);
-        let whole = combined(coefficient(&c, finite(dof)), (&c, dof), &[torque_alone], &|_| 1.0);
+        let whole = combined(coefficient(&c, dof), (&c, dof), &[torque_alone], &|_| 1.0);
         let number = Derived {
             standard_uncertainty: whole.standard_uncertainty,
             interval_95: whole.interval_95,
@@ -311,21 +230,20 @@ fn effective(report: &ServoReport, drive: &Drive) -> IndexMap<String, Derived> {
         };
         (c.name.clone(), number)
     };
-    crate::servo::report::effective(report, &drive.motor).into_iter().map(of).collect()
+    crate::servo::report::effective(fit, &drive.motor).into_iter().map(of).collect()
 }
 
 /// Range of the speeds and accelerations of the rows, from those of the columns of the regression; a column of one direction is 0 in the other.
-fn validity<'a>(columns: impl Iterator<Item = (&'a str, [f64; 2])>) -> IndexMap<String, Range> {
+fn validity(fit: &RigidFit) -> IndexMap<String, Range> {
     let mut out: IndexMap<String, Range> = IndexMap::new();
-    for (name, [low, high]) in columns {
-        let (key, unit) = match name {
+    for (c, ends) in fit.coefficients.iter().zip(&fit.ranges) {
+        let (key, unit) = match c.name.as_str() {
             "M" => ("v_y_dot", "m/s^2"),
             "F_v" | "F_v+" | "F_v-" => ("v_y", "m/s"),
             _ => continue,
         };
-        if low <= high {
-            let range = out.entry(key.to_owned()).or_insert_with(|| Range { low, high, unit: unit.to_owned() });
-            (range.low, range.high) = (range.low.min(low), range.high.max(high));
+        if ends[0] <= ends[1] {
+            out.entry(key.to_owned()).or_insert_with(|| Range::of(*ends, unit)).include(*ends);
         }
     }
     out
@@ -335,17 +253,9 @@ fn validity<'a>(columns: impl Iterator<Item = (&'a str, [f64; 2])>) -> IndexMap<
 fn type_a(names: Vec<String>, covariance: &Mat<f64>, dof: &[f64], kind: String) -> Option<TypeA> {
     let matrix = rows_of(covariance);
     let is_finite = matrix.iter().flatten().all(|x| x.is_finite());
-    is_finite.then(|| TypeA { names, matrix, dof: dof.iter().map(|d| finite(*d)).collect(), kind })
+    is_finite.then(|| TypeA::of(names, matrix, dof, kind))
 }
 
 fn rows_of(m: &Mat<f64>) -> Vec<Vec<f64>> {
     (0..m.nrows()).map(|i| (0..m.ncols()).map(|j| m[(i, j)]).collect()).collect()
-}
-
-fn finite(x: f64) -> Option<f64> {
-    Some(x).filter(|x| x.is_finite())
-}
-
-fn measured(value: f64, unit: &str) -> Measured {
-    Measured { value, unit: unit.to_owned() }
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use froude_fit::diagnostics::condition_number;
+use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
 use froude_fit::stream::Solution;
 use froude_records::text::counted;
@@ -10,7 +11,7 @@ use froude_records::text::counted;
 use crate::servo::chain::Chain;
 use crate::servo::error::ServoError;
 use crate::servo::excitation::{Column, excitation};
-use crate::servo::interval::{Spread, Whiteness, diagonal_roots, over_runs, spread, whiteness};
+use crate::servo::interval::{CONFIDENCE, Spread, Whiteness, diagonal_roots, over_runs, spread, whiteness};
 use crate::servo::log::ServoLog;
 use crate::servo::motor::MotorSide;
 use crate::servo::regression::least_squares;
@@ -46,53 +47,86 @@ impl ServoCoefficient {
     }
 }
 
-/// What a record says about an axis.
+/// Coefficients with this scatter: standard deviations by HAC and of the blocks, and degrees of freedom. What the motion does not determine has
+/// no interval.
+pub(crate) fn coefficients(
+    names: &[(String, &'static str)],
+    solution: &Solution,
+    [hac, blocks, dof]: [&[f64]; 3],
+    is_told: &[bool],
+) -> Vec<ServoCoefficient> {
+    let of = |(j, (name, unit)): (usize, &(String, &'static str))| {
+        let [hac_std, block_std] = [hac[j], blocks[j]].map(|s| if is_told[j] { s } else { f64::NAN });
+        let std = [solution.standard[j], hac_std, block_std];
+        ServoCoefficient::new(
+            name,
+            unit,
+            solution.coefficients[j],
+            std,
+            coverage_factor(CONFIDENCE, dof[j]) * block_std,
+        )
+    };
+    names.iter().enumerate().map(of).collect()
+}
+
+/// The fit of a rigid model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ServoReport {
+pub struct RigidFit {
     /// Coefficients in the order of the regression.
     pub coefficients: Vec<ServoCoefficient>,
+    /// Their covariance, of what their intervals are made of.
+    pub covariance: Mat<f64>,
+    /// Degrees of freedom of each.
+    pub dof: Vec<f64>,
+    /// What was taken as one piece of evidence, in words.
+    pub pieces: String,
+    /// Runs that are these pieces; `None` of a single record.
+    pub runs: Option<usize>,
+    /// Least and largest value of each regressor.
+    pub ranges: Vec<[f64; 2]>,
     /// How the rows of the regression were made, in words.
     pub preparation: String,
     /// Rows of the regression.
     pub n_rows: usize,
     /// Their rate, Hz.
     pub rate_hz: f64,
-    /// Rate of the record, Hz.
-    pub record_rate_hz: f64,
     /// `‖force − model‖/‖force‖`.
     pub relative_force_error: f64,
     /// Standard deviation of the residuals, N.
     pub sigma_n: f64,
-    /// Condition number of the regressors in SI units; `None` when they are dependent.
+    /// Condition number of the regressors in SI units; `None` when they are dependent, or were not kept.
     pub condition_number: Option<f64>,
-    /// Whether residuals are white; `None` when there are none.
-    pub whiteness: Option<Whiteness>,
-    /// Standard deviations and how they were made.
-    pub spread: Spread,
-    /// Residuals, N, row by row.
-    pub residuals_n: Vec<f64>,
-    /// The rows themselves, run after run.
-    pub rows: Rows,
-    /// Which of them are of one run, each in its own time.
-    pub runs: Vec<Range<usize>>,
     /// What a reader must know before using the numbers.
     pub findings: Vec<String>,
     /// Coefficients that the motion does not determine, which have no interval, and a motion that would determine them.
     pub excitation: Vec<String>,
 }
 
-impl ServoReport {
+impl RigidFit {
     /// The coefficient of that name.
     #[must_use]
     pub fn coefficient(&self, name: &str) -> Option<&ServoCoefficient> {
         self.coefficients.iter().find(|c| c.name == name)
     }
+}
 
-    /// Values in the order of the regression.
-    #[must_use]
-    pub fn values(&self) -> Vec<f64> {
-        self.coefficients.iter().map(|c| c.value).collect()
-    }
+/// What a record says about an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ServoReport {
+    /// The fit.
+    pub fit: RigidFit,
+    /// Lag of HAC, s.
+    pub hac_lag_s: f64,
+    /// Length of a block, s.
+    pub block_s: f64,
+    /// Whether residuals are white; `None` when there are none.
+    pub whiteness: Option<Whiteness>,
+    /// Residuals, N, row by row.
+    pub residuals_n: Vec<f64>,
+    /// The rows themselves, run after run.
+    pub rows: Rows,
+    /// Which of them are of one run, each in its own time.
+    pub runs: Vec<Range<usize>>,
 }
 
 /// Identifies a rigid axis from one record.
@@ -117,17 +151,14 @@ impl ServoReport {
 ///         (6.0 * a + 2.0 * v + 2.5 * v.signum()) / 6.0
 ///     })
 ///     .collect();
-/// let log = ServoLog { time_s, position_m, command_v, ..ServoLog::default() };
+/// let log = ServoLog { time_s, position_m, command_v };
 /// let report = identify_servo(&log, &Chain::new(6.0, Friction::symmetric()))?;
-/// let mass_kg = report.coefficient("M").map_or(f64::NAN, |c| c.value);
+/// let mass_kg = report.fit.coefficient("M").map_or(f64::NAN, |c| c.value);
 /// assert!((mass_kg - 6.0).abs() < 0.01);
 /// # Ok::<(), froude_carriage::servo::ServoError>(())
 /// ```
 pub fn identify_servo(columns: &ServoLog, chain: &Chain) -> Result<ServoReport, ServoError> {
-    let rows = chain.rows(columns)?;
-    let mut report = of_rows(rows, chain)?;
-    report.record_rate_hz = columns.rate_hz()?;
-    Ok(report)
+    of_rows(chain.rows(columns)?, chain)
 }
 
 /// As [`identify_servo`], from rows that are already there, of one record.
@@ -137,7 +168,7 @@ pub fn identify_servo(columns: &ServoLog, chain: &Chain) -> Result<ServoReport, 
 /// [`ServoError`].
 pub fn of_rows(rows: Rows, chain: &Chain) -> Result<ServoReport, ServoError> {
     let solution = least_squares(&rows)?;
-    let spread = spread(&rows, &solution, &chain.intervals).map_err(|error| match error {
+    let spread = spread(&rows, &solution, chain.hac_lag_s).map_err(|error| match error {
         ServoError::TooFewRows { rows, needed } if chain.is_moving => ServoError::AtRest { rows, needed },
         other => other,
     })?;
@@ -171,7 +202,7 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
     }
     let by_blocks = |rows: Rows, why: &str| -> Result<ServoReport, ServoError> {
         let mut report = ServoReport { runs: ranges.clone(), ..of_rows(rows, chain)? };
-        report.findings.push(format!(
+        report.fit.findings.push(format!(
             "the intervals do not include what changes from run to run: {why}; they are those of blocks within the runs"
         ));
         Ok(report)
@@ -183,7 +214,7 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
         );
     }
     let solution = least_squares(&rows)?;
-    match over_runs(&rows, &solution, &ranges, &chain.intervals) {
+    match over_runs(&rows, &solution, &ranges, chain.hac_lag_s) {
         Ok(spread) => Ok(reported(rows, ranges.clone(), &solution, spread, chain)),
         Err(error @ ServoError::Alone { .. }) => by_blocks(rows, &error.to_string()),
         Err(error) => Err(error),
@@ -192,10 +223,10 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
 
 /// Sums at the motor's shaft (MCD Table II) of a rigid model: J_eff, B_eff, C_eff.
 #[must_use]
-pub fn effective(report: &ServoReport, motor: &MotorSide) -> Vec<ServoCoefficient> {
+pub fn effective(fit: &RigidFit, motor: &MotorSide) -> Vec<ServoCoefficient> {
     let scale = motor.m_rad();
     let moved = |from: &str, to: &str, unit: &'static str, factor: f64| {
-        report.coefficient(from).map(|c| ServoCoefficient {
+        fit.coefficient(from).map(|c| ServoCoefficient {
             name: to.to_owned(),
             unit,
             value: factor * c.value,
@@ -226,6 +257,7 @@ fn reported(
     let whiteness = whiteness(&residuals_n, rows.rate_hz);
     let design = Mat::from_fn(rows.force_n.len(), rows.columns.len(), |i, j| rows.columns[j][i]);
     let n = rows.force_n.len();
+    let pieces = spread.pieces();
     let columns: Vec<Column<'_>> = (rows.names.iter().enumerate())
         .map(|(j, (name, _))| Column {
             name,
@@ -235,54 +267,54 @@ fn reported(
         .collect();
     let mut weak = Vec::new();
     let mut is_told = vec![true; rows.names.len()];
-    let not_white = whiteness.as_ref().and_then(|w| not_white(w, &spread));
+    let not_white = whiteness.as_ref().and_then(|w| not_white(w, &spread.covariance, &solution.standard, &pieces));
     if chain.is_moving {
         let found = excitation(&columns, solution, n, rows.rate_hz, chain.corner_hz);
         spread.covariance += &found.moved;
-        spread.blocks = diagonal_roots(&spread.covariance);
         for (j, hac) in spread.hac.iter_mut().enumerate() {
             *hac = hac.hypot(found.moved[(j, j)].sqrt());
         }
         (weak, is_told) = (found.findings, found.is_told);
     }
-    let coefficients: Vec<ServoCoefficient> = (rows.names.iter().enumerate())
-        .map(|(j, (name, unit))| {
-            let value = solution.coefficients[j];
-            let [hac_std, block_std] = [spread.hac[j], spread.blocks[j]].map(|s| if is_told[j] { s } else { f64::NAN });
-            let std = [spread.classical[j], hac_std, block_std];
-            ServoCoefficient::new(name, unit, value, std, spread.coverage_factor[j] * block_std)
-        })
-        .collect();
-    ServoReport {
+    let blocks = diagonal_roots(&spread.covariance);
+    let coefficients = coefficients(&rows.names, solution, [&spread.hac, &blocks, &spread.dof], &is_told);
+    let fit = RigidFit {
         findings: not_white.into_iter().chain(negative(&coefficients)).collect(),
         excitation: weak,
+        coefficients,
+        covariance: spread.covariance,
+        dof: spread.dof,
+        pieces,
+        runs: spread.runs,
+        ranges: rows.columns.iter().map(|column| widened(NO_RANGE, column)).collect(),
         preparation: chain.words(rows.rate_hz * chain.decimation as f64),
-        n_rows: rows.force_n.len(),
+        n_rows: n,
         rate_hz: rows.rate_hz,
-        record_rate_hz: rows.rate_hz,
         relative_force_error: rows.relative_error(&solution.coefficients),
         sigma_n: solution.sigma,
         condition_number: condition_number(design.as_ref()).map(|(high, low)| high / low),
-        coefficients,
-        whiteness,
-        spread,
-        residuals_n,
-        rows,
-        runs,
-    }
+    };
+    ServoReport { fit, hac_lag_s: spread.hac_lag_s, block_s: spread.block_s, whiteness, residuals_n, rows, runs }
+}
+
+/// The range of no values, and one with the values of a column.
+pub(crate) const NO_RANGE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+pub(crate) fn widened(range: [f64; 2], column: &[f64]) -> [f64; 2] {
+    column.iter().fold(range, |[low, high], x| [low.min(*x), high.max(*x)])
 }
 
 /// That classical standard deviations do not hold, and by how much.
-fn not_white(w: &Whiteness, spread: &Spread) -> Option<String> {
+fn not_white(w: &Whiteness, covariance: &Mat<f64>, classical: &[f64], pieces: &str) -> Option<String> {
     (!w.is_white()).then(|| {
-        let worst = spread.blocks.iter().zip(&spread.classical).map(|(blocks, white)| blocks / white).fold(0.0, f64::max);
+        let worst = diagonal_roots(covariance).iter().zip(classical).map(|(blocks, white)| blocks / white).fold(0.0, f64::max);
         let by = if worst > 1.0 { format!("are up to {worst:.1} times too small") } else { "do not hold".to_owned() };
         format!(
             "residuals are not white (r1 = {:.2}, Ljung-Box({}) = {:.0}): classical standard deviations {by}; the intervals are those of {}",
             w.r1,
             w.lags,
             w.ljung_box,
-            spread.pieces()
+            pieces
         )
     })
 }
@@ -324,7 +356,6 @@ mod tests {
                     time_s: r.time_s[first..=last].to_vec(),
                     position_m: r.position_m[first..=last].to_vec(),
                     command_v: r.command_v[first..=last].to_vec(),
-                    ..ServoLog::default()
                 };
                 chain.rows(&log).unwrap()
             })
@@ -340,9 +371,9 @@ mod tests {
         for seed in 0..20 {
             let (rows, chain, scenario) = runs(seed, 1);
             let report = of_runs(rows, &chain).unwrap();
-            let c = report.coefficient("F_c").unwrap();
+            let c = report.fit.coefficient("F_c").unwrap();
             inside += u32::from((c.interval[0]..=c.interval[1]).contains(&scenario.coulomb_n));
-            assert_eq!(report.spread.runs, Some(12));
+            assert_eq!(report.fit.runs, Some(12));
             variance += c.block_std.powi(2) / 20.0;
         }
         // Twelve runs cannot know it better than 2 % over √12; a mean of 20 variances of five degrees of freedom scatters by 14 %: three.
@@ -356,9 +387,9 @@ mod tests {
         let (mut rows, chain, _) = runs(1, 1);
         rows.truncate(4);
         let report = of_runs(rows, &chain).unwrap();
-        assert_eq!(report.spread.runs, None);
+        assert_eq!(report.fit.runs, None);
         assert_eq!(
-            report.findings.last().unwrap(),
+            report.fit.findings.last().unwrap(),
             "the intervals do not include what changes from run to run: 4 runs are too few, 5 are needed; they are those of blocks \
              within the runs"
         );

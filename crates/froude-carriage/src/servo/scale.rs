@@ -1,7 +1,8 @@
 //! Declared errors of what makes volts into forces and counts into metres: each scales the coefficients.
 
 use froude_fit::propagate::expanded;
-use froude_records::estimate::{Coefficient, ErrorKind, SharedError};
+use froude_records::estimate::{Coefficient, SharedError};
+use froude_records::number::finite;
 use indexmap::IndexMap;
 
 use crate::servo::motor::Drive;
@@ -82,14 +83,10 @@ pub(super) fn errors_of(
     coefficients: &[ServoCoefficient],
     radii: &dyn Fn(&str) -> f64,
 ) -> IndexMap<String, SharedError> {
-    let error = |scale: &Scale| SharedError {
-        name: scale.name.clone(),
-        quantity: scale.quantity.clone(),
-        kind: ErrorKind::B,
-        covariance: vec![vec![scale.relative * scale.relative]],
-        dof: scale.dof,
-        limits: None,
-        sensitivity: coefficients.iter().map(|c| vec![scale.power(&c.name, radii) * c.value]).collect(),
+    let error = |scale: &Scale| {
+        let slopes = coefficients.iter().map(|c| scale.power(&c.name, radii) * c.value);
+        let dof = scale.dof.unwrap_or(f64::INFINITY);
+        SharedError::declared([&scale.name, &scale.quantity], scale.relative, dof, slopes)
     };
     scales.iter().filter(|scale| scale.relative > 0.0).map(|scale| (scale.key.clone(), error(scale))).collect()
 }
@@ -109,12 +106,11 @@ pub(super) fn combined(
         return of_scatter;
     }
     let all = expanded(&parts, 0.95);
-    let finite = |x: f64| Some(x).filter(|x| x.is_finite());
     Coefficient {
         standard_uncertainty: Some(all.standard),
         type_b: Some(type_b),
-        interval_95: finite(all.expanded).map(|half| [c.value - half, c.value + half]),
-        effective_dof: finite(all.dof),
+        interval_95: finite(Some(all.expanded)).map(|half| [c.value - half, c.value + half]),
+        effective_dof: finite(Some(all.dof)),
         ..of_scatter
     }
 }

@@ -30,6 +30,7 @@ mod report;
 
 use froude_fit::faer::Mat;
 use froude_fit::{End, Report};
+use froude_signal::two_mass::TwoMasses;
 use froude_signal::{decimate, differences};
 
 use crate::servo::chain::Chain;
@@ -38,7 +39,7 @@ use crate::servo::error::ServoError;
 use crate::servo::flexible::{Stepper, TwoMass};
 use crate::servo::friction::Friction;
 use crate::servo::gauss_newton::{DIFFERENCE, Fitted, minimise};
-use crate::servo::interval::{hac_covariance, whiteness};
+use crate::servo::interval::{BLOCK_S, hac_covariance, whiteness};
 use crate::servo::log::ServoLog;
 use crate::servo::regression::{inverse_gram, least_squares, solve};
 use crate::servo::report::ServoCoefficient;
@@ -119,7 +120,7 @@ struct Record<'a> {
 impl<'a> Record<'a> {
     fn new(log: &'a ServoLog, options: &'a FlexibleOptions) -> Result<Self, ServoError> {
         let rate_hz = log.rate_hz()?;
-        let needed = (PARAMETERS + 2) * (options.intervals.block_s * rate_hz).ceil() as usize;
+        let needed = (PARAMETERS + 2) * (BLOCK_S * rate_hz).ceil() as usize;
         if log.position_m.len() < needed {
             return Err(ServoError::TooFewRows { rows: log.position_m.len(), needed });
         }
@@ -136,13 +137,16 @@ impl<'a> Record<'a> {
     /// Physical parameters of an iterate; beyond 0…1 a share of Coulomb friction stays at its end, the prior pulls it back.
     fn axis(&self, theta: &[f64]) -> TwoMass {
         let [efficiency_forward, efficiency_backward, load_drag_n_s2_m2, delay_s] = self.declared;
-        TwoMass {
+        let masses = TwoMasses {
             motor_mass_kg: theta[0].exp(),
             load_mass_kg: theta[1].exp(),
             stiffness_n_m: theta[2].exp(),
             damping_n_s_m: theta[3].exp(),
             motor_viscous_n_s_m: theta[4] * theta[6],
             load_viscous_n_s_m: theta[4] * (1.0 - theta[6]),
+        };
+        TwoMass {
+            masses,
             motor_coulomb_n: theta[5] * theta[7].clamp(0.0, 1.0),
             load_coulomb_n: theta[5] * (1.0 - theta[7].clamp(0.0, 1.0)),
             force_per_volt_n_v: self.options.motor.force_per_volt_n_v(),
@@ -266,7 +270,6 @@ impl<'a> Record<'a> {
         let n = fitted.residuals.len() - 2;
         let covariance = self.covariance(fitted, n)?;
         let innovations = &fitted.residuals[..n];
-        let speed = self.speed(&self.log.position_m)?;
         let splits = [(6, "B_m/B"), (7, "C_m/C")].map(|(j, name)| {
             let half = covariance.half_width(&unit_vector(j, 1.0), 0.0);
             let interval = [theta[j] - half, theta[j] + half];
@@ -279,8 +282,6 @@ impl<'a> Record<'a> {
             coefficients: self.coefficients(theta, &covariance),
             axis: self.axis(theta),
             is_apparent: self.options.gear == Gear::Undeclared,
-            relative_speed_error: norm(&self.speed_error(theta)?) / norm(&speed),
-            innovation_m: norm(innovations) / (n as f64).sqrt(),
             whiteness: whiteness(innovations, self.rate_hz),
             n_rows: n,
             end: fitted.report,
@@ -314,12 +315,11 @@ impl<'a> Record<'a> {
         let gram = inverse_gram(&solve(&fitted.columns, &fitted.residuals)?);
         let data: Vec<Vec<f64>> = fitted.columns.iter().map(|c| c[..n].to_vec()).collect();
         let innovations = &fitted.residuals[..n];
-        let options = &self.options.intervals;
-        let (hac, _) = hac_covariance(&data, innovations, &gram, self.rate_hz, options.hac_lag_s);
+        let (hac, _) = hac_covariance(&data, innovations, &gram, self.rate_hz, None);
         let information = Mat::from_fn(PARAMETERS, PARAMETERS, |i, j| {
             (n..n + 2).map(|k| fitted.columns[i][k] * fitted.columns[j][k]).sum()
         });
-        let length = (options.block_s * self.rate_hz).round() as usize;
+        let length = (BLOCK_S * self.rate_hz).round() as usize;
         let clustered =
             Clustered::new(&data, innovations, &stretches(n, length), Some(&information), Enlarged::Average)?;
         let prior = Self::of_prior(fitted, n, &gram);
@@ -336,7 +336,6 @@ impl<'a> Record<'a> {
             known,
             radius_relative: self.options.radius_relative,
             clustered,
-            confidence: options.confidence,
         })
     }
 
@@ -379,7 +378,7 @@ impl<'a> Record<'a> {
     /// Physical coefficients; their spread by the chain rule: masses, stiffness and damping on a logarithmic scale, friction on its own.
     fn coefficients(&self, theta: &[f64], covariance: &Covariance) -> Vec<ServoCoefficient> {
         let motor = self.options.motor;
-        let axis = self.axis(theta);
+        let axis = self.axis(theta).masses;
         let (m, load) = (axis.motor_mass_kg, axis.load_mass_kg);
         let total = m + load;
         // Gradient, over the parameters of the iteration, of the logarithm or of the value.
@@ -455,10 +454,10 @@ mod tests {
             let report = identify_flexible(&log, &FlexibleOptions::new(MotorSide::MCD)).unwrap();
             assert_eq!(report.end.end, End::Converged);
             for (name, truth) in [
-                ("m", axis.motor_mass_kg),
-                ("M", axis.load_mass_kg),
-                ("K_e", axis.stiffness_n_m),
-                ("B_e", axis.damping_n_s_m),
+                ("m", axis.masses.motor_mass_kg),
+                ("M", axis.masses.load_mass_kg),
+                ("K_e", axis.masses.stiffness_n_m),
+                ("B_e", axis.masses.damping_n_s_m),
                 ("J_eff", 1.502e-5),
                 ("B_eff", 4.657e-6),
                 ("C_eff", 3.9e-3),
@@ -521,16 +520,16 @@ mod tests {
         let eta = |value: f64| Uncertain::new(value, 0.02 * value);
         let report = of(Gear::Declared { forward: eta(0.8), backward: eta(0.75) });
         let c = report.coefficient("M").unwrap();
-        assert!((c.interval[0]..=c.interval[1]).contains(&axis.load_mass_kg), "{c:?}");
+        assert!((c.interval[0]..=c.interval[1]).contains(&axis.masses.load_mass_kg), "{c:?}");
         // What 2 % of the efficiency is worth is in the interval.
-        assert!(c.interval[1] - c.interval[0] > 2.0 * 0.02 * axis.load_mass_kg, "{c:?}");
+        assert!(c.interval[1] - c.interval[0] > 2.0 * 0.02 * axis.masses.load_mass_kg, "{c:?}");
         let chain = report.flexible();
-        assert!((chain.span_s * 3.0 * axis.resonance_hz() - 1.0).abs() < 0.05, "{chain:?}");
+        assert!((chain.span_s * 3.0 * axis.masses.resonance_hz() - 1.0).abs() < 0.05, "{chain:?}");
         let apparent = of(Gear::Undeclared);
         assert!(
             apparent.is_apparent
                 && apparent.findings.iter().any(|f| f.starts_with("no efficiency of the gear is declared"))
         );
-        assert!(apparent.coefficient("M").unwrap().value > 1.02 * axis.load_mass_kg);
+        assert!(apparent.coefficient("M").unwrap().value > 1.02 * axis.masses.load_mass_kg);
     }
 }

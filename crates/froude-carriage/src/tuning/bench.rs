@@ -122,7 +122,7 @@ impl<'a> Bench<'a> {
         let mut out = Candidate {
             name: name.to_owned(),
             gains,
-            counts: CountGains::from_si(&si, counts_per_revolution, tick_us, 1.0),
+            counts: CountGains::from_si(&si, counts_per_revolution, tick_us),
             margins: found,
             lowest_load_hz: self.heaviest().map(|m| m.load.frequency_hz),
             heaviest: self.heaviest().map(|m| margins(&m.extended(&[], self.model_band_hz()), &gains)),

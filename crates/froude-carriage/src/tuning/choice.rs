@@ -43,7 +43,7 @@ pub(super) const BY_CYCLE: &str = "Ziegler–Nichols (1942)";
 pub fn tuned(logs: &[RunLog], of: ConfiguredLoop<'_>) -> Result<Tuned, MethodError> {
     let rad_m = of.axis.drive.gear_ratio / of.axis.drive.sprocket_radius_m;
     let log = |role: Role| logs.iter().find(|log| log.meta.role == role);
-    let too_few = |what| TuningError::TooFew { what, found: 0, least: 1, advice: "drive one" };
+    let too_few = |what| TuningError::too_few(what, 0, 1, "drive one");
     let sweep = log(Role::Sweep).ok_or_else(|| MethodError::refused(too_few("sweeps")))?;
     let plant = response_of(sweep, rad_m)?;
     let cycle = log(Role::Relay).map_or(Ok(Err(too_few("relay runs"))), |log| cycle_of(log, rad_m))?;

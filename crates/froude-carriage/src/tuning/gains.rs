@@ -59,7 +59,7 @@ impl Default for Demand {
 ///
 /// # Errors
 ///
-/// [`TuningError::NoCrossover`] when none keeps it.
+/// [`TuningError`] when none keeps it.
 pub fn shaped_on_response(
     plant: &[ResponsePoint],
     load_hz: f64,
@@ -72,11 +72,14 @@ pub fn shaped_on_response(
         .flat_map(|point| LEADS.map(|lead| with_crossover(point, lead, load_hz, encoder.tick_s)))
         .filter(|gains| gains.volts_per_count(encoder.count_rad) <= encoder.most_v)
         .find(|gains| demand.is_kept(&margins(plant, gains)))
-        .ok_or_else(|| TuningError::NoCrossover {
-            low_hz: plant.first().map_or(f64::NAN, |p| p.frequency_hz),
-            high_hz: plant.last().map_or(f64::NAN, |p| p.frequency_hz),
-            phase_deg: demand.phase_rad.to_degrees(),
-            sensitivity: demand.sensitivity,
+        .ok_or_else(|| {
+            let [low_hz, high_hz] = [plant.first(), plant.last()].map(|p| p.map_or(f64::NAN, |p| p.frequency_hz));
+            TuningError(format!(
+                "no crossover between {low_hz:.2} and {high_hz:.2} Hz keeps a phase margin of {:.0}° and a maximum \
+                 sensitivity of {:.1}, with the whole loop inside; measure over a wider band, or ask for less",
+                demand.phase_rad.to_degrees(),
+                demand.sensitivity
+            ))
         })
 }
 

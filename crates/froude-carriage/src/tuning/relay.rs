@@ -39,24 +39,23 @@ pub fn limit_cycle(
     command_v: &[f64],
     angle_rad: &[f64],
 ) -> Result<LimitCycle, TuningError> {
-    if command_v.len() != angle_rad.len() {
-        return Err(TuningError::Lengths { first: command_v.len(), second: angle_rad.len() });
-    }
+    TuningError::unless_paired(command_v, angle_rad)?;
     for (name, value) in [("sampling rate", rate_hz), ("relay height", relay_v)] {
         if !(value.is_finite() && value > 0.0) {
-            return Err(TuningError::Number { name, value });
+            return Err(TuningError::number(name, value));
         }
     }
     let first = command_v.len() / 3;
     let rises: Vec<usize> =
         (first.max(1)..command_v.len()).filter(|&i| command_v[i] > 0.0 && command_v[i - 1] <= 0.0).collect();
     if rises.len() < 5 {
-        return Err(TuningError::TooFew {
-            what: "switches of the relay in the later two thirds of the record",
-            found: rises.len(),
-            least: 5,
-            advice: "run the relay longer, or raise its height above friction",
-        });
+        let what = "switches of the relay in the later two thirds of the record";
+        return Err(TuningError::too_few(
+            what,
+            rises.len(),
+            5,
+            "run the relay longer, or raise its height above friction",
+        ));
     }
     let periods: Vec<f64> = rises.windows(2).map(|w| (w[1] - w[0]) as f64 / rate_hz).collect();
     let amplitudes: Vec<f64> = rises
@@ -72,7 +71,7 @@ pub fn limit_cycle(
     let (amplitude_rad, amplitude_std_rad) = mean_and_std(&amplitudes);
     let beyond = amplitude_rad * amplitude_rad - hysteresis_rad * hysteresis_rad;
     if beyond.is_nan() || beyond <= 0.0 {
-        return Err(TuningError::Number { name: "amplitude beyond the relay's hysteresis, rad²", value: beyond });
+        return Err(TuningError::number("amplitude beyond the relay's hysteresis, rad²", beyond));
     }
     Ok(LimitCycle {
         cycles: periods.len(),

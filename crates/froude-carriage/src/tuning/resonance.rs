@@ -73,15 +73,10 @@ fn model(p: &[f64], frequency_hz: f64) -> Complex64 {
 ///
 /// # Errors
 ///
-/// [`TuningError::NoModes`] when the model does not follow the response; [`TuningError::TooFew`] below 20 points.
+/// [`TuningError`] when the model does not follow the response, and below 20 points.
 pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningError> {
     if plant.len() < 20 {
-        return Err(TuningError::TooFew {
-            what: "points of the frequency response",
-            found: plant.len(),
-            least: 20,
-            advice: "sweep longer",
-        });
+        return Err(TuningError::too_few("points of the frequency response", plant.len(), 20, "sweep longer"));
     }
     let from = |start: [f64; PARAMETERS]| -> Option<Solution> {
         let parameters: [Parameter; PARAMETERS] = std::array::from_fn(|j| {
@@ -94,8 +89,15 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
     let found = starts(plant).into_iter().filter_map(from);
     let best = found.min_by(|a, b| a.sum_of_squares.total_cmp(&b.sum_of_squares));
     let (low_hz, high_hz) = (plant[0].frequency_hz, plant[plant.len() - 1].frequency_hz);
+    let no_modes = |residual: f64| {
+        TuningError(format!(
+            "the two-mass model leaves {:.0} % of the response unexplained: it has no single antiresonance \
+             and resonance between {low_hz:.1} and {high_hz:.1} Hz",
+            100.0 * residual
+        ))
+    };
     let Some((best, covariance)) = best.and_then(|b| b.covariance(Scatter::Independent).ok().map(|c| (b, c))) else {
-        return Err(TuningError::NoModes { residual_percent: 100.0, low_hz, high_hz });
+        return Err(no_modes(1.0));
     };
     let p = &best.values;
     // Only where the response was seen at all: at an antiresonance the encoder may see nothing.
@@ -109,7 +111,7 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
     let is_inside = |f: f64| (low_hz..=high_hz).contains(&f);
     // A comparison with NaN is false, so this also refuses a fit that ran away.
     if !(relative_residual < LARGEST_RESIDUAL && is_inside(load_hz) && is_inside(free_hz) && load_hz < free_hz) {
-        return Err(TuningError::NoModes { residual_percent: 100.0 * relative_residual, low_hz, high_hz });
+        return Err(no_modes(relative_residual));
     }
     let std = |j: usize| covariance.standard(j).unwrap_or(f64::NAN);
     let mode = |f: usize, z: usize| Mode {

@@ -67,13 +67,10 @@ impl Sweep<'_> {
             ("amplitude", self.volts),
         ] {
             if !(value.is_finite() && value > 0.0) {
-                return Err(TuningError::Number { name, value });
+                return Err(TuningError::number(name, value));
             }
         }
-        if self.command_v.len() != self.angle_rad.len() {
-            return Err(TuningError::Lengths { first: self.command_v.len(), second: self.angle_rad.len() });
-        }
-        Ok(())
+        TuningError::unless_paired(self.command_v, self.angle_rad)
     }
 }
 
@@ -96,12 +93,8 @@ pub fn plant_response(sweep: &Sweep, n: usize) -> Result<Vec<ResponsePoint>, Tun
         .filter_map(|f| at(&speed, &command, &injected, f, sweep.rate_hz, resolution))
         .collect();
     if points.len() < 10 {
-        return Err(TuningError::TooFew {
-            what: "frequencies that the record resolves",
-            found: points.len(),
-            least: 10,
-            advice: "sweep longer or over fewer octaves",
-        });
+        let what = "frequencies that the record resolves";
+        return Err(TuningError::too_few(what, points.len(), 10, "sweep longer or over fewer octaves"));
     }
     Ok(points)
 }

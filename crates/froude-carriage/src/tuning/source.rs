@@ -4,15 +4,15 @@ use froude_identify::answer::{Answer, Made};
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::source::ReadFile;
 use froude_records::block::Section;
-use froude_records::campaign::{Campaign, Input, Source};
+use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::Estimate;
 use froude_records::run::{CAMPAIGN_COPY, Role, TOW};
 use froude_rig::campaign::prepare::configured;
 
 use super::choice::{self, tuned};
 use super::modes::{self, modes_of};
-use crate::runs::{Runs, read};
-use crate::source::{file_of, files_of, named};
+use crate::runs::Runs;
+use crate::source::{DRIVEN, file_of, files_of, named, runs_of};
 use crate::tuning::bench::ConfiguredLoop;
 
 /// Gains of the position loop, with the margins that they have on the measured response.
@@ -23,7 +23,6 @@ pub struct Tuning;
 #[derive(Debug)]
 pub struct Resonance;
 
-const DRIVEN: &[&str] = &["position", "reference_velocity", "command"];
 const SWEEP: Need = Need::of(&["sweep"], DRIVEN);
 const TUNED: [Need; 2] = [SWEEP, Need { is_optional: true, ..Need::of(&["relay"], DRIVEN) }];
 const SWEPT: [Need; 1] = [SWEEP];
@@ -120,9 +119,7 @@ fn found(
     progress: &dyn Fn(&str),
     reduce: impl FnOnce(&Runs, &str) -> Result<(Vec<(Estimate, Vec<ReadFile>)>, Section), MethodError>,
 ) -> Result<Found, MethodError> {
-    let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
-    progress("reading the runs");
-    let runs = read(paths, roles, campaign.as_deref())?;
+    let Some(runs) = runs_of(source, roles, progress)? else { return Ok(Found::default()) };
     let (estimates, summary) = reduce(&runs, &named(source, &runs, what))?;
     let answer = |(estimate, files): (Estimate, Vec<ReadFile>)| -> Answer {
         Made { name: format!("{}, {}", estimate.source, estimate.law.name), estimate, files }.into()

@@ -7,6 +7,8 @@
 //!
 //! **Units.** Motor angle, rad. Not here: drag of the body; a shaped reference, which only gets gentler.
 
+use froude_signal::two_mass::TwoMasses;
+
 use super::LoopGains;
 use super::resonance::TwoMassModes;
 use crate::servo::flexible::{Moment, Stepper, TwoMass};
@@ -110,15 +112,15 @@ pub fn follow(modes: &TwoMassModes, gains: &LoopGains, forward: &Forward, ramp: 
 fn axis(modes: &TwoMassModes, ramp: &Ramp) -> TwoMass {
     let load_rad_s = std::f64::consts::TAU * modes.load.frequency_hz;
     let ratio = modes.inertia_ratio;
-    TwoMass {
+    let masses = TwoMasses {
         motor_mass_kg: 1.0,
         load_mass_kg: ratio,
         stiffness_n_m: ratio * load_rad_s * load_rad_s,
         damping_n_s_m: ratio * 2.0 * modes.load.damping * load_rad_s,
+        motor_viscous_n_s_m: 0.0,
         load_viscous_n_s_m: ratio * modes.viscous_1_s,
-        load_coulomb_n: modes.gain_rad_s2_v * ramp.friction_v,
-        ..TwoMass::BARE
-    }
+    };
+    TwoMass { load_coulomb_n: modes.gain_rad_s2_v * ramp.friction_v, ..TwoMass::of(masses) }
 }
 
 /// Speed and acceleration of the reference.

@@ -14,6 +14,7 @@ use rand_pcg::Pcg64Mcg;
 
 use froude_carriage::servo::flexible::{Stepper, TwoMass};
 use froude_carriage::servo::{MotorSide, ServoError, ServoLog};
+use froude_signal::two_mass::TwoMasses;
 
 /// Step of the simulation, s.
 const STEP_S: f64 = 5e-5;
@@ -26,17 +27,19 @@ pub fn carriage() -> TwoMass {
     let at_chain = MotorSide::MCD.m_rad().powi(2);
     let (mass_kg, viscous, coulomb) = (1.502e-5 / at_chain, 4.657e-6 / at_chain, 3.9e-3 / MotorSide::MCD.m_rad());
     let load_mass_kg = 0.6 * mass_kg;
-    TwoMass {
+    let masses = TwoMasses {
         motor_mass_kg: mass_kg - load_mass_kg,
         load_mass_kg,
         stiffness_n_m: load_mass_kg * (2.0 * PI * 13.0).powi(2),
         damping_n_s_m: 0.08 * load_mass_kg * 2.0 * PI * 13.0,
         motor_viscous_n_s_m: 0.4 * viscous,
         load_viscous_n_s_m: 0.6 * viscous,
+    };
+    TwoMass {
         motor_coulomb_n: 0.35 * coulomb,
         load_coulomb_n: 0.65 * coulomb,
         force_per_volt_n_v: MotorSide::MCD.force_per_volt_n_v(),
-        ..TwoMass::BARE
+        ..TwoMass::of(masses)
     }
 }
 
@@ -96,5 +99,5 @@ pub fn record(axis: &TwoMass, rate_hz: f64, half_s: f64, noise: &Noise, seed: u6
         .into_iter()
         .map(|p| (p * noise.counts_per_m + within_count).floor() / noise.counts_per_m)
         .collect();
-    Ok(ServoLog { time_s, position_m, command_v, ..ServoLog::default() })
+    Ok(ServoLog { time_s, position_m, command_v })
 }

@@ -1,6 +1,5 @@
 //! Drag from simulated campaigns: what the report says, and when it refuses.
 
-use froude_carriage::drag::calibration::ForcePerVolt;
 use froude_carriage::drag::coefficient::Coefficient;
 use froude_carriage::drag::mbdp::Flexible;
 use froude_carriage::drag::point::Method;
@@ -17,7 +16,7 @@ fn scenario() -> Scenario {
 
 fn setup(scenario: &Scenario) -> DragSetup {
     let k = scenario.force_per_volt_n();
-    let calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, 0.005 * k) });
+    let calibration = Some(Uncertain::new(k, 0.005 * k));
     DragSetup { calibration, reference_area_m2: Some(0.04), ..DragSetup::of_the_paper() }
 }
 

@@ -4,6 +4,7 @@ use froude_carriage::servo::flexible::{Stepper, TwoMass};
 use froude_rig::load::Load;
 use froude_rig::parameters::AxisParameters;
 use froude_rig::plant::Plant;
+use froude_signal::two_mass::TwoMasses;
 
 /// Both with the gear's loss and Coulomb friction at both masses, driven forth and back through standstill for ten seconds. The twin stops a
 /// mass in the step in which its speed passes zero, the observer in a piece of that step, so that they differ in the first order of the step: by 45 µm
@@ -22,19 +23,21 @@ fn twin_and_observer_make_the_same_motion() {
     };
     let load = Load::default();
     let chain_m = axis.chain_m_rad();
-    let model = TwoMass {
+    let masses = TwoMasses {
         motor_mass_kg: axis.motor_mass_kg(),
         load_mass_kg: load.mass_kg(&axis),
         stiffness_n_m: axis.stiffness_n_m,
         damping_n_s_m: axis.chain_damping_n_s_m,
         motor_viscous_n_s_m: axis.motor_viscous_n_m_s_rad / (chain_m * chain_m),
         load_viscous_n_s_m: axis.load_viscous_n_s_m,
+    };
+    let model = TwoMass {
         motor_coulomb_n: axis.motor_coulomb_n_m / chain_m,
         load_coulomb_n: axis.load_coulomb_n,
         force_per_volt_n_v: 1.0,
         efficiency_forward: axis.efficiency_forward,
         efficiency_backward: axis.efficiency_backward,
-        ..TwoMass::BARE
+        ..TwoMass::of(masses)
     };
     let force_n: Vec<f64> = (0..10_000).map(|k| 8.0 * (0.004 * f64::from(k)).sin() + 2.0).collect();
     let apart = |steps: usize| {

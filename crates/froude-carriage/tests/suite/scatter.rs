@@ -1,7 +1,6 @@
 //! The interval of D_d from a few pairs covers whatever makes the pairs differ.
 
 use froude_carriage::drag::DragSetup;
-use froude_carriage::drag::calibration::ForcePerVolt;
 use froude_carriage::drag::detectability::{DryMean, predict};
 use froude_carriage::drag::differences::of_differences;
 use froude_carriage::drag::point::Point;
@@ -31,7 +30,7 @@ fn campaign(pairs: u32, trouble: Trouble, seed: u64) -> (bool, f64) {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
     // Force per volt exact, one: what is tested is the scatter.
-    let calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(1.0, 0.0) });
+    let calibration = Some(Uncertain::new(1.0, 0.0));
     let setup = DragSetup {
         calibration,
         torque_constant_drift_relative: 0.0,

@@ -144,7 +144,7 @@ fn reports(rig: Rig, seeds: u64) -> Vec<Vec<Result<ServoReport, ServoError>>> {
 /// Number of reports with an interval for the coefficient, and number of these intervals that contain the truth.
 fn counts(found: &[Result<ServoReport, ServoError>], (coefficient, truth): (&str, f64)) -> [usize; 2] {
     let intervals: Vec<[f64; 2]> = (found.iter().flatten())
-        .filter_map(|r| Some(r.coefficient(coefficient)?.interval))
+        .filter_map(|r| Some(r.fit.coefficient(coefficient)?.interval))
         .filter(|interval| interval[0].is_finite())
         .collect();
     [intervals.len(), intervals.iter().filter(|[low, high]| (*low..=*high).contains(&truth)).count()]
@@ -169,8 +169,8 @@ fn most_motions_get_intervals_and_these_hold() {
     }
     for ((name, _), found) in MOTIONS.iter().zip(&all) {
         for (seed, report) in found.iter().enumerate() {
-            let said = report.as_ref().map_or_else(ToString::to_string, |r| r.excitation.join("; "));
-            let is_told = report.as_ref().is_ok_and(|r| r.coefficients.iter().all(|c| c.interval[0].is_finite()));
+            let said = report.as_ref().map_or_else(ToString::to_string, |r| r.fit.excitation.join("; "));
+            let is_told = report.as_ref().is_ok_and(|r| r.fit.coefficients.iter().all(|c| c.interval[0].is_finite()));
             assert_eq!(is_told, said.is_empty(), "{name}, seed {seed}: {said}");
             assert!(is_told || said.contains("move") || said.contains("motion"), "{name}, seed {seed}: {said}");
         }
@@ -222,6 +222,6 @@ fn a_slow_drive_determines_friction_in_slow_motions() {
         let found = [report(&motion, rig, 1)];
         let told_of = TRUTHS.map(|truth| counts(&found, truth));
         assert_eq!(told_of.iter().map(|[given, _]| given).sum::<usize>(), told, "{told_of:?}");
-        assert!(told_of.iter().all(|[given, held]| given == held), "{:?}", found[0].as_ref().unwrap().coefficients);
+        assert!(told_of.iter().all(|[given, held]| given == held), "{:?}", found[0].as_ref().unwrap().fit.coefficients);
     }
 }

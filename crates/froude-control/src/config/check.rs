@@ -1,6 +1,5 @@
 //! Which configurations may be driven.
 
-use crate::config::over_speed_m_s;
 use crate::config::{AxisConfig, Config, ConfigError, Drive, Gains, Limits};
 use crate::law::Law;
 use crate::shaper::Shaper;
@@ -102,7 +101,7 @@ impl AxisConfig {
         if needed_v > law.limit_v {
             return Err(ConfigError::TooWeak { axis, needed_v, available_v: law.limit_v });
         }
-        let needed_m = law.stopping.way_m(over_speed_m_s(limits, false));
+        let needed_m = law.stopping.way_m(limits.over_speed_m_s(false));
         let rooms =
             [("low", limits.low_switch_m - limits.hard_low_m), ("high", limits.hard_high_m - limits.high_switch_m)];
         for (end, room_m) in rooms {

@@ -1,7 +1,7 @@
 //! What `new` does not accept, in words.
 
 use froude_control::Controller;
-use froude_control::config::{AxisConfig, Config, CountGains};
+use froude_control::config::{AxisConfig, Config, CountGains, Gains};
 
 fn refused(change: impl FnOnce(&mut AxisConfig)) -> String {
     let mut config = Config::PUBLISHED;
@@ -43,12 +43,20 @@ fn the_published_configuration_is_accepted() {
 /// The paper's gains: K_p/(4000 K_i) = 1.003 s and K_d/K_p = 0.100 s, whatever the scale.
 #[test]
 fn gains_in_counts_keep_the_papers_ratios() {
-    let counts = CountGains { proportional: 1.32e-6, derivative: 1.32e-7, integral: 3.29e-10, volts_per_unit: 1900.0 };
-    let gains = counts.to_si(4000.0, 250, 150.0);
+    let counts = CountGains { proportional: 1.32e-6, derivative: 1.32e-7, integral: 3.29e-10 };
+    // Volts per unit of the controller's output, and counts per radian.
+    let volts_per_unit = 1900.0;
+    let scale = volts_per_unit * 4000.0 / (2.0 * core::f64::consts::PI);
+    let gains = Gains {
+        proportional_v_rad: scale * counts.proportional,
+        derivative_v_s_rad: scale * counts.derivative,
+        integral_v_rad_s: scale * counts.integral * 4000.0,
+        derivative_filter_hz: 150.0,
+    };
     // Half a unit in the last digit of K_i is 0.15 %.
     assert!((gains.proportional_v_rad / gains.integral_v_rad_s - 1.003).abs() < 0.0015);
     assert!((gains.derivative_v_s_rad / gains.proportional_v_rad - 0.1).abs() < 1e-15);
-    let back = CountGains::from_si(&gains, 4000.0, 250, 1900.0);
-    assert!((back.integral / counts.integral - 1.0).abs() < 1e-14);
-    assert!((back.proportional / counts.proportional - 1.0).abs() < 1e-14);
+    let back = CountGains::from_si(&gains, 4000.0, 250);
+    assert!((back.integral / (volts_per_unit * counts.integral) - 1.0).abs() < 1e-14);
+    assert!((back.proportional / (volts_per_unit * counts.proportional) - 1.0).abs() < 1e-14);
 }

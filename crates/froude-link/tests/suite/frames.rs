@@ -156,16 +156,11 @@ fn a_long_gap_is_counted_to_the_frame() {
 }
 
 #[test]
-fn another_version_is_recognised_and_named() {
+fn another_version_is_recognised() {
     let foreign = ToBoard::ForeignHello { version: 9 }.from_session(NOBODY);
     assert_eq!(read(&mut FrameReader::<HostFrame>::new(), &framed(&foreign, 0))[0].message, foreign);
     let got = read(&mut FrameReader::<FromBoard>::new(), &framed(&FromBoard::ForeignHello { version: 9 }, 0));
     assert_eq!(got[0].message, FromBoard::ForeignHello { version: 9 });
-    assert_eq!(
-        froude_link::message::VersionMismatch { board: 9, host: 2 }.to_string(),
-        "the board speaks protocol 9, this program 2: flash the firmware of this release, \
-         or use the program that came with the board"
-    );
 }
 
 /// A frame of a host as version 1 wrote it: without the session.

@@ -6,7 +6,7 @@
 //!
 //! Nothing here writes to a disk or a terminal, and on a real rig no lock is waited for.
 
-use froude_control::fault::{Fault, StopCategory};
+use froude_control::fault::StopCategory;
 use froude_control::request::Request;
 use froude_records::run::EventKind;
 
@@ -84,10 +84,8 @@ impl Idle {
                 if let Some(stranger) = sample.stranger {
                     engine.put(Entry::Event(0, EventKind::Link, said_of(stranger)));
                 }
-                let fault =
-                    |(fault, _): (Fault, u8)| RunnerError::FaultAtRest { fault, category: fault.category() as u8 };
                 match (sample.fault, sample.stranger) {
-                    (Some(latched), _) => Some(fault(latched)),
+                    (Some((fault, _)), _) => Some(RunnerError::FaultAtRest { fault }),
                     (None, Some(Stranger::Stopped(session))) => Some(RunnerError::StoppedAtRest { session }),
                     (None, _) => None,
                 }

@@ -56,9 +56,7 @@ impl Drive {
     pub fn constants(&self) -> IndexMap<String, Measured> {
         let Self::Excitation { excitation, .. } = *self else { return IndexMap::new() };
         let named = |constants: &[(&str, f64, &str)]| {
-            let measured =
-                |&(name, value, unit): &(&str, f64, &str)| (name.to_owned(), Measured { value, unit: unit.to_owned() });
-            constants.iter().map(measured).collect()
+            constants.iter().map(|&(name, value, unit)| (name.to_owned(), Measured::of(value, unit))).collect()
         };
         match excitation {
             Excitation::Relay { volts, hysteresis_m, .. } => {

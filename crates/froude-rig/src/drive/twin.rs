@@ -18,7 +18,6 @@ pub struct TwinRig {
     seed: u64,
     run_seed: u64,
     hung_n: f64,
-    is_truth_told: bool,
     has_force_sensor: bool,
 }
 
@@ -40,7 +39,6 @@ impl TwinRig {
             seed,
             run_seed: seed,
             hung_n: 0.0,
-            is_truth_told: true,
             has_force_sensor: true,
         })
     }
@@ -92,7 +90,7 @@ impl Rig for TwinRig {
             fault: output.status.fault,
             refusal: output.status.refusal,
             stranger: None,
-            truth: self.is_truth_told.then(|| [self.twin.truth(0), self.twin.truth(1)]),
+            truth: Some([self.twin.truth(0), self.twin.truth(1)]),
         })
     }
 

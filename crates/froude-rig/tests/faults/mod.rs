@@ -27,10 +27,12 @@ use froude_control::config::ConfigError;
 use froude_control::fault::Fault;
 use froude_control::request::{Move, Request};
 use froude_control::status::Phase;
+use froude_rig::amplifier::AmplifierFault;
 use froude_rig::closed_loop::ClosedLoop;
 use froude_rig::defaults::control_config;
+use froude_rig::encoder::EncoderFault;
 use froude_rig::injection::{Injection, Scheduled};
-use froude_rig::load::{Load, Mounting};
+use froude_rig::load::{BodyState, Load};
 use froude_rig::twin::{TICK_S, TwinConfig};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -59,13 +61,15 @@ impl Faults for Injection {
         match self {
             Self::EmergencyStop => &[Fault::EmergencyStop],
             Self::LowEndSwitch | Self::HighEndSwitch => &[Fault::EndSwitch],
-            Self::AmplifierOff => &[Fault::AmplifierNotReady],
+            Self::Amplifier(AmplifierFault::Off) => &[Fault::AmplifierNotReady],
             Self::NotFiniteCurrent => &[Fault::NotFinite],
             Self::TickLate(_) => &[Fault::TickLate],
             Self::HostSilent => &[Fault::HostSilent],
             Self::EncoderJump(_) => &[Fault::EncoderJump, Fault::EncoderStuck],
-            Self::EncoderFlips(_) => &[Fault::EncoderIllegal, Fault::EncoderJump, Fault::EncoderStuck],
-            Self::EncoderSilent | Self::EncoderStuck | Self::EncoderReversed => &[
+            Self::Encoder(EncoderFault::BitFlips { .. }) => {
+                &[Fault::EncoderIllegal, Fault::EncoderJump, Fault::EncoderStuck]
+            }
+            Self::Encoder(_) => &[
                 Fault::EncoderStuck,
                 Fault::EncoderJump,
                 Fault::Polarity,
@@ -74,7 +78,7 @@ impl Faults for Injection {
                 Fault::OverCurrent,
                 Fault::OverSpeed,
             ],
-            Self::CurrentRunaway => {
+            Self::Amplifier(AmplifierFault::Runaway) => {
                 &[Fault::OverCurrent, Fault::Saturated, Fault::OverSpeed, Fault::FollowingError, Fault::EncoderJump]
             }
             Self::FrictionJam(_) => &[Fault::FollowingError, Fault::Saturated, Fault::EncoderStuck, Fault::OverCurrent],
@@ -87,13 +91,13 @@ impl Faults for Injection {
 
     fn name(&self) -> &'static str {
         match self {
-            Self::EncoderSilent => "encoder silent",
-            Self::EncoderStuck => "encoder stuck",
+            Self::Encoder(EncoderFault::Silent) => "encoder silent",
+            Self::Encoder(EncoderFault::Stuck) => "encoder stuck",
             Self::EncoderJump(_) => "encoder jump",
-            Self::EncoderFlips(_) => "illegal transitions",
-            Self::EncoderReversed => "encoder reversed",
-            Self::AmplifierOff => "amplifier off",
-            Self::CurrentRunaway => "current runaway",
+            Self::Encoder(EncoderFault::BitFlips { .. }) => "illegal transitions",
+            Self::Encoder(EncoderFault::Reversed) => "encoder reversed",
+            Self::Amplifier(AmplifierFault::Off) => "amplifier off",
+            Self::Amplifier(AmplifierFault::Runaway) => "current runaway",
             Self::EmergencyStop => "emergency stop",
             Self::LowEndSwitch => "low end switch",
             Self::HighEndSwitch => "high end switch",
@@ -111,14 +115,14 @@ impl Faults for Injection {
             Self::EmergencyStop
             | Self::LowEndSwitch
             | Self::HighEndSwitch
-            | Self::AmplifierOff
+            | Self::Amplifier(AmplifierFault::Off)
             | Self::NotFiniteCurrent
             | Self::TickLate(_)
             | Self::EncoderJump(_) => 2.0 * TICK_S,
-            Self::CurrentRunaway => 0.015,
+            Self::Amplifier(AmplifierFault::Runaway) => 0.015,
             Self::HostSilent => 0.21,
-            Self::EncoderFlips(_) => 0.5,
-            Self::EncoderSilent | Self::EncoderStuck | Self::EncoderReversed | Self::FrictionJam(_) => 1.5,
+            Self::Encoder(EncoderFault::BitFlips { .. }) => 0.5,
+            Self::Encoder(_) | Self::FrictionJam(_) => 1.5,
             Self::TorqueLoss(_) => 3.0,
             Self::ChainBreak => f64::INFINITY,
         }
@@ -129,24 +133,22 @@ impl Faults for Injection {
             self,
             Self::TorqueLoss(_)
                 | Self::FrictionJam(_)
-                | Self::EncoderSilent
-                | Self::EncoderStuck
-                | Self::EncoderReversed
+                | Self::Encoder(EncoderFault::Silent | EncoderFault::Stuck | EncoderFault::Reversed)
         )
     }
 
     fn random(rng: &mut impl Rng) -> Self {
         match rng.random_range(0..16) {
-            0 => Self::EncoderSilent,
-            1 => Self::EncoderStuck,
+            0 => Self::Encoder(EncoderFault::Silent),
+            1 => Self::Encoder(EncoderFault::Stuck),
             2 => {
                 let counts = rng.random_range(20..100_000);
                 Self::EncoderJump(if rng.random() { counts } else { -counts })
             }
-            3 => Self::EncoderFlips(rng.random_range(100..2_000)),
-            4 => Self::EncoderReversed,
-            5 => Self::AmplifierOff,
-            6 => Self::CurrentRunaway,
+            3 => Self::Encoder(EncoderFault::BitFlips { per_second: rng.random_range(100..2_000) }),
+            4 => Self::Encoder(EncoderFault::Reversed),
+            5 => Self::Amplifier(AmplifierFault::Off),
+            6 => Self::Amplifier(AmplifierFault::Runaway),
             7 => Self::EmergencyStop,
             8 => Self::LowEndSwitch,
             9 => Self::HighEndSwitch,
@@ -168,7 +170,7 @@ pub struct Outcome {
     /// On which axis.
     pub axis: usize,
     /// How the body was mounted.
-    pub mounting: Mounting,
+    pub mounting: BodyState,
     /// What the controller latched, and how long after, s.
     pub detected: Option<(Fault, f64)>,
     /// A load touched a hard stop.
@@ -204,12 +206,12 @@ const WAIT_TICKS: u64 = 16_000;
 const REST_TICKS: u64 = 48_000;
 
 /// How the body of a scene may be mounted.
-pub const MOUNTINGS: [Mounting; 3] = [Mounting::None, Mounting::Dry, Mounting::Wet];
+pub const MOUNTINGS: [BodyState; 3] = [BodyState::None, BodyState::Dry, BodyState::Wet];
 
 /// Homed rigs to break, one for each mounting of the body.
 #[derive(Debug, Clone)]
 pub struct Catalogue {
-    homed: Vec<(Mounting, ClosedLoop)>,
+    homed: Vec<(BodyState, ClosedLoop)>,
 }
 
 impl Catalogue {
@@ -345,7 +347,7 @@ impl Catalogue {
 }
 
 /// Breaks it now and watches.
-fn broken(mut rig: ClosedLoop, scheduled: Scheduled, mounting: Mounting) -> Outcome {
+fn broken(mut rig: ClosedLoop, scheduled: Scheduled, mounting: BodyState) -> Outcome {
     let Scheduled { axis, injection, .. } = scheduled;
     let mut outcome = Outcome {
         injection,

@@ -33,7 +33,9 @@ use froude_link::frame::{FrameWriter, MAX_WIRE};
 use froude_link::session::{AFTER_SILENCE_US, NOBODY};
 use froude_link::status::BoardId;
 use froude_link::{HostFrame, ToBoard};
+use froude_rig::amplifier::AmplifierFault;
 use froude_rig::defaults::control_config;
+use froude_rig::encoder::EncoderFault;
 use froude_rig::injection::{Injection, Scheduled};
 use froude_rig::load::Load;
 use froude_rig::twin::{TICK_S, Twin, TwinConfig};
@@ -395,7 +397,8 @@ impl Ending {
             let own = [Fault::HostSilent, Fault::RecorderFailed];
             self.is_its_own || self.detected.is_none_or(|(fault, _)| accepted.contains(&fault) || own.contains(&fault))
         };
-        let is_blind = self.was_cleared && matches!(injection, Injection::EncoderSilent | Injection::EncoderStuck);
+        let is_blind =
+            self.was_cleared && matches!(injection, Injection::Encoder(EncoderFault::Silent | EncoderFault::Stuck));
         self.unequal.is_none()
             && !self.has_slipped
             && !self.has_bad_command
@@ -430,7 +433,7 @@ impl Hosts {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let mut scene = Scene::drawn(&mut rng);
         if scene.injection == Injection::NotFiniteCurrent {
-            scene.injection = Injection::AmplifierOff;
+            scene.injection = Injection::Amplifier(AmplifierFault::Off);
         }
         let mut bench = self.homed[scene.mounting].clone();
         bench.board.twin.begin_run([Load::mounted(MOUNTINGS[scene.mounting]); 2], scene.load_seed);

@@ -16,7 +16,8 @@ use froude_rig::carriage::{Calibration, CarriagePlan, Directions, Order, PulseTr
 use froude_rig::defaults::control_config;
 use froude_rig::drive::twin::TwinRig;
 use froude_rig::drive::{Rig, RigError, Sample};
-use froude_rig::load::{Load, Mounting};
+use froude_rig::encoder::EncoderFault;
+use froude_rig::load::{BodyState, Load};
 use froude_rig::twin::TwinConfig;
 use froude_rig::{Injection, Scheduled};
 use indexmap::IndexMap;
@@ -110,7 +111,7 @@ fn setting(folder: &Path) -> Setting {
 }
 
 fn rig() -> TwinRig {
-    let load = Load::mounted(Mounting::Dry);
+    let load = Load::mounted(BodyState::Dry);
     let config = TwinConfig::loaded(Load::default());
     TwinRig::new(&config, control_config(&[load, load]), 7).unwrap()
 }
@@ -206,12 +207,11 @@ fn a_fault_ends_the_run_and_the_run_is_kept_and_marked() {
     let folder = tempfile::tempdir().unwrap();
     let mut driven = rig();
     // A hundred seconds after power-up: in the dry run. A count that stops while the carriage moves is a jump of its speed.
-    driven.twin_mut().inject(Scheduled { tick: 400_000, axis: 0, injection: Injection::EncoderStuck });
+    driven.twin_mut().inject(Scheduled { tick: 400_000, axis: 0, injection: Injection::Encoder(EncoderFault::Stuck) });
     let mut hand = Hand::default();
     match run(folder.path(), &mut hand, &mut driven).unwrap_err() {
-        RunnerError::Fault { fault, category, run } => {
-            assert!(Injection::EncoderStuck.accepted().contains(&fault), "{fault:?} in {run}");
-            assert_eq!(category, fault.category() as u8);
+        RunnerError::Fault { fault, run } => {
+            assert!(Injection::Encoder(EncoderFault::Stuck).accepted().contains(&fault), "{fault:?} in {run}");
         }
         other => panic!("{other}"),
     }

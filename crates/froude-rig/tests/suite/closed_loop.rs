@@ -5,7 +5,7 @@ use froude_control::request::{Move, Request};
 use froude_control::status::Phase;
 use froude_rig::closed_loop::ClosedLoop;
 use froude_rig::defaults::control_config;
-use froude_rig::load::{Load, Mounting};
+use froude_rig::load::{BodyState, Load};
 use froude_rig::{AxisParameters, Spread, TwinConfig};
 use std::f64::consts::PI;
 
@@ -17,7 +17,7 @@ const TABLE_3: [(f64, f64, f64); 6] = [
 ];
 
 /// Homed, settled, the y axis at `at_m`.
-fn ready(mounting: Mounting, spread: Spread, at_m: f64, change: impl Fn(&mut Config)) -> ClosedLoop {
+fn ready(mounting: BodyState, spread: Spread, at_m: f64, change: impl Fn(&mut Config)) -> ClosedLoop {
     let load = Load::mounted(mounting);
     let mut config = TwinConfig { spread, ..TwinConfig::loaded(load) };
     config.axes[0].start_m = 0.05;
@@ -73,11 +73,11 @@ fn tracked(rig: &mut ClosedLoop, target_m: f64, speed_m_s: f64) -> Tracking {
 /// ballasted.
 #[test]
 fn homing_leaves_the_load_hanging_still() {
-    let wet = Load::mounted(Mounting::Wet);
+    let wet = Load::mounted(BodyState::Wet);
     let ballasted = Load { ballast_kg: wet.balancing_ballast_kg(), ..wet };
     // Far, open already, and so near that the speed is not reached.
     let starts_m = [[0.05, 0.05], [-0.01, -0.01], [0.0002, 0.0002], [0.004, 0.002]];
-    for (load, seeds) in [(Load::default(), 1), (Load::mounted(Mounting::Dry), 3), (ballasted, 8)] {
+    for (load, seeds) in [(Load::default(), 1), (Load::mounted(BodyState::Dry), 3), (ballasted, 8)] {
         for (start_m, seed) in starts_m.iter().flat_map(|start_m| (1..=seeds).map(move |seed| (start_m, seed))) {
             let mut config = TwinConfig::loaded(load);
             (config.axes[0].start_m, config.axes[1].start_m) = (start_m[0], start_m[1]);
@@ -95,7 +95,7 @@ fn homing_leaves_the_load_hanging_still() {
 
 #[test]
 fn tracking_is_within_table_3_dry_and_wet_and_its_position_within_a_tenth_of_it() {
-    for mounting in [Mounting::Dry, Mounting::Wet] {
+    for mounting in [BodyState::Dry, BodyState::Wet] {
         let mut rig = ready(mounting, Spread::default(), 1.2, |_| ());
         let mut is_out = false;
         for (speed_mm_s, position_mm, velocity_mm_s) in TABLE_3 {
@@ -137,7 +137,7 @@ fn ripple_m_s(rig: &ClosedLoop, ramp_s: f64, reference: Reference) -> f64 {
 }
 
 /// Root mean square of the ripple over ramps of one to two periods of the load mode.
-fn mean_ripple_m_s(mounting: Mounting, longer_s: f64, reference: Reference) -> f64 {
+fn mean_ripple_m_s(mounting: BodyState, longer_s: f64, reference: Reference) -> f64 {
     let rig = ready(mounting, Spread::NONE, 0.5, |control| {
         if let Reference::Shaped(mode_hz) = reference {
             control.axes[0].mode_hz = mode_hz;
@@ -151,7 +151,7 @@ fn mean_ripple_m_s(mounting: Mounting, longer_s: f64, reference: Reference) -> f
 }
 
 /// The load mode with the motor held, and the motor-side mode.
-fn modes_hz(mounting: Mounting) -> (f64, f64) {
+fn modes_hz(mounting: BodyState) -> (f64, f64) {
     let y = AxisParameters::long();
     let mass_kg = Load::mounted(mounting).mass_kg(&y);
     (y.load_mode_hz(mass_kg), y.motor_side_mode_hz(mass_kg))
@@ -159,7 +159,7 @@ fn modes_hz(mounting: Mounting) -> (f64, f64) {
 
 #[test]
 fn shaping_for_the_loads_mode_halves_the_ripple_at_equal_move_time_even_when_the_mode_is_ten_percent_wrong() {
-    for mounting in [Mounting::Dry, Mounting::Wet] {
+    for mounting in [BodyState::Dry, BodyState::Wet] {
         let (mode_hz, _) = modes_hz(mounting);
         for wrong in [0.9, 1.0, 1.1] {
             // ZVD makes a ramp longer by one period of the mode that it is given.
@@ -178,7 +178,7 @@ fn shaping_for_the_loads_mode_halves_the_ripple_at_equal_move_time_even_when_the
 /// cos²(πf/2f₁) of a vibration at f: three quarters here, and takes time for it.
 #[test]
 fn shaping_for_the_motor_side_mode_leaves_most_of_the_loads_ripple() {
-    for mounting in [Mounting::Dry, Mounting::Wet] {
+    for mounting in [BodyState::Dry, BodyState::Wet] {
         let (mode_hz, motor_hz) = modes_hz(mounting);
         let left = mean_ripple_m_s(mounting, 0.0, Reference::Shaped(motor_hz))
             / mean_ripple_m_s(mounting, 0.0, Reference::Plain);
@@ -192,7 +192,7 @@ fn shaping_for_the_motor_side_mode_leaves_most_of_the_loads_ripple() {
 #[test]
 fn a_replay_of_the_whole_loop_is_equal_bit_for_bit() {
     let run = || {
-        let mut rig = ready(Mounting::Wet, Spread::default(), 0.5, |_| ());
+        let mut rig = ready(BodyState::Wet, Spread::default(), 0.5, |_| ());
         let profile = Move { target_m: 2.0, speed_m_s: 0.5, acceleration_m_s2: 0.8, jerk_m_s3: 8.0, is_shaped: true };
         assert!(rig.carry_out(Request::Move { axis: 0, profile }, 0, 80_000));
         ([0, 1].map(|i| rig.twin.truth(i)), rig.twin.force_n(), rig.output)

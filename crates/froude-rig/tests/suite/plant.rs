@@ -1,7 +1,7 @@
 //! The plant against what is known in closed form.
 
 use froude_hydro::similarity::GRAVITY_M_S2;
-use froude_rig::load::{HungWeight, Load, Mounting, TowedBody};
+use froude_rig::load::{BodyState, HungWeight, Load, TowedBody};
 use froude_rig::parameters::AxisParameters;
 use froude_rig::plant::{Disturbance, Plant};
 use std::f64::consts::PI;
@@ -56,7 +56,7 @@ fn without_losses_energy_stays_to_rounding() {
 fn work_of_the_motor_is_found_again_as_energy_and_drag() {
     // Lossless but for drag: energy gained + ∫ D v³ dt = ∫ F v_q dt, to the second order of the step.
     let axis = AxisParameters::long().lossless();
-    let wet = Load::mounted(Mounting::Wet);
+    let wet = Load::mounted(BodyState::Wet);
     let defect_j = |step_s: f64| {
         let mut plant = Plant::new(&axis, &wet, step_s, 1.0, 1.0);
         plant.launch(0.1);
@@ -82,7 +82,7 @@ fn work_of_the_motor_is_found_again_as_energy_and_drag() {
 fn smooth_motion_converges_with_the_second_order() {
     // Everything that acts while sliding: drag, bump, Stribeck, gear loss, under a force that changes smoothly.
     let axis = AxisParameters::long();
-    let wet = Load::mounted(Mounting::Wet);
+    let wet = Load::mounted(BodyState::Wet);
     let end = |step_s: f64| {
         let mut plant = Plant::new(&axis, &wet, step_s, 0.5, 1.0);
         plant.launch(0.2);
@@ -132,7 +132,7 @@ fn the_bare_carriage_swings_at_13_and_45_hertz() {
 fn with_the_motor_held_a_wet_load_swings_slower_than_a_dry_one() {
     // The motor sticks: its own friction is made large, everything else is lossless.
     let axis = AxisParameters { motor_coulomb_n_m: 10.0, ..AxisParameters::long().lossless() };
-    let measured = [Mounting::None, Mounting::Dry, Mounting::Wet].map(|mounting| {
+    let measured = [BodyState::None, BodyState::Dry, BodyState::Wet].map(|mounting| {
         let body = TowedBody { drag_n_s2_m2: 0.0, ..TowedBody::CYLINDER };
         let load = Load { body, ..Load::mounted(mounting) };
         let mut plant = Plant::new(&axis, &load, STEP_S, 1.0, 1.0);
@@ -199,7 +199,7 @@ fn it_coasts_as_far_as_the_closed_form_says() {
 #[test]
 fn at_constant_speed_the_torque_balances_as_in_equation_7() {
     let axis = eq3();
-    let wet = Load::mounted(Mounting::Wet);
+    let wet = Load::mounted(BodyState::Wet);
     let e = axis.apparent(wet.mass_kg(&axis), wet.wheel_load_n(&axis));
     let r = axis.chain_m_rad();
     for motor_n in [5.0, 7.0, 9.0] {
@@ -283,7 +283,7 @@ fn a_pulley_takes_from_the_weight_in_one_direction_and_adds_in_the_other() {
 fn a_weight_pulls_the_carriage_to_its_floor_and_friction_stops_it_from_there() {
     let axis = AxisParameters::long();
     let (top_m, floor_m, w) = (4.6, 4.05, 10.0);
-    for mounting in [Mounting::None, Mounting::Dry] {
+    for mounting in [BodyState::None, BodyState::Dry] {
         let hung = HungWeight { weight_n: w, floor_m, ..HungWeight::default() };
         let load = Load { hung, ..Load::mounted(mounting) };
         let mut plant = Plant::new(&axis, &load, STEP_S, top_m, 1.0);
@@ -321,7 +321,7 @@ fn a_hard_stop_holds_the_motor_at_full_current() {
 
 #[test]
 fn several_steps_at_once_are_the_single_steps_bit_for_bit() {
-    let load = Load::mounted(Mounting::Wet);
+    let load = Load::mounted(BodyState::Wet);
     let mut single = Plant::new(&AxisParameters::long(), &load, STEP_S, 4.0, 1.0);
     let mut several = single;
     // To and fro, through rest, onto the far hard stop and off it again.

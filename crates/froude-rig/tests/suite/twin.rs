@@ -1,7 +1,7 @@
 //! The twin as the controller meets it.
 
 use froude_control::tick::{AxisCommand, Command, Tick};
-use froude_rig::load::{Load, Mounting};
+use froude_rig::load::{BodyState, Load};
 use froude_rig::twin::{TICK_S, Twin, TwinConfig};
 use froude_rig::{Injection, Scheduled};
 
@@ -21,7 +21,7 @@ fn wander(twin: &Twin, amplitude_v: f64) -> Command {
 
 #[test]
 fn a_replay_is_equal_bit_for_bit_and_another_seed_is_not() {
-    let config = TwinConfig::loaded(Load::mounted(Mounting::Wet));
+    let config = TwinConfig::loaded(Load::mounted(BodyState::Wet));
     let run = |seed| {
         let mut twin = Twin::new(&config, seed);
         let ticks: Vec<Tick> = (0..40_000).map(|_| twin.tick(wander(&twin, 1.2))).collect();
@@ -70,7 +70,7 @@ fn the_board_clock_wraps_after_its_first_second() {
 
 #[test]
 fn a_twin_without_commands_does_not_move() {
-    let mut twin = Twin::new(&TwinConfig::loaded(Load::mounted(Mounting::Wet)), 3);
+    let mut twin = Twin::new(&TwinConfig::loaded(Load::mounted(BodyState::Wet)), 3);
     let before = [0, 1].map(|i| twin.truth(i).load_position_m.to_bits());
     for _ in 0..200_000 {
         twin.tick(Command::default());
@@ -80,7 +80,7 @@ fn a_twin_without_commands_does_not_move() {
 
 #[test]
 fn the_force_sensor_feels_drag_at_constant_speed() {
-    let mut twin = Twin::new(&TwinConfig::loaded(Load::mounted(Mounting::Wet)), 5);
+    let mut twin = Twin::new(&TwinConfig::loaded(Load::mounted(BodyState::Wet)), 5);
     // Open loop at 2 V: about 9.6 N at the chain, 0.4 m/s after a second or two.
     let (mut sensed_n, mut true_n, mut n) = (0.0, 0.0, 0.0);
     while twin.truth(0).load_position_m < 3.5 {
@@ -156,7 +156,7 @@ fn a_new_run_keeps_the_place_and_draws_anew() {
         twin.tick(Command::default());
     }
     let (place_m, factors) = (twin.truth(0).motor_position_m, twin.run_factors(0));
-    twin.begin_run([Load::mounted(Mounting::Wet); 2], 99);
+    twin.begin_run([Load::mounted(BodyState::Wet); 2], 99);
     assert_eq!(twin.truth(0).motor_position_m.to_bits(), place_m.to_bits());
     assert_ne!(twin.run_factors(0), factors);
 }

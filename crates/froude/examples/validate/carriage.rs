@@ -4,7 +4,7 @@ use froude::fit::budget::Uncertain;
 use froude::fit::coverage::Count;
 use froude::identify::compare::{compare, named};
 use froude::identify::lint;
-use froude::methods::carriage::drag::calibration::{CalibrationSetup, ForcePerVolt, calibrate};
+use froude::methods::carriage::drag::calibration::{CalibrationSetup, calibrate};
 use froude::methods::carriage::drag::coefficient::Coefficient;
 use froude::methods::carriage::drag::detectability::DryMean;
 use froude::methods::carriage::drag::differences::of_differences;
@@ -99,7 +99,7 @@ fn campaigns(scenario: &Scenario, seeds: usize, setup: impl Fn(&mut DragSetup) +
             let mut declared = DragSetup::of_the_paper();
             declared.reference_area_m2 = Some(0.04);
             declared.speed_scale_relative = 0.0;
-            declared.calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
+            declared.calibration = Some(Uncertain::new(k, CALIBRATED_TO * k));
             setup(&mut declared);
             let logged = truth.runs(seed as u64);
             let runs: Vec<DragRun<'_>> = logged.iter().map(|r| r.view()).collect();
@@ -268,7 +268,7 @@ fn pairs_of_one_calibration(claims: &mut Claims, pairs: usize) {
     let record = |seed: u64, k: f64, key: &str| {
         let mut declared = DragSetup::of_the_paper();
         declared.speed_scale_relative = 0.0;
-        declared.calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, COMMON * k) });
+        declared.calibration = Some(Uncertain::new(k, COMMON * k));
         declared.keys.calibration = Some(key.to_owned());
         let logged = scenario.runs(seed);
         let runs: Vec<DragRun<'_>> = logged.iter().map(|r| r.view()).collect();
@@ -415,8 +415,8 @@ fn weights(claims: &mut Claims, seeds: usize) {
             .collect();
         let hits = results.iter().filter(|c| (c.interval_95[0]..=c.interval_95[1]).contains(&truth)).count() as u64;
         let n = results.len() as f64;
-        let mean = results.iter().map(|c| c.force_per_volt.force_per_volt_n.value).sum::<f64>() / n;
-        let u = results.iter().map(|c| c.force_per_volt.force_per_volt_n.relative()).sum::<f64>() / n;
+        let mean = results.iter().map(|c| c.force_per_volt.value).sum::<f64>() / n;
+        let u = results.iter().map(|c| c.force_per_volt.relative()).sum::<f64>() / n;
         let (low, high) = band(results.len() as u64);
         claims.holds(
             SECTION,
@@ -447,7 +447,7 @@ fn early_stop(claims: &mut Claims, seeds: usize) {
             let logged = scenario.runs(seed as u64);
             let runs: Vec<DragRun<'_>> = logged.iter().map(|r| r.view()).collect();
             let k = scenario.force_per_volt_n() * (1.0 + CALIBRATED_TO * normal(&mut rng));
-            let calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
+            let calibration = Some(Uncertain::new(k, CALIBRATED_TO * k));
             let setup = DragSetup { calibration, speed_scale_relative: 0.0, looks: 8, ..DragSetup::of_the_paper() };
             let mut live = OnLine::new(0.018, 2);
             let mut all = Vec::new();

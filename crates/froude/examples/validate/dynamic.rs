@@ -9,7 +9,6 @@ use std::path::Path;
 use froude::control::config::Config;
 use froude::control::request::{Move, Request};
 use froude::fit::budget::Uncertain;
-use froude::methods::carriage::drag::calibration::ForcePerVolt;
 use froude::methods::carriage::drag::coefficient::Coefficient;
 use froude::methods::carriage::drag::point::Method;
 use froude::methods::carriage::drag::run::RunKind;
@@ -19,7 +18,7 @@ use froude::records::campaign_file::read_campaign;
 use froude::rig::campaign::setup;
 use froude::rig::carriage::declared;
 use froude::rig::closed_loop::ClosedLoop;
-use froude::rig::load::{Load, Mounting, TowedBody};
+use froude::rig::load::{Load, TowedBody};
 use froude::rig::parameters::{AMPLIFIER_A_V, AxisParameters};
 use froude::rig::twin::TwinConfig;
 use rand_pcg::Pcg64;
@@ -121,8 +120,8 @@ fn campaign(twin: &TwinConfig, mut load: Load, control: &Config, d: f64, seed: u
     load.body.drag_n_s2_m2 = d;
     let mut rig = Rig::homed(twin, control, seed)?;
     let mut runs = Vec::new();
-    let dry = Load { mounting: Mounting::Dry, ..load };
-    let wet = Load { mounting: Mounting::Wet, ballast_kg: load.balancing_ballast_kg(), ..load };
+    let dry = Load { mounting: BodyState::Dry, ..load };
+    let wet = Load { mounting: BodyState::Wet, ballast_kg: load.balancing_ballast_kg(), ..load };
     rig.sweep(&mut runs, RunKind::Friction, dry, 1, NEAR_ONE_END_M)?;
     for pair in 1..=PAIRS {
         let halves = if pair % 2 == 1 { [dry, wet] } else { [wet, dry] };
@@ -137,7 +136,7 @@ fn campaign(twin: &TwinConfig, mut load: Load, control: &Config, d: f64, seed: u
     let mut declared = DragSetup::of_the_paper();
     declared.reference_area_m2 = Some(0.04);
     declared.speed_scale_relative = 0.0;
-    declared.calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
+    declared.calibration = Some(Uncertain::new(k, CALIBRATED_TO * k));
     declared.ballast = froude::methods::carriage::drag::setup::Ballast::Matched {
         carried_kg: Some(Uncertain::new(load.balancing_ballast_kg(), 0.0)),
     };
@@ -180,7 +179,7 @@ impl Rig {
             for (start_m, end_m) in [(from_m, to_m), (to_m, from_m)] {
                 self.run += 1;
                 self.driven.twin.begin_run([load; 2], self.seed << 16 | self.run);
-                let body = if load.mounting == Mounting::Wet { BodyState::Wet } else { BodyState::Dry };
+                let body = if load.mounting == BodyState::Wet { BodyState::Wet } else { BodyState::Dry };
                 let direction = (end_m - start_m).signum();
                 let id = format!("{body:?} {pair} {:+.2} m/s", direction * speed_m_s);
                 out.push(self.tow(id, kind, body, pair, end_m, speed_m_s, direction)?);

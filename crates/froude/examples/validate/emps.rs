@@ -43,7 +43,7 @@ pub fn all(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
         claims.near(
             SECTION,
             &format!("{name}: relative force error, %"),
-            100.0 * report.relative_force_error,
+            100.0 * report.fit.relative_force_error,
             error_percent,
             0.05,
             "publication; band of the issue",
@@ -63,7 +63,6 @@ fn read(root: &Path) -> Result<ServoLog, Box<dyn Error>> {
         time_s: of("time", Dimension::TIME)?,
         position_m: of("position", Dimension::LENGTH)?,
         command_v: of("command", Dimension::VOLTAGE)?,
-        load_n: None,
     })
 }
 
@@ -78,13 +77,17 @@ fn as_any_log(
     let chain = Chain::of_log(FORCE_PER_VOLT_N_V, log.rate_hz()?, chain.friction.clone());
     let report = identify_servo(log, &chain)?;
     let mass = printed[0].1;
-    let interval = report.coefficient("M").map_or([f64::NAN; 2], |c| c.interval);
-    let each = report.coefficients.iter().map(|c| format!("{} {:.3} ± {:.3}", c.name, c.value, c.block_std));
+    let interval = report.fit.coefficient("M").map_or([f64::NAN; 2], |c| c.interval);
+    let each = report.fit.coefficients.iter().map(|c| format!("{} {:.3} ± {:.3}", c.name, c.value, c.block_std));
     claims.holds(
         SECTION,
         &format!("{name}: as `froude identify` fits a log, without samples near rest and reversal"),
         "the interval of M contains the published value",
-        format!("{}; force error {:.2} %", each.collect::<Vec<_>>().join(", "), 100.0 * report.relative_force_error),
+        format!(
+            "{}; force error {:.2} %",
+            each.collect::<Vec<_>>().join(", "),
+            100.0 * report.fit.relative_force_error
+        ),
         (interval[0]..=interval[1]).contains(&mass),
     );
     Ok(())
@@ -107,7 +110,7 @@ fn prediction(
     claims.add(
         SECTION,
         &format!("{name}: force on two periods predicted from the other two, pinned chain (by 10), worst of six, %"),
-        &format!("≤ {bar_percent} (issue); in sample {:.2}", 100.0 * report.relative_force_error),
+        &format!("≤ {bar_percent} (issue); in sample {:.2}", 100.0 * report.fit.relative_force_error),
         format!("{pinned:.2}"),
         if pinned <= bar_percent { Verdict::Pass } else { Verdict::Finding },
     );
@@ -125,7 +128,7 @@ fn prediction(
 /// Each coefficient against the published one, in published standard deviations.
 fn parameters(claims: &mut Claims, name: &str, report: &ServoReport, printed: &[(&str, f64, f64)]) {
     for &(coefficient, value, std) in printed {
-        let found = report.coefficient(coefficient).map_or(f64::NAN, |c| c.value);
+        let found = report.fit.coefficient(coefficient).map_or(f64::NAN, |c| c.value);
         claims.near(
             SECTION,
             &format!("{name}: {coefficient}, SI"),
@@ -140,7 +143,7 @@ fn parameters(claims: &mut Claims, name: &str, report: &ServoReport, printed: &[
 /// The published intervals against those that hold for residuals which are not white.
 fn honesty(claims: &mut Claims, name: &str, report: &ServoReport, printed: &[(&str, f64, f64)]) {
     for &(coefficient, _, std) in printed {
-        let Some(c) = report.coefficient(coefficient) else { continue };
+        let Some(c) = report.fit.coefficient(coefficient) else { continue };
         claims.add(
             SECTION,
             &format!("{name}: standard deviation of {coefficient}: published, classical, HAC, blocks"),
@@ -161,8 +164,8 @@ fn honesty(claims: &mut Claims, name: &str, report: &ServoReport, printed: &[(&s
                 w.ljung_box,
                 w.p,
                 w.correlation_time_s.map_or("longer than the record can tell".to_owned(), |t| format!("{t:.2} s")),
-                report.spread.hac_lag_s,
-                report.spread.block_s
+                report.hac_lag_s,
+                report.block_s
             ),
             if w.is_white() { Verdict::Measured } else { Verdict::Finding },
         );

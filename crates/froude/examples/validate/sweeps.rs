@@ -52,7 +52,7 @@ fn of(
     for (name, truth) in truths {
         let mut inside = Count::default();
         let (mut square, mut stated) = (0.0, [0.0; 3]);
-        for c in reports.iter().filter_map(|r| r.coefficient(name)) {
+        for c in reports.iter().filter_map(|r| r.fit.coefficient(name)) {
             inside.add((c.interval[0]..=c.interval[1]).contains(truth));
             square += (c.value - truth).powi(2);
             stated.iter_mut().zip([c.classical_std, c.hac_std, c.block_std]).for_each(|(s, x)| *s += x * x);
@@ -96,7 +96,6 @@ fn identified(scenario: &Scenario, friction: &Friction, seed: u64) -> Result<Ser
                 time_s: within(&run.time_s),
                 position_m: within(&run.position_m),
                 command_v: within(&run.command_v),
-                ..ServoLog::default()
             })
         })
         .collect::<Result<Vec<_>, _>>()?;

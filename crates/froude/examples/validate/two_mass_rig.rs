@@ -9,7 +9,7 @@ use froude::fit::coverage::Count;
 use froude::methods::carriage::servo::{FlexibleOptions, FlexibleReport, Gear, MotorSide, ServoLog, identify_flexible};
 use froude::rig::closed_loop::ClosedLoop;
 use froude::rig::defaults::control_config;
-use froude::rig::load::{Load, Mounting, Strut};
+use froude::rig::load::{BodyState, Load, Strut};
 use froude::rig::{AxisParameters, TwinConfig};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
@@ -33,7 +33,7 @@ const DELAY_S: Uncertain = Uncertain::new(2e-4, 1e-4);
 
 /// Coverage over `seeds` runs, bare and wet.
 pub fn coverage(claims: &mut Claims, seeds: u64) -> Result<(), Box<dyn Error>> {
-    let wet = Load { strut: Strut::WithBody, ..Load::mounted(Mounting::Wet) };
+    let wet = Load { strut: Strut::WithBody, ..Load::mounted(BodyState::Wet) };
     let wet = Load { ballast_kg: wet.balancing_ballast_kg(), ..wet };
     for (name, load) in [("bare", Load::default()), ("wet, ballasted", wet)] {
         of_load(claims, name, load, seeds)?;

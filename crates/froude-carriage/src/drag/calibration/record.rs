@@ -5,9 +5,9 @@
 
 use froude_fit::distribution::coverage_factor;
 use froude_records::estimate::{
-    Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Law, MethodUsed, OWN, Output, SharedError, Signs,
-    Status, TypeA,
+    Coefficient, Derived, Diagnostics, Estimate, Frame, Law, MethodUsed, OWN, SharedError, Signs, Status, TypeA,
 };
+use froude_records::number::finite;
 use indexmap::IndexMap;
 
 use super::Calibration;
@@ -32,68 +32,50 @@ pub struct Known {
 /// The calibration as an estimate of `source`.
 #[must_use]
 pub fn calibrated(source: &str, c: &Calibration, known: &Known) -> Estimate {
-    let k = c.force_per_volt.force_per_volt_n;
+    let k = c.force_per_volt;
     let from_weights = k.value * known.weight_relative;
     // The covariance is that of what errs, alike in every calibration that has it; the slope is this calibration's (GUM F.1.2).
-    let error = |name: &str, quantity: &str, standard: f64, slope: f64| SharedError {
-        name: name.to_owned(),
-        quantity: quantity.to_owned(),
-        kind: ErrorKind::B,
-        covariance: vec![vec![standard * standard]],
-        dof: None,
-        limits: None,
-        sensitivity: vec![vec![slope]],
-    };
+    let error = |names: [&str; 2], standard, slope| SharedError::declared(names, standard, f64::INFINITY, [slope]);
     let own = |key: &Option<String>, name: &str| key.clone().unwrap_or_else(|| format!("{OWN}{name}"));
-    let weights = error("known weights", "hung_weight", known.weight_relative, k.value);
+    let weights = error(["known weights", "hung_weight"], known.weight_relative, k.value);
     let mut errors = IndexMap::from([(own(&known.weights, "weights"), weights)]);
     if c.from_pulley > 0.0 && known.pulley_standard > 0.0 {
         let slope = c.from_pulley / known.pulley_standard;
-        let loss = error("declared loss of the pulley", "pulley_loss", known.pulley_standard, slope);
+        let loss = error(["declared loss of the pulley", "pulley_loss"], known.pulley_standard, slope);
         errors.insert(own(&known.pulley, "pulley"), loss);
     }
     let coefficient = Coefficient {
-        label: None,
-        value: Some(k.value),
-        unit: "N/V".to_owned(),
-        status: Status::Free,
-        nuisance: false,
         standard_uncertainty: Some(k.standard),
         type_a: Some(c.type_a),
         type_b: Some(from_weights.hypot(c.from_pulley)),
         interval_95: Some(c.interval_95),
-        effective_dof: finite(k.dof),
-        unconstrained: None,
-        range_95: None,
+        effective_dof: finite(Some(k.dof)),
+        ..Coefficient::of(Some(k.value), "N/V", Status::Free)
     };
+    let formula = format!("{FORCE_PER_VOLT}/{:e} N/V", k.value / c.efficiency.value);
+    let half = coverage_factor(0.95, c.efficiency.dof) * c.efficiency.standard;
     let efficiency = Derived {
-        formula: format!("{FORCE_PER_VOLT}/{:e} N/V", k.value / c.efficiency.value),
-        value: Some(c.efficiency.value),
-        unit: "1".to_owned(),
         standard_uncertainty: Some(c.efficiency.standard),
-        interval_95: {
-            let half = coverage_factor(0.95, c.efficiency.dof) * c.efficiency.standard;
-            Some([c.efficiency.value - half, c.efficiency.value + half])
-        },
+        interval_95: Some([c.efficiency.value - half, c.efficiency.value + half]),
+        ..Derived::of(formula, Some(c.efficiency.value), "1")
+    };
+    let scatter = if c.is_pulley_measured {
+        "scatter of the runs (HC3), the declared loss of the pulley as a prior"
+    } else {
+        "scatter of the runs (HC3)"
     };
     Estimate {
-        type_a: Some(TypeA {
-            names: vec![FORCE_PER_VOLT.to_owned()],
-            matrix: vec![vec![c.type_a * c.type_a]],
-            dof: vec![finite(c.type_a_dof)],
-            kind: if c.is_pulley_measured {
-                "scatter of the runs (HC3), the declared loss of the pulley as a prior"
-            } else {
-                "scatter of the runs (HC3)"
-            }
-            .to_owned(),
-        }),
+        type_a: Some(TypeA::of(
+            vec![FORCE_PER_VOLT.to_owned()],
+            vec![vec![c.type_a * c.type_a]],
+            &[c.type_a_dof],
+            scatter,
+        )),
         errors,
         n_observations: c.used,
         derived: IndexMap::from([("efficiency".to_owned(), efficiency)]),
         diagnostics: Diagnostics { notes: c.notes.clone(), ..Diagnostics::default() },
         recommended: true,
-        not_contradicted: Vec::new(),
         reason: Some("from known weights, gear and chain included".to_owned()),
         ..estimate(source, "calibration", "least squares of the command on known weights, both directions", coefficient)
     }
@@ -115,46 +97,27 @@ pub fn declared(source: &str, setup: &DragSetup) -> Estimate {
     };
     let standard = ideal * of_gear.hypot(efficiency * constants);
     let coefficient = Coefficient {
-        label: None,
-        value: Some(ideal * efficiency),
-        unit: "N/V".to_owned(),
-        status: Status::Fixed,
-        nuisance: false,
         standard_uncertainty: Some(standard),
         type_a: Some(0.0),
         type_b: Some(standard),
-        interval_95: None,
-        effective_dof: None,
-        unconstrained: None,
-        range_95: None,
+        ..Coefficient::of(Some(ideal * efficiency), "N/V", Status::Fixed)
     };
     estimate(&format!("{source}, declared"), "declared", "the constants of the drive as declared", coefficient)
 }
 
 fn estimate(source: &str, method: &str, words: &str, coefficient: Coefficient) -> Estimate {
-    let output = Output { unit: "N".to_owned(), formula: None };
     Estimate {
         id: format!("{source}/{FORCE_PER_VOLT}"),
         source: source.to_owned(),
         kind: "towing".to_owned(),
-        method: MethodUsed { name: method.to_owned(), version: 1, words: words.to_owned() },
+        method: MethodUsed::of(method, words),
         frame: Frame { words: "y along the travel of the carriage".to_owned(), ..Frame::chain() },
         signs: Signs(
             "force of the drive on the carriage at the chain per volt of its command, the motor driving the gear"
                 .to_owned(),
         ),
-        law: Law {
-            name: FORCE_PER_VOLT.to_owned(),
-            version: 1,
-            inputs: IndexMap::from([("command".to_owned(), "V".to_owned())]),
-            outputs: IndexMap::from([("drive_force".to_owned(), output)]),
-            constants: IndexMap::new(),
-        },
+        law: Law::of(FORCE_PER_VOLT, [("command", "V")]).giving("drive_force", "N", None),
         coefficients: IndexMap::from([(FORCE_PER_VOLT.to_owned(), coefficient)]),
         ..Estimate::default()
     }
-}
-
-fn finite(x: f64) -> Option<f64> {
-    Some(x).filter(|x| x.is_finite())
 }

@@ -14,8 +14,8 @@ use froude_records::units::Dimension;
 use super::{Calibration, Jog as Verdict, jog as judged, record};
 use crate::drag::{DragRun, DragSetup};
 use crate::reduction::{calibration_of, known_of_calibration, rig_key, setup_of};
-use crate::runs::{EXCITING, Runs, for_drag, read};
-use crate::source::files_of;
+use crate::runs::{EXCITING, Runs, for_drag};
+use crate::source::{DRIVEN, files_of, runs_of};
 
 /// Known weights over a pulley.
 #[derive(Debug)]
@@ -24,8 +24,8 @@ pub struct KnownWeights;
 /// Its only name.
 const NAME: &str = "calibration";
 
-/// Motion and command of a run with a weight.
-const NEEDS: [Need; 1] = [Need::of(&["calibration"], &["position", "reference_velocity", "command"])];
+/// A run with a weight.
+const NEEDS: [Need; 1] = [Need::of(&["calibration"], DRIVEN)];
 
 impl Method for KnownWeights {
     fn names(&self) -> &'static [&'static str] {
@@ -53,9 +53,8 @@ impl Method for KnownWeights {
         _: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
-        progress("reading the runs");
-        let runs = read(paths, &[Role::Calibration, Role::Jog], campaign.as_deref())?;
+        let roles = [Role::Calibration, Role::Jog];
+        let Some(runs) = runs_of(source, &roles, progress)? else { return Ok(Found::default()) };
         progress("calibrating");
         let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
         let mut setup = setup_of(runs.campaign.as_ref(), constants);
@@ -199,7 +198,7 @@ fn section(c: Option<&Calibration>, setup: &DragSetup, results: &[Answer], jogs:
 }
 
 fn sentences(c: &Calibration, setup: &DragSetup) -> Vec<String> {
-    let k = c.force_per_volt.force_per_volt_n;
+    let k = c.force_per_volt;
     let mut out = vec![
         format!(
             "The drive gives {} N per volt of its command, 95 % interval {} N/V, from {}; {} left out.",

@@ -5,6 +5,7 @@ use froude_fit::faer::Mat;
 use froude_fit::propagate::effective_dof;
 
 use crate::servo::cluster::Clustered;
+use crate::servo::interval::CONFIDENCE;
 
 /// Parameters of the iteration: logarithms of four, sums of two, fractions of two.
 pub(crate) const PARAMETERS: usize = 8;
@@ -18,7 +19,6 @@ pub(crate) struct Covariance {
     /// With the force per volt: known, not estimated.
     pub(super) known: Mat<f64>,
     pub(super) radius_relative: f64,
-    pub(super) confidence: f64,
 }
 
 impl Covariance {
@@ -36,7 +36,7 @@ impl Covariance {
         let scatter = quadratic(gradient, &self.clustered.covariance);
         let known = self.known(gradient, radius);
         let dof = effective_dof(&[(scatter, self.clustered.dof(gradient)), (known, f64::INFINITY)]);
-        coverage_factor(self.confidence, dof) * (scatter + known).sqrt()
+        coverage_factor(CONFIDENCE, dof) * (scatter + known).sqrt()
     }
 }
 

@@ -6,7 +6,7 @@ use froude_fit::faer::Mat;
 
 use crate::drag::mbdp;
 use crate::servo::flexible::TwoMass;
-use crate::servo::interval::{IntervalOptions, Whiteness};
+use crate::servo::interval::Whiteness;
 use crate::servo::motor::MotorSide;
 use crate::servo::report::ServoCoefficient;
 
@@ -45,8 +45,6 @@ pub struct FlexibleOptions {
     pub step_s: f64,
     /// Antiresonances tried as a start, Hz.
     pub start_hz: Vec<f64>,
-    /// How intervals are made; of the blocks only their length is used.
-    pub intervals: IntervalOptions,
 }
 
 impl FlexibleOptions {
@@ -62,7 +60,6 @@ impl FlexibleOptions {
             radius_relative: 0.0,
             step_s: 2e-4,
             start_hz: vec![2.5, 3.2, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 17.0, 22.0, 30.0],
-            intervals: IntervalOptions::default(),
         }
     }
 
@@ -111,11 +108,7 @@ pub struct FlexibleReport {
     pub axis: TwoMass,
     /// Whether what lies behind the gear is as it appears through it, because its efficiency is not declared.
     pub is_apparent: bool,
-    /// `‖speed − model‖/‖speed‖` of the motor in a free simulation.
-    pub relative_speed_error: f64,
-    /// Standard deviation of what is not predicted from sample to sample, m.
-    pub innovation_m: f64,
-    /// Whether that is white.
+    /// Whether what is not predicted from sample to sample is white.
     pub whiteness: Option<Whiteness>,
     /// Samples compared.
     pub n_rows: usize,
@@ -137,12 +130,13 @@ impl FlexibleReport {
     /// Positions are differentiated over a third of the period of the fastest mode.
     #[must_use]
     pub fn flexible(&self) -> mbdp::Flexible {
+        let masses = self.axis.masses;
         mbdp::Flexible {
-            motor_mass_kg: self.axis.motor_mass_kg,
-            load_mass_kg: self.axis.load_mass_kg,
-            stiffness_n_m: self.axis.stiffness_n_m,
-            damping_n_s_m: self.axis.damping_n_s_m,
-            span_s: (3.0 * self.axis.resonance_hz()).recip(),
+            motor_mass_kg: masses.motor_mass_kg,
+            load_mass_kg: masses.load_mass_kg,
+            stiffness_n_m: masses.stiffness_n_m,
+            damping_n_s_m: masses.damping_n_s_m,
+            span_s: (3.0 * masses.resonance_hz()).recip(),
         }
     }
 }

@@ -37,7 +37,7 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
         readings.iter_mut().zip(judged).for_each(|(reading, value)| reading.2 = value);
     }
     let of_response = of_response(source, (law, ("open_loop", "1")), &readings, spread.as_ref(), tuned.band_hz);
-    let measured = |name: &str, value: f64, unit: &str| (name.to_owned(), Measured { value, unit: unit.to_owned() });
+    let measured = |name: &str, value: f64, unit: &str| (name.to_owned(), Measured::of(value, unit));
     let g = &c.gains;
     let constants = [
         measured("proportional", g.proportional_v_rad, "V/rad"),
@@ -48,8 +48,7 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
     ];
     // No interval is known of these.
     let derived = |name: &str, value: Option<f64>, unit: &str, formula: &str| {
-        let (formula, unit) = (formula.to_owned(), unit.to_owned());
-        (name.to_owned(), Derived { formula, value, unit, standard_uncertainty: None, interval_95: None })
+        (name.to_owned(), Derived::of(formula, value, unit))
     };
     let ramps = "the hardest ramps through the two masses that the response shows";
     let heaviest = "phase margin with the heaviest body, on the two masses that the response shows";
@@ -58,11 +57,7 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
         "the loop is not whole within the measured band: its margins beyond are the fitted two-mass model's".to_owned()
     });
     Estimate {
-        method: MethodUsed {
-            name: "tuning".to_owned(),
-            version: 1,
-            words: format!("margins on the measured response; gains {}", c.name),
-        },
+        method: MethodUsed::of("tuning", format!("margins on the measured response; gains {}", c.name)),
         law: Law { constants: constants.into(), ..of_response.law },
         n_observations: tuned.plant.len(),
         derived: [
@@ -77,7 +72,6 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
             ..Diagnostics::default()
         },
         recommended,
-        not_contradicted: Vec::new(),
         reason: recommended.then(|| "it keeps all that is asked for".to_owned()),
         ..of_response
     }

@@ -1,6 +1,7 @@
 //! Modes of a carriage as estimates, one for each state of the body.
 
 use froude_records::estimate::{Derived, Diagnostics, Estimate, MethodUsed};
+use froude_records::number::finite;
 use indexmap::IndexMap;
 
 use super::page::free_without_loss;
@@ -38,41 +39,20 @@ fn estimate(source: &str, state: &StateModes, m: &TwoMassModes, of: &CarriageMod
     let band_hz = [state.plant.first(), state.plant.last()].map(|p| p.map_or(0.0, |p| p.frequency_hz));
     let spread = is_known.then(|| Spread { covariance, dof: vec![m.dof; readings.len()] });
     let of_response = of_response(source, (&law, ("response", "rad/V")), &readings, spread.as_ref(), band_hz);
-    let mut derived = IndexMap::from([(
-        "inertia_ratio".to_owned(),
-        Derived {
-            formula: "(free_frequency/load_frequency)^2 - 1".to_owned(),
-            value: Some(m.inertia_ratio),
-            unit: "1".to_owned(),
-            standard_uncertainty: None,
-            interval_95: None,
-        },
-    )]);
+    let ratio = Derived::of("(free_frequency/load_frequency)^2 - 1", Some(m.inertia_ratio), "1");
+    let mut derived = IndexMap::from([("inertia_ratio".to_owned(), ratio)]);
     if let Some((e, (hz, standard))) = efficiency.zip(free_without_loss(m, efficiency)) {
-        let number = Derived {
-            formula: format!("load_frequency*sqrt(1 + {:e}*inertia_ratio), the gear's loss taken out", e.value),
-            value: Some(hz),
-            unit: "Hz".to_owned(),
-            standard_uncertainty: Some(standard).filter(|u| u.is_finite()),
-            interval_95: None,
-        };
+        let formula = format!("load_frequency*sqrt(1 + {:e}*inertia_ratio), the gear's loss taken out", e.value);
+        let number = Derived { standard_uncertainty: finite(Some(standard)), ..Derived::of(formula, Some(hz), "Hz") };
         derived.insert("free_frequency_without_loss".to_owned(), number);
     }
     if let Some((hz, damping)) = of.proposed {
-        let middle = |formula: &str, value, unit: &str| {
-            let (formula, value, unit) = (formula.to_owned(), Some(value), unit.to_owned());
-            Derived { formula, value, unit, standard_uncertainty: None, interval_95: None }
-        };
-        let frequency = middle("geometric mean of load_frequency with the body, to shape for", hz, "Hz");
-        let damping = middle("mean of load_damping with the body, to shape for", damping, "1");
+        let frequency = Derived::of("geometric mean of load_frequency with the body, to shape for", Some(hz), "Hz");
+        let damping = Derived::of("mean of load_damping with the body, to shape for", Some(damping), "1");
         derived.extend([("shaped_mode".to_owned(), frequency), ("shaped_damping".to_owned(), damping)]);
     }
     Estimate {
-        method: MethodUsed {
-            name: "resonance".to_owned(),
-            version: 1,
-            words: "least squares of the logarithm of the response, two masses and a chain".to_owned(),
-        },
+        method: MethodUsed::of("resonance", "least squares of the logarithm of the response, two masses and a chain"),
         n_observations: state.plant.len(),
         derived,
         diagnostics: Diagnostics {

@@ -53,40 +53,37 @@ pub enum RunnerError {
     },
     /// A fault while nothing was to move: the operator was asked, or logs were read.
     #[error(
-        "fault between two runs, while nothing was to move: {fault:?} (category {category} stop). Remove the cause, then run the \
-         campaign again: it resumes from there"
+        "fault between two runs, while nothing was to move: {fault:?} (category {} stop). Remove the cause, then run the \
+         campaign again: it resumes from there",
+        fault.category() as u8
     )]
     FaultAtRest {
         /// The fault.
         fault: Fault,
-        /// How it was stopped.
-        category: u8,
     },
     /// The controller latched a fault.
     #[error(
-        "fault in {run}: {fault:?} (category {category} stop); the run is kept and marked. Remove the cause, then run the campaign \
-         again: it resumes from there"
+        "fault in {run}: {fault:?} (category {} stop); the run is kept and marked. Remove the cause, then run the campaign \
+         again: it resumes from there",
+        fault.category() as u8
     )]
     Fault {
         /// The run.
         run: String,
         /// The fault.
         fault: Fault,
-        /// How it was stopped.
-        category: u8,
     },
     /// A fault before the run itself: in homing, or on the way to its start.
     #[error(
-        "fault before {run}, in homing or on the way to its start: {fault:?} (category {category} stop); nothing was recorded. Remove the \
-         cause (a loop softer than its chain lets the motor swing: froude carriage tune), then run the campaign again"
+        "fault before {run}, in homing or on the way to its start: {fault:?} (category {} stop); nothing was recorded. Remove the \
+         cause (a loop softer than its chain lets the motor swing: froude carriage tune), then run the campaign again",
+        fault.category() as u8
     )]
     FaultBefore {
         /// The run.
         run: String,
         /// The fault.
         fault: Fault,
-        /// How it was stopped.
-        category: u8,
     },
     /// The controller refused a request.
     #[error("{run}: the controller refused to {what}: {refusal:?}")]

@@ -252,12 +252,8 @@ impl<'a, 'o> Session<'a, 'o> {
     }
 
     fn faulted(&self, fault: Fault) -> RunnerError {
-        let (run, category) = (self.run.id.clone(), fault.category() as u8);
-        if self.is_recorded {
-            RunnerError::Fault { run, fault, category }
-        } else {
-            RunnerError::FaultBefore { run, fault, category }
-        }
+        let run = self.run.id.clone();
+        if self.is_recorded { RunnerError::Fault { run, fault } } else { RunnerError::FaultBefore { run, fault } }
     }
 
     /// Stops because the operator asked for it.

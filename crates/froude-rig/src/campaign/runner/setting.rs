@@ -10,7 +10,7 @@ use froude_records::run::{AxisConstants, BodyState, CampaignMark};
 use indexmap::IndexMap;
 
 use crate::drive::Stranger;
-use crate::load::Load;
+use crate::load::{HungWeight, Load};
 
 /// An approach that coasts too far even at this speed is none, m/s.
 pub(crate) const SLOWEST_APPROACH_M_S: f64 = 0.02;
@@ -58,15 +58,9 @@ impl Setting {
 
 /// The load of a run: a ballasted wet run carries the wheel load that buoyancy removes.
 pub(crate) fn load_of(run: &PlannedRun, base: &Load) -> Load {
-    use crate::load::{HungWeight, Mounting};
-    let mounting = match run.body {
-        BodyState::None => Mounting::None,
-        BodyState::Dry => Mounting::Dry,
-        BodyState::Wet => Mounting::Wet,
-    };
-    let ballast_kg = if run.is_ballasted && mounting == Mounting::Wet { base.balancing_ballast_kg() } else { 0.0 };
+    let ballast_kg = if run.is_ballasted && run.body == BodyState::Wet { base.balancing_ballast_kg() } else { 0.0 };
     Load {
-        mounting,
+        mounting: run.body,
         ballast_kg,
         hung: HungWeight {
             weight_n: run.hung_weight_n,
