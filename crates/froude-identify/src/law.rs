@@ -458,14 +458,14 @@ fn body_of(estimate: &Estimate) -> Result<Body, IdentifyError> {
 /// Geometry of a body as a record carries it.
 #[must_use]
 pub fn geometry_of(body: &Body) -> IndexMap<String, Measured> {
-    let m = |value, unit: &str| Measured { value, unit: unit.to_owned() };
-    IndexMap::from([
-        ("major_semi_axis".to_owned(), m(body.link.major_semi_axis_m, "m")),
-        ("minor_semi_axis".to_owned(), m(body.link.minor_semi_axis_m, "m")),
-        ("half_length".to_owned(), m(body.link.half_length_m, "m")),
-        ("head_side_area".to_owned(), m(body.head_side_area_m2, "m^2")),
-        ("tail_side_area".to_owned(), m(body.tail_side_area_m2, "m^2")),
-    ])
+    let all = [
+        ("major_semi_axis", body.link.major_semi_axis_m, "m"),
+        ("minor_semi_axis", body.link.minor_semi_axis_m, "m"),
+        ("half_length", body.link.half_length_m, "m"),
+        ("head_side_area", body.head_side_area_m2, "m^2"),
+        ("tail_side_area", body.tail_side_area_m2, "m^2"),
+    ];
+    all.map(|(name, value, unit)| (name.to_owned(), Measured::of(value, unit))).into()
 }
 
 /// The channel that a law gives: on the left of a formula `X Y Z K M N` are loads, also beside a column of the table with that name.

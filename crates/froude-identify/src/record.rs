@@ -1,12 +1,13 @@
 //! A fitted law as an estimate record.
 
 use froude_fit as fit;
-use froude_fit::budget::{Kind as Evaluation, Part};
+use froude_fit::budget::{Combined, Kind as Evaluation, Part};
 use froude_fit::faer::Mat;
 use froude_records::estimate::{
-    Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Interval, Law, Measured, MethodUsed, OWN, Output,
-    RunScatter, SharedError, Signs, Status, TypeA,
+    Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Interval, Law, Measured, MethodUsed, OWN,
+    RunScatter, SharedError, Status, TypeA,
 };
+use froude_records::number::finite;
 use indexmap::IndexMap;
 
 use crate::dataset::{Dataset, unit_text};
@@ -27,15 +28,15 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
     let mut refers_to = IndexMap::new();
     if let Some(d) = data.values("density") {
         let value = d.iter().sum::<f64>() / d.len() as f64;
-        refers_to.insert("density".to_owned(), Measured { value, unit: "kg/m^3".to_owned() });
+        refers_to.insert("density".to_owned(), Measured::of(value, "kg/m^3"));
     }
     match &model.law.kind {
         Kind::Drag { body, .. } => {
-            constants.insert("v_ref".to_owned(), Measured { value: REFERENCE_SPEED_M_S, unit: "m/s".to_owned() });
+            constants.insert("v_ref".to_owned(), Measured::of(REFERENCE_SPEED_M_S, "m/s"));
             refers_to.extend(geometry_of(body));
         }
         Kind::PowerLaw { .. } => {
-            constants.insert("U_ref".to_owned(), Measured { value: REFERENCE_SPEED_M_S, unit: "m/s".to_owned() });
+            constants.insert("U_ref".to_owned(), Measured::of(REFERENCE_SPEED_M_S, "m/s"));
         }
         Kind::Formulas(_) => {}
     }
@@ -52,18 +53,12 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         id: format!("{}/{name}", of.source),
         source: of.source.clone(),
         kind: of.kind.name().to_owned(),
-        method: MethodUsed {
-            name: stated.method.clone(),
-            version: 1,
-            words: stated.words.clone().unwrap_or_else(|| method(model, data)),
-        },
+        method: MethodUsed::of(&stated.method, stated.words.clone().unwrap_or_else(|| method(model, data))),
         frame: stated.frame.clone(),
         point: stated.point.clone(),
-        signs: Signs::default(),
         attitude: stated.attitude.clone(),
         law: law(model, data, constants),
         refers_to,
-        data: Vec::new(),
         clusters: clusters(model, data),
         dof,
         sigma,
@@ -79,7 +74,7 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         diagnostics,
         recommended: chosen.is_some(),
         reason: chosen.map(|r| r.reason.clone()),
-        not_contradicted: Vec::new(),
+        ..Estimate::default()
     }
 }
 
@@ -158,7 +153,7 @@ fn scatter_by_load(
     let dof = |c: &fit::ComponentSummary| if model.in_variables { of_residuals } else { c.dof };
     let sigma = |(r, c): (usize, &fit::ComponentSummary)| {
         let unit = if in_logarithms { "1".to_owned() } else { unit_text(data, &c.name) };
-        of_rows(r, c).map(|value| (c.name.clone(), Measured { value, unit }))
+        of_rows(r, c).map(|value| (c.name.clone(), Measured::of(value, unit)))
     };
     let dof = loads.iter().map(|c| (c.name.clone(), Some(dof(c)))).collect();
     (dof, loads.iter().enumerate().filter_map(sigma).collect())
@@ -168,8 +163,8 @@ fn scatter_by_load(
 fn run_scatter(model: &ModelFit, data: &Dataset) -> IndexMap<String, RunScatter> {
     let sizes = model.run_scatter(data).unwrap_or_default();
     let of = |(load, [constant, part, dof]): (&fit::ComponentSummary, [f64; 3])| {
-        let constant = Measured { value: constant, unit: unit_text(data, &load.name) };
-        (load.name.clone(), RunScatter { constant, part, dof: Some(dof).filter(|dof| dof.is_finite()) })
+        let constant = Measured::of(constant, unit_text(data, &load.name));
+        (load.name.clone(), RunScatter { constant, part, dof: finite(Some(dof)) })
     };
     model.fit.components.iter().zip(sizes).map(of).collect()
 }
@@ -178,11 +173,9 @@ fn run_scatter(model: &ModelFit, data: &Dataset) -> IndexMap<String, RunScatter>
 fn derived(d: &reduced::Derived, coefficients: &IndexMap<String, Coefficient>) -> Option<(String, Derived)> {
     let c = coefficients.get(&d.of)?;
     let number = Derived {
-        formula: d.formula.clone(),
-        value: c.value.map(|x| x * d.factor),
-        unit: d.unit.clone(),
         standard_uncertainty: c.standard_uncertainty.map(|u| u * d.factor),
         interval_95: c.interval_95.map(|ends| ends.map(|x| x * d.factor)),
+        ..Derived::of(&d.formula, c.value.map(|x| x * d.factor), &d.unit)
     };
     Some((d.name.clone(), number))
 }
@@ -232,14 +225,6 @@ fn coefficients(model: &ModelFit, labels: &IndexMap<String, String>) -> IndexMap
         .map(|(j, spec)| {
             let fitted = &model.fit.coefficients[j];
             let is_refused = model.is_refused(j);
-            let status = match fitted.status {
-                fit::Status::Free => Status::Free,
-                fit::Status::AtBound | fit::Status::BoundContradicted => Status::AtBound,
-                fit::Status::Fixed => Status::Fixed,
-                fit::Status::Excluded => Status::Excluded,
-                fit::Status::Prior => Status::Prior,
-                fit::Status::Undetermined => Status::Undetermined,
-            };
             let combined = model.combined[j];
             // The interval is the unconstrained one, widened by the budget, cut by the bounds.
             // That of a known coefficient is its own.
@@ -254,25 +239,49 @@ fn coefficients(model: &ModelFit, labels: &IndexMap<String, String>) -> IndexMap
                 _ => None,
             };
             let is_contradicted = model.contradicted_bound(j).is_some();
-            let status = if is_contradicted { Status::BoundContradicted } else { status };
+            let status = match status(fitted.status) {
+                _ if is_contradicted => Status::BoundContradicted,
+                Status::BoundContradicted => Status::AtBound,
+                other => other,
+            };
             let interval_95 = interval_95.filter(|_| !is_contradicted && !is_refused && !model.is_moved_out(j));
-            let coefficient = Coefficient {
+            let of_record = Coefficient {
                 label: labels.get(&spec.name).cloned(),
                 nuisance: j >= model.law.coefficients.len(),
-                value: fitted.value.map(|_| model.coefficients[j]),
                 unconstrained: apart(fitted.unconstrained, fitted.value, combined.map(|c| c.standard)),
-                unit: spec.unit.clone(),
-                status,
-                standard_uncertainty: combined.map(|c| c.standard),
-                type_a: combined.map(|c| c.type_a),
-                type_b: combined.map(|c| c.type_b),
                 interval_95,
-                range_95: None,
-                effective_dof: combined.map(|c| c.dof).filter(|d| d.is_finite()),
+                ..coefficient(fitted.value.map(|_| model.coefficients[j]), &spec.unit, status, combined)
             };
-            (spec.name.clone(), coefficient)
+            (spec.name.clone(), of_record)
         })
         .collect()
+}
+
+/// A coefficient as a record has it, with the interval about its value.
+#[must_use]
+pub fn coefficient(value: Option<f64>, unit: &str, status: Status, combined: Option<Combined>) -> Coefficient {
+    Coefficient {
+        standard_uncertainty: combined.map(|c| c.standard),
+        type_a: combined.map(|c| c.type_a),
+        type_b: combined.map(|c| c.type_b),
+        interval_95: value.zip(combined).map(|(value, c)| c.interval(value)),
+        effective_dof: finite(combined.map(|c| c.dof)),
+        ..Coefficient::of(value, unit, status)
+    }
+}
+
+/// What became of a coefficient in a fit, as a record says it.
+#[must_use]
+pub fn status(found: fit::Status) -> Status {
+    match found {
+        fit::Status::Free => Status::Free,
+        fit::Status::AtBound => Status::AtBound,
+        fit::Status::Fixed => Status::Fixed,
+        fit::Status::Excluded => Status::Excluded,
+        fit::Status::Prior => Status::Prior,
+        fit::Status::Undetermined => Status::Undetermined,
+        fit::Status::BoundContradicted => Status::BoundContradicted,
+    }
 }
 
 /// An estimate without bounds where it is another than the one within them, by more than rounding.
@@ -283,30 +292,22 @@ fn apart(unconstrained: Option<f64>, value: Option<f64>, standard: Option<f64>) 
 
 /// The law with the motion that it reads and the loads that it gives.
 fn law(model: &ModelFit, data: &Dataset, constants: IndexMap<String, Measured>) -> Law {
-    let output = |(i, load): (usize, &String)| {
+    let inputs = model.law.channels().into_iter().map(|name| (name, unit_text(data, name)));
+    let giving = |law: Law, (i, load): (usize, &String)| {
         // A text may call its load by a ship theorist's letter.
         let formula = model.law.texts.get_index(i).map(|(_, text)| text.clone());
-        (load.clone(), Output { unit: unit_text(data, load), formula })
+        law.giving(load, unit_text(data, load), formula)
     };
-    Law {
-        name: model.law.name.clone(),
-        version: 1,
-        inputs: model.law.channels().into_iter().map(|name| (name.to_owned(), unit_text(data, name))).collect(),
-        outputs: model.law.responses.iter().enumerate().map(output).collect(),
-        constants,
-    }
+    let law = Law { constants, ..Law::of(&model.law.name, inputs) };
+    model.law.responses.iter().enumerate().fold(law, giving)
 }
 
 /// The independent groups behind a scatter that counts them.
 fn clusters(model: &ModelFit, data: &Dataset) -> Option<Clusters> {
     match &model.scatter {
         Scatter::Classical | Scatter::Runs | Scatter::Hc3 | Scatter::Serial(_) => None,
-        Scatter::Cluster => {
-            data.group.as_ref().map(|_| Clusters { by: data.grouped_by.word().to_owned(), n: data.clusters() })
-        }
-        Scatter::Replicates { sets, .. } => {
-            sets.first().map(|set| Clusters { by: set.left_out.to_owned(), n: set.without.len() })
-        }
+        Scatter::Cluster => data.group.as_ref().map(|_| Clusters::of(data.grouped_by.word(), data.clusters())),
+        Scatter::Replicates { sets, .. } => sets.first().map(|set| Clusters::of(set.left_out, set.without.len())),
     }
 }
 
@@ -323,11 +324,10 @@ fn square(of: &Mat<f64>, there: &[usize]) -> Vec<Vec<f64>> {
 fn type_a(model: &ModelFit) -> Option<TypeA> {
     let there = known(model);
     let scatter = model.budget.iter().find(|part| part.kind == Evaluation::A)?;
-    (!there.is_empty()).then(|| TypeA {
-        names: there.iter().map(|&j| model.specs[j].name.clone()).collect(),
-        matrix: square(&scatter.covariance, &there),
-        dof: there.iter().map(|&j| Some(scatter.dof[j]).filter(|d| d.is_finite())).collect(),
-        kind: model.covariance_kind.clone(),
+    (!there.is_empty()).then(|| {
+        let names = there.iter().map(|&j| model.specs[j].name.clone()).collect();
+        let dof: Vec<f64> = there.iter().map(|&j| scatter.dof[j]).collect();
+        TypeA::of(names, square(&scatter.covariance, &there), &dof, &model.covariance_kind)
     })
 }
 
@@ -393,10 +393,6 @@ fn evaluated(part: &Part) -> ErrorKind {
         Evaluation::Input => ErrorKind::Input,
         Evaluation::ModelForm => ErrorKind::ModelForm,
     }
-}
-
-fn finite(dof: Option<f64>) -> Option<f64> {
-    dof.filter(|d| d.is_finite())
 }
 
 /// The determined combinations of undetermined coefficients, named by their physical factors where these explain them.

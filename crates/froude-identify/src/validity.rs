@@ -38,7 +38,7 @@ pub(crate) fn of_laws(data: &Dataset, laws: &[ForceLaw]) -> IndexMap<String, Ran
     let of = |name: &str| {
         let values = data.values(name)?;
         let [low, high] = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(*x), h.max(*x)]);
-        Some((name.to_owned(), Range { low, high, unit: unit_text(data, name) }))
+        Some((name.to_owned(), Range::of([low, high], unit_text(data, name))))
     };
     laws.iter().flat_map(ForceLaw::channels).filter(is_other).filter_map(of).collect()
 }
@@ -54,7 +54,7 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
         if !values.is_empty() {
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            out.insert(name.to_owned(), Range { low, high, unit: unit.to_owned() });
+            out.insert(name.to_owned(), Range::of([low, high], unit));
         }
     };
     let moving = moving(data.values("speed").unwrap_or_default(), AT_REST);

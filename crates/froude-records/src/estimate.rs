@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::comparison::Comparison;
 use crate::finding::Finding;
+use crate::number::finite;
 use crate::run::step::Step;
 
 pub use crate::measured::Measured;
@@ -88,6 +89,18 @@ pub struct Range {
     pub unit: String,
 }
 
+impl Range {
+    /// From the smallest value to the largest.
+    pub fn of([low, high]: [f64; 2], unit: impl Into<String>) -> Self {
+        Self { low, high, unit: unit.into() }
+    }
+
+    /// Widens it to hold these as well.
+    pub fn include(&mut self, [low, high]: [f64; 2]) {
+        (self.low, self.high) = (self.low.min(low), self.high.max(high));
+    }
+}
+
 /// What became of a coefficient in the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -143,6 +156,13 @@ pub struct Coefficient {
     pub effective_dof: Option<f64>,
 }
 
+impl Coefficient {
+    /// A value and its status, without an uncertainty.
+    pub fn of(value: Option<f64>, unit: impl Into<String>, status: Status) -> Self {
+        Self { value, unit: unit.into(), status, ..Self::default() }
+    }
+}
+
 /// The law that the coefficients belong to.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Law {
@@ -163,6 +183,22 @@ pub struct Law {
 }
 
 impl Law {
+    /// Version 1 of a law that reads these channels, each with its unit, and gives no load yet.
+    pub fn of<T: Into<String>, U: Into<String>>(
+        name: impl Into<String>,
+        inputs: impl IntoIterator<Item = (T, U)>,
+    ) -> Self {
+        let inputs = inputs.into_iter().map(|(channel, unit)| (channel.into(), unit.into())).collect();
+        Self { name: name.into(), version: 1, inputs, ..Self::default() }
+    }
+
+    /// The law with one more load, in `unit`.
+    #[must_use]
+    pub fn giving(mut self, load: impl Into<String>, unit: impl Into<String>, formula: Option<String>) -> Self {
+        self.outputs.insert(load.into(), Output { unit: unit.into(), formula });
+        self
+    }
+
     /// Formulas by load; empty for built-in laws.
     #[must_use]
     pub fn formulas(&self) -> IndexMap<String, String> {
@@ -201,6 +237,14 @@ pub struct TypeA {
     pub dof: Vec<Option<f64>>,
     /// `classical`, `HC3`, `jackknife over pairs`, …
     pub kind: String,
+}
+
+impl TypeA {
+    /// A scatter of this `kind`; infinite degrees of freedom are written as null.
+    pub fn of(names: Vec<String>, matrix: Vec<Vec<f64>>, dof: &[f64], kind: impl Into<String>) -> Self {
+        let dof = dof.iter().map(|d| finite(Some(*d))).collect();
+        Self { names, matrix, dof, kind: kind.into() }
+    }
 }
 
 /// An error beside the scatter: a calibration, a tare, a constant of the rig. The file holds it by its key.
@@ -294,6 +338,14 @@ pub struct ReferencePoint {
     pub stated: bool,
 }
 
+impl ReferencePoint {
+    /// The point that somebody stated in words, if anybody did.
+    #[must_use]
+    pub fn stated(words: Option<String>) -> Self {
+        Self { stated: words.is_some(), words: words.unwrap_or_default() }
+    }
+}
+
 /// What the signs mean.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Signs(pub String);
@@ -323,6 +375,13 @@ pub struct MethodUsed {
     pub words: String,
 }
 
+impl MethodUsed {
+    /// Version 1 of a method.
+    pub fn of(name: impl Into<String>, words: impl Into<String>) -> Self {
+        Self { name: name.into(), version: 1, words: words.into() }
+    }
+}
+
 /// Independent groups behind the scatter.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Clusters {
@@ -330,6 +389,13 @@ pub struct Clusters {
     pub by: String,
     /// How many there are.
     pub n: usize,
+}
+
+impl Clusters {
+    /// `n` groups, each a `by`.
+    pub fn of(by: impl Into<String>, n: usize) -> Self {
+        Self { by: by.into(), n }
+    }
 }
 
 /// A number made from coefficients, outside the covariance.
@@ -345,6 +411,13 @@ pub struct Derived {
     pub standard_uncertainty: Option<f64>,
     /// 95 % interval.
     pub interval_95: Option<[f64; 2]>,
+}
+
+impl Derived {
+    /// A number without an uncertainty.
+    pub fn of(formula: impl Into<String>, value: Option<f64>, unit: impl Into<String>) -> Self {
+        Self { formula: formula.into(), value, unit: unit.into(), standard_uncertainty: None, interval_95: None }
+    }
 }
 
 /// What the intervals are.
@@ -528,6 +601,24 @@ impl Estimate {
 }
 
 impl SharedError {
+    /// An error of one quantity, declared by its standard uncertainty; `slopes` is ∂β/∂e. Infinite degrees of freedom are written as null.
+    pub fn declared(
+        [name, quantity]: [&str; 2],
+        standard: f64,
+        dof: f64,
+        slopes: impl IntoIterator<Item = f64>,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            quantity: quantity.to_owned(),
+            kind: ErrorKind::B,
+            covariance: vec![vec![standard * standard]],
+            dof: finite(Some(dof)),
+            limits: None,
+            sensitivity: slopes.into_iter().map(|s| vec![s]).collect(),
+        }
+    }
+
     /// `s·C·tᵀ`: the covariance that this error makes between two numbers that go with it as `s` and `t`.
     #[must_use]
     pub fn between(&self, s: &[f64], t: &[f64]) -> f64 {

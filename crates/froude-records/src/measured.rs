@@ -10,3 +10,10 @@ pub struct Measured {
     /// SI unit text, `1` for a pure number.
     pub unit: String,
 }
+
+impl Measured {
+    /// A value in `unit`.
+    pub fn of(value: f64, unit: impl Into<String>) -> Self {
+        Self { value, unit: unit.into() }
+    }
+}

@@ -140,20 +140,7 @@ fn the_same_input_gives_the_same_bytes() {
 }
 
 fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
-    Coefficient {
-        label: None,
-        nuisance: false,
-        value,
-        unit: "1".to_owned(),
-        status,
-        standard_uncertainty: None,
-        type_a: None,
-        type_b: None,
-        interval_95: None,
-        effective_dof: None,
-        unconstrained: None,
-        range_95: None,
-    }
+    Coefficient::of(value, "1", status)
 }
 
 fn estimate(source: &str, model: &str, coefficients: &[(&str, Coefficient)]) -> Estimate {
@@ -252,9 +239,9 @@ fn hostile_names_are_escaped_everywhere() {
     e.undetermined = vec![h()];
     e.diagnostics.notes = vec![h()];
     e.law.outputs.insert(h(), froude_records::estimate::Output { unit: h(), formula: Some(h()) });
-    e.refers_to.insert(h(), Measured { value: 1.0, unit: h() });
-    e.sigma.insert(h(), Measured { value: 1.0, unit: h() });
-    e.validity.insert(h(), Range { low: 0.0, high: 1.0, unit: h() });
+    e.refers_to.insert(h(), Measured::of(1.0, h()));
+    e.sigma.insert(h(), Measured::of(1.0, h()));
+    e.validity.insert(h(), Range::of([0.0, 1.0], h()));
     let side = || Side { source: h(), value: Some(1.0), ..Side::default() };
     let table = TableBuilder::new("", h(), &[()]);
     let report = Report {
@@ -581,9 +568,9 @@ proptest! {
         c.interval_95 = Some([values[2], values[3]]);
         (c.type_a, c.type_b, c.effective_dof) = (Some(values[4]), Some(values[5]), Some(values[6]));
         let mut e = estimate("tank", "f4", &[("C_d_II", c.clone()), ("C_f_II", c)]);
-        e.validity.insert("speed".to_owned(), Range { low: values[0], high: values[1], unit: "rad".to_owned() });
-        e.sigma.insert("f_x".to_owned(), Measured { value: values[2], unit: "N".to_owned() });
-        e.refers_to.insert("density".to_owned(), Measured { value: values[7], unit: "kg/m^3".to_owned() });
+        e.validity.insert("speed".to_owned(), Range::of([values[0], values[1]], "rad"));
+        e.sigma.insert("f_x".to_owned(), Measured::of(values[2], "N"));
+        e.refers_to.insert("density".to_owned(), Measured::of(values[7], "kg/m^3"));
         e.diagnostics.relative_residual.insert("f_x".to_owned(), values[3]);
         e.diagnostics.condition_number = Some(values[4]);
         let side = Side { source: "s".to_owned(), value: Some(values[0]), standard_uncertainty: Some(values[1]), expanded_uncertainty: Some(values[2]), ..Side::default() };

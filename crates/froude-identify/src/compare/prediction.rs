@@ -20,7 +20,7 @@ const FORCE_POINTS: usize = 5;
 
 /// Why an estimate gives no load from a steady motion of stated speed and angle; `None` where it gives one. Others have no part in the common range.
 pub(super) fn gives_no_load(estimate: &Estimate) -> Option<String> {
-    let one = Range { low: 1.0, high: 1.0, unit: String::new() };
+    let one = Range::of([1.0; 2], "");
     let data = operating_points(&one, &one, &[1.0], 1000.0);
     let law = match ForceLaw::of_estimate(estimate, &data) {
         Ok(law) => law,
@@ -83,14 +83,12 @@ impl Points {
         let range = |name: &str| -> Option<Range> {
             let stated: Vec<&Range> = chosen.iter().filter_map(|(n, _)| n.estimate.validity.get(name)).collect();
             let first = stated.first()?;
-            Some(Range {
-                low: stated.iter().map(|r| r.low).fold(f64::NEG_INFINITY, f64::max),
-                high: stated.iter().map(|r| r.high).fold(f64::INFINITY, f64::min),
-                unit: first.unit.clone(),
-            })
+            let low = stated.iter().map(|r| r.low).fold(f64::NEG_INFINITY, f64::max);
+            let high = stated.iter().map(|r| r.high).fold(f64::INFINITY, f64::min);
+            Some(Range::of([low, high], &first.unit))
         };
         let Some(speed) = range("speed") else { return Ok(None) };
-        let angle = range("angle").unwrap_or(Range { low: 0.0, high: 0.0, unit: "rad".to_owned() });
+        let angle = range("angle").unwrap_or(Range::of([0.0; 2], "rad"));
         if speed.low > speed.high || angle.low > angle.high {
             return Err("the fitted ranges of speed or angle");
         }

@@ -174,7 +174,7 @@ fn a_law_that_gives_no_force_along_or_across_has_no_part_in_the_range() {
         "f_z": { "unit": "N", "formula": "-A33*v_z_dot - D*v_z*abs(v_z)" }
     }))
     .unwrap();
-    decay.estimates[0].validity["speed"] = Range { low: 0.01, high: 0.05, unit: "m/s".to_owned() };
+    decay.estimates[0].validity["speed"] = Range::of([0.01, 0.05], "m/s");
     let files = [record("a", "t1", 10.0, 1.0, None), record("b", "t2", 11.0, 1.0, None), decay]
         .map(|file| (file.estimates[0].source.clone(), file));
     let c = compare(&named(&files));

@@ -27,7 +27,7 @@ pub(crate) fn of_table(
     let mut out = Reduced::new(&source.name, source.kind, method, data, laws);
     // Nobody but the campaign knows the point that moments are about.
     let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
-    out.stated.point = ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() };
+    out.stated.point = ReferencePoint::stated(words);
     Reduced { budget: source.uncertainty.clone(), campaign: campaign.key.clone(), ..out }
 }
 

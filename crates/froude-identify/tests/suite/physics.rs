@@ -425,18 +425,10 @@ fn known_coefficients_of_one_record_keep_their_covariance() {
     let folder = tempfile::tempdir().unwrap();
     let (table, rows) = accelerated();
     let entry = |value: f64| Coefficient {
-        label: None,
-        nuisance: false,
-        value: Some(value),
-        unit: "kg".to_owned(),
-        status: Status::Free,
         standard_uncertainty: Some(0.5),
         type_a: Some(0.5),
-        type_b: None,
         interval_95: Some([value - 1.0, value + 1.0]),
-        effective_dof: None,
-        unconstrained: None,
-        range_95: None,
+        ..Coefficient::of(Some(value), "kg", Status::Free)
     };
     let estimate = Estimate {
         id: "hull/added_mass_6x6".to_owned(),

@@ -72,7 +72,7 @@ fn fitted(weight: Weight, scatter: Scatter) -> SourceResult {
         ..Reduced::new("tank", SourceKind::Towing, "own", data, vec![law])
     };
     reduced.stated = Stated {
-        refers_to: IndexMap::from([("area".to_owned(), Measured { value: 0.5, unit: "m^2".to_owned() })]),
+        refers_to: IndexMap::from([("area".to_owned(), Measured::of(0.5, "m^2"))]),
         labels: IndexMap::from([("D_II".to_owned(), "D_d".to_owned())]),
         derived: vec![derived],
         ..reduced.stated

@@ -42,20 +42,8 @@ mod tests {
 
     #[test]
     fn an_undetermined_coefficient_is_a_dash_whatever_it_holds() {
-        let mut c = Coefficient {
-            label: None,
-            nuisance: false,
-            value: Some(0.0),
-            unit: "1".to_owned(),
-            status: Status::Undetermined,
-            standard_uncertainty: Some(0.1),
-            type_a: None,
-            type_b: None,
-            interval_95: None,
-            effective_dof: None,
-            unconstrained: None,
-            range_95: None,
-        };
+        let mut c =
+            Coefficient { standard_uncertainty: Some(0.1), ..Coefficient::of(Some(0.0), "1", Status::Undetermined) };
         assert_eq!(coefficient(&c), MISSING);
         assert_eq!(coefficient_expanded(&c), MISSING);
         c.status = Status::AtBound;

@@ -135,7 +135,7 @@ pub fn run_of(
     }
     let constants = sidecar.map(|s| &s.constants).into_iter().flatten().map(|(name, quantity)| {
         let unit = quantity.unit.dimension.to_string();
-        (name.clone(), Measured { value: quantity.value_si, unit })
+        (name.clone(), Measured::of(quantity.value_si, unit))
     });
     let meta = RunMeta {
         id: table.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),

@@ -362,7 +362,7 @@ pub(crate) fn quantities(s: &Section<'_>, key: &'static str) -> Result<IndexMap<
     for (name, _, value) in section.entries() {
         let quantity = section.as_quantity(name, value)?;
         let unit = quantity.unit.dimension.to_string();
-        out.insert(name.to_owned(), Measured { value: quantity.value_si, unit });
+        out.insert(name.to_owned(), Measured::of(quantity.value_si, unit));
     }
     Ok(out)
 }

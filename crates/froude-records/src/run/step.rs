@@ -31,7 +31,7 @@ impl Step {
     #[must_use]
     pub fn with(mut self, name: &str, value: f64, unit: &str) -> Self {
         if value.is_finite() {
-            self.parameters.insert(name.to_owned(), Measured { value, unit: unit.to_owned() });
+            self.parameters.insert(name.to_owned(), Measured::of(value, unit));
         }
         self
     }

@@ -7,9 +7,9 @@ use froude_records::comparison::{
     Validation, Verdict,
 };
 use froude_records::estimate::{
-    Attitude, Clusters, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, ErrorKind, Estimate,
-    EstimateFile, Frame, Interval, Law, Measured, MethodUsed, NamedCorrelation, Output, Range, ReferencePoint,
-    RunScatter, SharedError, Signs, Status, TypeA, keyed,
+    Attitude, Clusters, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Frame,
+    Interval, Law, Measured, MethodUsed, NamedCorrelation, Range, ReferencePoint, RunScatter, SharedError, Status,
+    TypeA, keyed,
 };
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::{parse_estimates, read_estimates, write_estimates};
@@ -20,22 +20,13 @@ use proptest::prelude::*;
 fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
     Coefficient {
         label: Some("C".to_owned()),
-        nuisance: false,
-        value,
-        unit: "m/s".to_owned(),
-        status,
         standard_uncertainty: Some(0.1),
         type_a: None,
         type_b: Some(0.0),
         interval_95: Some([-0.2, 0.3]),
         effective_dof: Some(7.5),
-        unconstrained: None,
-        range_95: None,
+        ..Coefficient::of(value, "m/s", status)
     }
-}
-
-fn measured(value: f64, unit: &str) -> Measured {
-    Measured { value, unit: unit.to_owned() }
 }
 
 fn sample() -> EstimateFile {
@@ -43,25 +34,26 @@ fn sample() -> EstimateFile {
         id: "tank/f4".to_owned(),
         source: "tank".to_owned(),
         kind: "tank".to_owned(),
-        method: MethodUsed { name: "table".to_owned(), version: 1, words: "least squares".to_owned() },
+        method: MethodUsed::of("table", "least squares"),
         frame: Frame::body(),
-        point: ReferencePoint { words: "centre".to_owned(), stated: true },
-        signs: Signs::default(),
+        point: ReferencePoint::stated(Some("centre".to_owned())),
         attitude: Some(Attitude { travel: "y".to_owned() }),
         law: Law {
-            name: "f4".to_owned(),
-            version: 1,
-            inputs: [("v_y".to_owned(), "m/s".to_owned())].into(),
-            outputs: [("f_y".to_owned(), Output { unit: "N".to_owned(), formula: Some("Y_v*v".to_owned()) })].into(),
-            constants: [("v_ref".to_owned(), measured(1.0, "m/s"))].into(),
+            constants: [("v_ref".to_owned(), Measured::of(1.0, "m/s"))].into(),
+            ..Law::of("f4", [("v_y", "m/s")]).giving("f_y", "N", Some("Y_v*v".to_owned()))
         },
-        refers_to: [("density".to_owned(), measured(1025.0, "kg/m^3")), ("a".to_owned(), measured(0.0588, "m"))].into(),
+        refers_to: [
+            ("density".to_owned(), Measured::of(1025.0, "kg/m^3")),
+            ("a".to_owned(), Measured::of(0.0588, "m")),
+        ]
+        .into(),
         data: vec!["d1".to_owned()],
         n_observations: 12,
-        clusters: Some(Clusters { by: "configuration".to_owned(), n: 3 }),
+        clusters: Some(Clusters::of("configuration", 3)),
         dof: [("f_x".to_owned(), Some(10.0)), ("f_y".to_owned(), None)].into(),
-        sigma: [("f_x".to_owned(), measured(0.02, "N"))].into(),
-        run_scatter: [("f_x".to_owned(), RunScatter { constant: measured(0.01, "N"), part: 0.02, dof: None })].into(),
+        sigma: [("f_x".to_owned(), Measured::of(0.02, "N"))].into(),
+        run_scatter: [("f_x".to_owned(), RunScatter { constant: Measured::of(0.01, "N"), part: 0.02, dof: None })]
+            .into(),
         coefficients: [
             ("C_d_I".to_owned(), coefficient(Some(0.4), Status::Free)),
             ("C_f_I".to_owned(), coefficient(None, Status::Undetermined)),
@@ -69,37 +61,21 @@ fn sample() -> EstimateFile {
         .into(),
         derived: [(
             "D".to_owned(),
-            Derived {
-                formula: "2*C_d_I".to_owned(),
-                value: Some(0.8),
-                unit: "1".to_owned(),
-                standard_uncertainty: None,
-                interval_95: Some([0.6, 1.0]),
-            },
+            Derived { interval_95: Some([0.6, 1.0]), ..Derived::of("2*C_d_I", Some(0.8), "1") },
         )]
         .into(),
-        type_a: Some(TypeA {
-            names: vec!["C_d_I".to_owned()],
-            matrix: vec![vec![0.01]],
-            dof: vec![Some(7.5)],
-            kind: "classical".to_owned(),
-        }),
+        type_a: Some(TypeA::of(vec!["C_d_I".to_owned()], vec![vec![0.01]], &[7.5], "classical")),
         errors: [(
             "cal/1".to_owned(),
             SharedError {
-                name: "calibration".to_owned(),
-                quantity: "f_y".to_owned(),
-                kind: ErrorKind::B,
-                covariance: vec![vec![0.25]],
-                dof: Some(20.0),
                 limits: Some([-0.5, 0.5]),
-                sensitivity: vec![vec![0.2]],
+                ..SharedError::declared(["calibration", "f_y"], 0.5, 20.0, [0.2])
             },
         )]
         .into(),
         interval: Interval { level: 0.95, looks: 3, of: "coefficient".to_owned() },
         undetermined: vec!["k*G_T*C_f_II + G_HTx*C_fHT_II".to_owned()],
-        validity: [("speed".to_owned(), Range { low: 0.1, high: 1.0, unit: "m/s".to_owned() })].into(),
+        validity: [("speed".to_owned(), Range::of([0.1, 1.0], "m/s"))].into(),
         diagnostics: Diagnostics {
             condition_number: Some(12.0),
             largest_correlation: Some(NamedCorrelation { first: "a".to_owned(), second: "b".to_owned(), value: -0.9 }),
@@ -108,8 +84,8 @@ fn sample() -> EstimateFile {
             ..Diagnostics::default()
         },
         recommended: true,
-        not_contradicted: Vec::new(),
         reason: Some("smallest AICc".to_owned()),
+        ..Estimate::default()
     };
     EstimateFile {
         data: keyed(vec![DataFile {
@@ -498,7 +474,7 @@ proptest! {
     ) {
         let mut file = sample();
         file.estimates[0].coefficients["C_d_I"].value = Some(value);
-        file.estimates[0].refers_to["density"] = measured(other, "kg/m^3");
+        file.estimates[0].refers_to["density"] = Measured::of(other, "kg/m^3");
         let read = parse(&summed(&file)).unwrap();
         let found = read.estimates[0].coefficients["C_d_I"].value.unwrap();
         prop_assert_eq!(found.to_bits(), value.to_bits());

@@ -59,10 +59,6 @@ impl Dice {
     }
 }
 
-fn measured(value: f64, unit: &str) -> Measured {
-    Measured { value, unit: unit.to_owned() }
-}
-
 /// Force of f4 on a body of k links, along x and y.
 fn force(c: &[f64; 12], k: f64, speed: f64, angle: f64) -> [f64; 2] {
     let (rho, a, b, l) = (1000.0, 0.0588, 0.0394, 0.09);
@@ -81,34 +77,18 @@ fn force(c: &[f64; 12], k: f64, speed: f64, angle: f64) -> [f64; 2] {
 fn coefficient(value: f64, relative: f64, name: &str) -> Coefficient {
     if value == 0.0 {
         return Coefficient {
-            label: None,
-            nuisance: false,
-            value: Some(0.0),
-            unit: unit_of(name).to_owned(),
-            status: Status::AtBound,
-            standard_uncertainty: None,
-            type_a: None,
-            type_b: None,
             interval_95: Some([0.0, 0.0117]),
-            effective_dof: None,
-            unconstrained: None,
-            range_95: None,
+            ..Coefficient::of(Some(0.0), unit_of(name), Status::AtBound)
         };
     }
     let u = (value.abs() * relative).max(0.0008);
     Coefficient {
-        label: None,
-        nuisance: false,
-        value: Some(value),
-        unit: unit_of(name).to_owned(),
-        status: Status::Free,
         standard_uncertainty: Some(u),
         type_a: Some(u * 0.8),
         type_b: Some(u * 0.6),
         interval_95: Some([(value - 2.01 * u).max(0.0), value + 2.01 * u]),
         effective_dof: Some(57.3),
-        unconstrained: None,
-        range_95: None,
+        ..Coefficient::of(Some(value), unit_of(name), Status::Free)
     }
 }
 
@@ -142,16 +122,16 @@ fn estimates(source: &str, kind: &str, table: &[(&str, [f64; 12])], relative: f6
                 source: source.to_owned(),
                 kind: kind.to_owned(),
                 law: Law {
+                    constants: [("v_ref".to_owned(), Measured::of(1.0, "m/s"))].into(),
                     name: (*model).to_owned(),
                     version: 1,
-                    constants: [("v_ref".to_owned(), measured(1.0, "m/s"))].into(),
                     ..Law::default()
                 },
                 refers_to: [
-                    ("density".to_owned(), measured(998.2, "kg/m^3")),
-                    ("major_semi_axis".to_owned(), measured(0.0588, "m")),
-                    ("minor_semi_axis".to_owned(), measured(0.0394, "m")),
-                    ("half_length".to_owned(), measured(0.09, "m")),
+                    ("density".to_owned(), Measured::of(998.2, "kg/m^3")),
+                    ("major_semi_axis".to_owned(), Measured::of(0.0588, "m")),
+                    ("minor_semi_axis".to_owned(), Measured::of(0.0394, "m")),
+                    ("half_length".to_owned(), Measured::of(0.09, "m")),
                 ]
                 .into(),
                 frame: Frame::body(),
@@ -162,8 +142,8 @@ fn estimates(source: &str, kind: &str, table: &[(&str, [f64; 12])], relative: f6
                 },
                 dof: [("f_x".to_owned(), Some(284.0 - names.len() as f64)), ("f_y".to_owned(), Some(286.0))].into(),
                 sigma: [
-                    ("f_x".to_owned(), measured(0.0213 * quality, "N")),
-                    ("f_y".to_owned(), measured(0.0498 * quality, "N")),
+                    ("f_x".to_owned(), Measured::of(0.0213 * quality, "N")),
+                    ("f_y".to_owned(), Measured::of(0.0498 * quality, "N")),
                 ]
                 .into(),
                 n_observations: 268,
@@ -175,11 +155,11 @@ fn estimates(source: &str, kind: &str, table: &[(&str, [f64; 12])], relative: f6
                 }),
                 coefficients,
                 validity: [
-                    ("speed".to_owned(), Range { low: 0.1, high: 1.0, unit: "m/s".to_owned() }),
-                    ("angle".to_owned(), Range { low: 0.0, high: 39f64.to_radians(), unit: "rad".to_owned() }),
-                    ("Reynolds number".to_owned(), Range { low: 5.39e4, high: 5.39e5, unit: "1".to_owned() }),
-                    ("Froude number by depth".to_owned(), Range { low: 0.032, high: 0.319, unit: "1".to_owned() }),
-                    ("blockage".to_owned(), Range { low: 0.0012, high: 0.0093, unit: "1".to_owned() }),
+                    ("speed".to_owned(), Range::of([0.1, 1.0], "m/s")),
+                    ("angle".to_owned(), Range::of([0.0, 39f64.to_radians()], "rad")),
+                    ("Reynolds number".to_owned(), Range::of([5.39e4, 5.39e5], "1")),
+                    ("Froude number by depth".to_owned(), Range::of([0.032, 0.319], "1")),
+                    ("blockage".to_owned(), Range::of([0.0012, 0.0093], "1")),
                 ]
                 .into(),
                 diagnostics: Diagnostics {
