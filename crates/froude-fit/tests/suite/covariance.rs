@@ -130,7 +130,6 @@ fn what_decides_a_coefficient_alone_is_named() {
     let y = [1.0, 1.2, 0.9, 1.1, 0.8, 3.0, 1.0, 1.1];
     let mut problem = single(&rows, &y);
     let error = fit(&problem, &with(CovarianceKind::Hc3)).unwrap_err();
-    assert_eq!(error, FitError::RowDecides { row: 5 });
     assert_eq!(
         error.to_string(),
         "row 5 alone determines a coefficient (leverage 1); HC3 needs every one determined by \
