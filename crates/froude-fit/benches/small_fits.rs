@@ -3,7 +3,7 @@
 
 use divan::{Bencher, black_box};
 use faer::Mat;
-use froude_fit::{Bound, CovarianceKind, Factored, Options, Problem, fit};
+use froude_fit::{Bound, CovarianceKind, Options, Problem, fit};
 
 const ROWS: usize = 360;
 const COLUMNS: usize = 10;
@@ -33,12 +33,4 @@ fn one_fit(bencher: Bencher<'_, '_>, variant: &str) {
         _ => Options::default(),
     };
     bencher.bench(|| fit(black_box(&problem), &options).unwrap());
-}
-
-#[divan::bench]
-fn another_response_on_a_factored_design(bencher: Bencher<'_, '_>) {
-    let problem = problem();
-    let factored = Factored::new(&problem, CovarianceKind::Classical).unwrap();
-    let mut out = factored.buffer();
-    bencher.bench_local(|| factored.solve(black_box(&problem.response), &mut out));
 }

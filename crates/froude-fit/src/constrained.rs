@@ -115,7 +115,9 @@ fn interior(qr: &PivotedQr, b: &[f64], constraints: &[Inequality]) -> Result<(Ve
         rows.push(full);
     }
     let right: Vec<f64> = target.iter().chain(constraints.iter().map(|c| &c.1)).map(|value| value / size).collect();
-    let failed = |reason: String| FitError::Solver { reason };
+    let failed = |reason: String| {
+        FitError::Refused(format!("the constrained fit did not end: {reason}; rescale or drop a constraint"))
+    };
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
         .max_threads(1)

@@ -79,7 +79,10 @@ pub(crate) fn core(
                 let moved = apply(&own);
                 let rest = 1.0 - dot(&own, &moved);
                 if rest < ALONE {
-                    return Err(FitError::RowDecides { row: block.rows[i - n_priors] });
+                    let row = block.rows[i - n_priors];
+                    return Err(FitError::Refused(format!(
+                        "row {row} alone determines a coefficient (leverage 1); HC3 needs every one determined by the other rows"
+                    )));
                 }
                 let factor = residual[i] / rest;
                 add_outer(&mut covariance, &moved, factor * factor);
@@ -122,23 +125,24 @@ pub(crate) fn core(
 }
 
 /// Local rows of each cluster of a block; three clusters at least.
-pub(crate) fn clusters(problem: &Problem, block: &Block) -> Result<BTreeMap<usize, Vec<usize>>, FitError> {
+fn clusters(problem: &Problem, block: &Block) -> Result<BTreeMap<usize, Vec<usize>>, FitError> {
     let cluster = problem.cluster.as_ref().ok_or(FitError::NoClusters)?;
     let mut out: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (k, &i) in block.rows.iter().enumerate() {
         out.entry(cluster[i]).or_default().push(k);
     }
     if out.len() < FEWEST_WITH_FREEDOM {
-        return Err(FitError::TooFewClusters {
-            component: component_names(problem, block),
-            found: out.len(),
-            needed: FEWEST_WITH_FREEDOM,
-        });
+        return Err(FitError::Refused(format!(
+            "component {:?} has {} {}; cluster-robust covariance (CR3) is refused below {FEWEST_WITH_FREEDOM}, where its interval is unreliable",
+            component_names(problem, block),
+            out.len(),
+            if out.len() == 1 { "cluster" } else { "clusters" }
+        )));
     }
     Ok(out)
 }
 
-pub(crate) fn component_names(problem: &Problem, block: &Block) -> String {
+fn component_names(problem: &Problem, block: &Block) -> String {
     let names: Vec<&str> = block.components.iter().map(|&c| problem.components[c].as_str()).collect();
     names.join(", ")
 }

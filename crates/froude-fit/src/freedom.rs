@@ -80,79 +80,64 @@ impl Freedom {
     pub(crate) fn of(&self, a: &[f64]) -> Option<Robust> {
         match self {
             Self::Components => None,
-            Self::Rows { rows, bread } => Some(of_rows(rows, bread, a)),
-            Self::Clusters { clusters, bread } => Some(of_clusters(clusters, bread, a)),
-        }
-    }
-}
-
-fn of_rows(rows: &[Row], bread: &Mat<f64>, a: &[f64]) -> Robust {
-    let mut form = Form::new(a.len());
-    let mut scatter = 0.0;
-    let mut most: Option<(usize, f64)> = None;
-    for row in rows {
-        let m = dot(a, &row.moved) / row.rest;
-        let own = form.add(m * m, &row.q.iter().map(|q| m * q).collect::<Vec<_>>(), bread);
-        scatter += (m * row.score).powi(2);
-        if most.is_none_or(|(_, largest)| own > largest) {
-            most = Some((row.name, own));
-        }
-    }
-    Robust { dof: form.dof(bread), scatter, most: most.map(|(name, own)| (name, own / form.trace)) }
-}
-
-fn of_clusters(clusters: &[Cluster], bread: &Mat<f64>, a: &[f64]) -> Robust {
-    let count = clusters.len() as f64;
-    let mut form = Form::new(a.len());
-    let mut scatter = 0.0;
-    let mut most: Option<(usize, f64)> = None;
-    for cluster in clusters {
-        let w = mul_vec(cluster.without.as_ref(), a);
-        let u = mul_vec(cluster.gram.as_ref(), &w);
-        let own = form.add(dot(&w, &u), &u, bread);
-        scatter += (count - 1.0) / count * dot(a, &cluster.change).powi(2);
-        if most.is_none_or(|(_, largest)| own > largest) {
-            most = Some((cluster.name, own));
-        }
-    }
-    Robust { dof: form.dof(bread), scatter, most: most.map(|(name, own)| (name, own / form.trace)) }
-}
-
-/// The form `Σ_g (m_gᵀr_g)²` of residuals `r = (1 − Q M⁻¹Qᵀ) e`, summed up.
-pub(crate) struct Form {
-    /// `tr B`.
-    pub trace: f64,
-    /// `tr B²` but for `tr (T M⁻¹)²`.
-    square: f64,
-    /// T.
-    shared: Mat<f64>,
-}
-
-impl Form {
-    /// Of no part yet, in so many coordinates.
-    pub(crate) fn new(rank: usize) -> Self {
-        Self { trace: 0.0, square: 0.0, shared: Mat::zeros(rank, rank) }
-    }
-
-    /// Adds a part with `d = m_gᵀm_g` and `u = Q_gᵀm_g`; its own part of the trace.
-    pub(crate) fn add(&mut self, d: f64, u: &[f64], bread: &Mat<f64>) -> f64 {
-        let taken = dot(u, &mul_vec(bread.as_ref(), u));
-        self.trace += d - taken;
-        self.square += d * d - 2.0 * d * taken;
-        for j in 0..u.len() {
-            for i in 0..u.len() {
-                self.shared[(i, j)] += u[j] * u[i];
+            Self::Rows { rows, bread } => {
+                let part = |row: &Row| {
+                    let m = dot(a, &row.moved) / row.rest;
+                    let u = row.q.iter().map(|q| m * q).collect();
+                    Part { name: row.name, d: m * m, u, square: (m * row.score).powi(2) }
+                };
+                Some(robust(rows.iter().map(part), bread))
+            }
+            Self::Clusters { clusters, bread } => {
+                let count = clusters.len() as f64;
+                let part = |cluster: &Cluster| {
+                    let w = mul_vec(cluster.without.as_ref(), a);
+                    let u = mul_vec(cluster.gram.as_ref(), &w);
+                    let square = (count - 1.0) / count * dot(a, &cluster.change).powi(2);
+                    Part { name: cluster.name, d: dot(&w, &u), u, square }
+                };
+                Some(robust(clusters.iter().map(part), bread))
             }
         }
-        d - taken
     }
+}
 
-    /// ν.
-    pub(crate) fn dof(&self, bread: &Mat<f64>) -> f64 {
-        let p = mul(self.shared.as_ref(), bread.as_ref());
-        let of_shared: f64 = (0..p.nrows()).map(|i| (0..p.ncols()).map(|j| p[(i, j)] * p[(j, i)]).sum::<f64>()).sum();
-        self.trace * self.trace / (self.square + of_shared)
+/// What a row or a cluster gives to the variance of a combination.
+struct Part {
+    name: usize,
+    /// `m_gᵀm_g`.
+    d: f64,
+    /// `Q_gᵀm_g`.
+    u: Vec<f64>,
+    /// Its term of the variance, `(m_gᵀr_g)²`.
+    square: f64,
+}
+
+/// The form `Σ_g (m_gᵀr_g)²` of residuals `r = (1 − Q M⁻¹Qᵀ) e`, summed up: `tr B`, `tr B²` and T.
+fn robust(parts: impl Iterator<Item = Part>, bread: &Mat<f64>) -> Robust {
+    let (mut trace, mut square, mut scatter) = (0.0, 0.0, 0.0);
+    let mut shared = Mat::<f64>::zeros(bread.nrows(), bread.ncols());
+    let mut most: Option<(usize, f64)> = None;
+    for part in parts {
+        let Part { d, u, .. } = &part;
+        let taken = dot(u, &mul_vec(bread.as_ref(), u));
+        let own = d - taken;
+        trace += own;
+        square += d * d - 2.0 * d * taken;
+        for j in 0..u.len() {
+            for i in 0..u.len() {
+                shared[(i, j)] += u[j] * u[i];
+            }
+        }
+        scatter += part.square;
+        if most.is_none_or(|(_, largest)| own > largest) {
+            most = Some((part.name, own));
+        }
     }
+    let p = mul(shared.as_ref(), bread.as_ref());
+    let of_shared: f64 = (0..p.nrows()).map(|i| (0..p.ncols()).map(|j| p[(i, j)] * p[(j, i)]).sum::<f64>()).sum();
+    let dof = trace * trace / (square + of_shared);
+    Robust { dof, scatter, most: most.map(|(name, own)| (name, own / trace)) }
 }
 
 #[cfg(test)]

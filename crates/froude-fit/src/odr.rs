@@ -103,7 +103,7 @@ pub struct OdrFit {
 pub fn odr<M: InputModel>(model: &M, problem: &OdrProblem, confidence: f64) -> Result<OdrFit, FitError> {
     problem.check(model)?;
     if !(confidence > 0.0 && confidence < 1.0) {
-        return Err(FitError::Option { option: "confidence", value: confidence, must: "between 0 and 1" });
+        return Err(FitError::option("confidence", confidence, "between 0 and 1"));
     }
     let (mut state, mut variance) = State::start(model, problem)?;
     let mut report = Report { end: End::IterationLimit, iterations: 0 };

@@ -156,11 +156,10 @@ impl Options {
         for (j, bound) in self.bounds.iter().enumerate() {
             let is_fine = bound.lower <= bound.upper && bound.lower < f64::INFINITY && bound.upper > f64::NEG_INFINITY;
             if !is_fine {
-                return Err(FitError::Bounds {
-                    name: problem.names[j].clone(),
-                    lower: bound.lower,
-                    upper: bound.upper,
-                });
+                return Err(FitError::Refused(format!(
+                    "bounds of {:?} are [{}, {}]; the lower must not exceed the upper",
+                    problem.names[j], bound.lower, bound.upper
+                )));
             }
         }
         for constraint in &self.inequalities {
@@ -170,12 +169,12 @@ impl Options {
             }
         }
         if !(self.confidence > 0.0 && self.confidence < 1.0) {
-            return Err(FitError::Option { option: "confidence", value: self.confidence, must: "between 0 and 1" });
+            return Err(FitError::option("confidence", self.confidence, "between 0 and 1"));
         }
         if !self.observations.is_empty() {
             size("observations", self.observations.len(), problem.components.len(), "one per component")?;
             if self.covariance == CovarianceKind::Hc3 {
-                return Err(FitError::Unsupported { method: "a fit of condensed rows", what: "HC3" });
+                return Err(FitError::Refused("a fit of condensed rows does not accept HC3".to_owned()));
             }
         }
         if self.covariance == CovarianceKind::Cr3 && problem.cluster.is_none() {
@@ -188,8 +187,11 @@ impl Options {
         let p = problem.n_coefficients();
         let mut said: Vec<Option<&'static str>> = vec![None; p];
         let mut say = |index: usize, option: &'static str| match said.get_mut(index) {
-            None => Err(FitError::NoSuchCoefficient { option, index, count: p }),
-            Some(Some(first)) => Err(FitError::Conflict { name: problem.names[index].clone(), first, second: option }),
+            None => Err(FitError::Refused(format!("{option} names coefficient {index}, but the design has {p}"))),
+            Some(Some(first)) => {
+                let name = &problem.names[index];
+                Err(FitError::Refused(format!("coefficient {name:?} is {first} and {option} at once; choose one")))
+            }
             Some(empty) => {
                 *empty = Some(option);
                 Ok(())
@@ -200,12 +202,10 @@ impl Options {
             finite("a fixed value", value)?;
             let bound = self.bound(index);
             if value < bound.lower || value > bound.upper {
-                return Err(FitError::FixedOutsideBounds {
-                    name: problem.names[index].clone(),
-                    value,
-                    lower: bound.lower,
-                    upper: bound.upper,
-                });
+                return Err(FitError::Refused(format!(
+                    "coefficient {:?} is fixed at {value}, outside its bounds [{}, {}]",
+                    problem.names[index], bound.lower, bound.upper
+                )));
             }
         }
         for &index in &self.excluded {
@@ -215,11 +215,8 @@ impl Options {
             say(prior.index, "given a prior")?;
             finite("the value of a prior", prior.value)?;
             if !(prior.standard > 0.0 && prior.standard.is_finite()) {
-                return Err(FitError::Option {
-                    option: "the standard uncertainty of a prior",
-                    value: prior.standard,
-                    must: "positive and finite (fix the coefficient to take a value as exact)",
-                });
+                let must = "positive and finite (fix the coefficient to take a value as exact)";
+                return Err(FitError::option("the standard uncertainty of a prior", prior.standard, must));
             }
         }
         Ok(())
@@ -227,5 +224,5 @@ impl Options {
 }
 
 fn finite(option: &'static str, value: f64) -> Result<(), FitError> {
-    if value.is_finite() { Ok(()) } else { Err(FitError::Option { option, value, must: "finite" }) }
+    if value.is_finite() { Ok(()) } else { Err(FitError::option(option, value, "finite")) }
 }

@@ -96,7 +96,7 @@ impl Problem {
             return Err(FitError::NoRows);
         }
         if p == 0 {
-            return Err(FitError::NoCoefficients);
+            return Err(FitError::no_coefficients());
         }
         let of_rows = "one per row of the design";
         size("response", self.response.len(), n, of_rows)?;
@@ -106,28 +106,25 @@ impl Problem {
             size("weight", weight.len(), n, of_rows)?;
             for (row, &weight) in weight.iter().enumerate() {
                 if !(weight.is_finite() && weight >= 0.0) {
-                    return Err(FitError::Weight { row, weight });
+                    return Err(FitError::Refused(format!(
+                        "weight of row {row} is {weight}; a weight is a relative 1/variance, finite and not negative (0 ignores the row)"
+                    )));
                 }
             }
         }
         if let Some(cluster) = &self.cluster {
             size("cluster", cluster.len(), n, of_rows)?;
         }
-        let mut seen = BTreeMap::new();
-        for (second, name) in self.names.iter().enumerate() {
-            if let Some(first) = seen.insert(name.as_str(), second) {
-                return Err(FitError::DuplicateName { name: name.clone(), first, second });
-            }
-        }
+        unique(&self.names)?;
         for row in 0..n {
             for j in 0..p {
                 let value = self.design[(row, j)];
                 if !value.is_finite() {
-                    return Err(FitError::DesignNotFinite { row, name: self.names[j].clone(), value });
+                    return Err(FitError::design_not_finite(row, &self.names[j], value));
                 }
             }
             if !self.response[row].is_finite() {
-                return Err(FitError::ResponseNotFinite { row, value: self.response[row] });
+                return Err(FitError::response_not_finite(row, self.response[row]));
             }
         }
         let count = self.components.len();
@@ -136,17 +133,35 @@ impl Problem {
             match has_rows.get_mut(component) {
                 Some(flag) => *flag |= self.weight_of(row) > 0.0,
                 None => {
-                    return Err(FitError::NoSuchComponent { row, component, count });
+                    let problem = format!("row {row} belongs to component {component}, but only {count} are named");
+                    return Err(FitError::Refused(problem));
                 }
             }
         }
         if let Some(empty) = has_rows.iter().position(|&has| !has) {
-            return Err(FitError::EmptyComponent { name: self.components[empty].clone() });
+            let name = &self.components[empty];
+            let problem = format!("component {name:?} has no rows; leave it out or add its observations");
+            return Err(FitError::Refused(problem));
         }
         Ok(())
     }
 }
 
-pub(crate) fn size(what: &'static str, found: usize, expected: usize, of: &'static str) -> Result<(), FitError> {
-    if found == expected { Ok(()) } else { Err(FitError::Size { what, found, expected, of }) }
+pub(crate) fn size(what: &str, found: usize, expected: usize, of: &str) -> Result<(), FitError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(FitError::Refused(format!("{what} has {found} entries where {expected} are needed ({of})")))
+}
+
+/// Refuses a name that two coefficients have.
+pub(crate) fn unique(names: &[String]) -> Result<(), FitError> {
+    let mut seen = BTreeMap::new();
+    for (second, name) in names.iter().enumerate() {
+        if let Some(first) = seen.insert(name, second) {
+            let problem = format!("coefficient {name:?} is named twice (columns {first} and {second}); rename one");
+            return Err(FitError::Refused(problem));
+        }
+    }
+    Ok(())
 }

@@ -106,11 +106,22 @@ impl Shape {
     }
 }
 
+/// Refuses what is not as many as the shape says.
+fn check_count(what: &str, found: usize, expected: usize) -> Result<(), StreamError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(StreamError::Refused(format!("{found} {what} were given where the shape says {expected}")))
+}
+
 fn check_lengths(columns: &[&[f64]]) -> Result<usize, StreamError> {
     let expected = columns.first().map_or(0, |column| column.len());
     match columns.iter().position(|column| column.len() != expected) {
         None => Ok(expected),
-        Some(column) => Err(StreamError::Length { column, found: columns[column].len(), expected }),
+        Some(column) => Err(StreamError::Refused(format!(
+            "column {column} has {} rows, column 0 has {expected}; give equal lengths",
+            columns[column].len()
+        ))),
     }
 }
 

@@ -93,14 +93,15 @@ impl Formula {
         let names::Resolved { values, columns, coefficients } = names::resolve(&names, channels, constants)?;
         let affine = expression.value(&values)?;
 
-        if let Some(part) = affine.fixed.as_ref().filter(|part| !part.is_zero()) {
-            if affine.parts.is_empty() {
-                return Err(FormulaError::NoCoefficient);
-            }
-            return Err(FormulaError::FixedPart { part: part.text.clone() });
-        }
         if affine.parts.is_empty() {
-            return Err(FormulaError::NoCoefficient);
+            let problem = "the formula has no coefficient: every name in it is a channel or a constant";
+            return Err(FormulaError(problem.to_owned()));
+        }
+        if let Some(part) = affine.fixed.as_ref().filter(|part| !part.is_zero()) {
+            return Err(FormulaError(format!(
+                "the part {} has no coefficient; give it one, and fix its value in [identify.fixed] if it is known",
+                part.text
+            )));
         }
         let mut out = Self {
             load: load_column(load).unwrap_or(load).to_owned(),
@@ -111,16 +112,15 @@ impl Formula {
             programs: Vec::new(),
         };
         for name in coefficients {
-            let Some((_, part)) = affine.parts.iter().find(|(known, _)| known == name) else {
-                return Err(FormulaError::ZeroRegressor { coefficient: name.to_owned() });
+            let own = affine.parts.iter().find(|(known, part)| known == name && !part.is_zero());
+            let Some((_, part)) = own else {
+                return Err(FormulaError(format!("the coefficient {name} is multiplied by zero")));
             };
-            if part.is_zero() {
-                return Err(FormulaError::ZeroRegressor { coefficient: name.to_owned() });
-            }
             let unit = Unit::of(load_dim).over(part.unit);
-            let dim = unit.whole().ok_or_else(|| FormulaError::CoefficientUnit {
-                coefficient: name.to_owned(),
-                unit: unit.to_string(),
+            let dim = unit.whole().ok_or_else(|| {
+                FormulaError(format!(
+                    "the coefficient {name} would have the unit {unit}; only whole powers up to 127 can be recorded"
+                ))
             })?;
             out.offset |= !part.program.iter().any(|op| matches!(op, Op::Channel(_)));
             out.coefficients.push((name.to_owned(), dim));

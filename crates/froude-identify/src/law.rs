@@ -111,26 +111,19 @@ impl ForceLaw {
         let mut coefficients: IndexMap<String, Dimension> = IndexMap::new();
         for (response, text) in texts {
             let target = response_of(data, response);
-            let wanted = data.dimension(target).ok_or_else(|| IdentifyError::NoSuchChannel {
-                model: name.to_owned(),
-                channel: target.to_owned(),
-                known: data.channels.keys().cloned().collect(),
-            })?;
+            let wanted = data.dimension(target).ok_or_else(|| IdentifyError::no_such_channel(name, target, data))?;
             let channel = |n: &str| channel(n).map(exponents);
-            let formula = Formula::parse(target, text, &channel, exponents(wanted), &[]).map_err(|source| {
-                IdentifyError::Formula { model: name.to_owned(), response: response.clone(), source: Box::new(source) }
-            })?;
+            let formula = Formula::parse(target, text, &channel, exponents(wanted), &[])
+                .map_err(|source| IdentifyError::Refused(format!("model {name:?}, {response}: {source}")))?;
             for (coefficient, dimension) in &formula.coefficients {
                 let dimension = dimension_of(*dimension);
                 if let Some(before) = coefficients.insert(coefficient.clone(), dimension)
                     && before != dimension
                 {
-                    return Err(IdentifyError::CoefficientUnits {
-                        model: name.to_owned(),
-                        coefficient: coefficient.clone(),
-                        first: before.to_string(),
-                        second: dimension.to_string(),
-                    });
+                    return Err(IdentifyError::Refused(format!(
+                        "model {name:?}: coefficient {coefficient} would be {before} in one formula and {dimension} in another; give the two \
+                         terms different names"
+                    )));
                 }
             }
             formulas.push(formula);
@@ -222,7 +215,9 @@ impl ForceLaw {
             };
             return Ok(Self { name: estimate.law.name.clone(), ..Self::power_law(&response, &channel, in_logarithms) });
         }
-        Err(IdentifyError::NoForceLaw { id: estimate.id.clone(), model: estimate.law.name.clone() })
+        let (id, model) = (&estimate.id, &estimate.law.name);
+        let problem = format!("estimate {id}: model {model} is not a force law that can be evaluated here");
+        Err(IdentifyError::Refused(problem))
     }
 
     /// A record's formulas over the channels that it names as its inputs; a letter that it does not name is read as in a campaign.
@@ -237,12 +232,11 @@ impl ForceLaw {
             if let (Some(recorded), Some(found)) = (stated(name), data.dimension(name))
                 && recorded != found
             {
-                return Err(IdentifyError::InputUnit {
-                    id: estimate.id.clone(),
-                    channel: name.clone(),
-                    recorded: recorded.to_string(),
-                    found: found.to_string(),
-                });
+                return Err(IdentifyError::Refused(format!(
+                    "estimate {}: its law reads {name} in {recorded}, and the data have {name} in {found}: another quantity under the same \
+                     name; rename it in the data, or map it with a sidecar",
+                    estimate.id
+                )));
             }
         }
         // The letter of an input that the record names by its column is that column, whatever else the table holds.
@@ -418,11 +412,7 @@ impl ForceLaw {
     }
 
     fn channel<'a>(&self, data: &'a Dataset, name: &str) -> Result<&'a [f64], IdentifyError> {
-        data.values(name).ok_or_else(|| IdentifyError::NoSuchChannel {
-            model: self.name.clone(),
-            channel: name.to_owned(),
-            known: data.channels.keys().cloned().collect(),
-        })
+        data.values(name).ok_or_else(|| IdentifyError::no_such_channel(&self.name, name, data))
     }
 }
 
@@ -438,11 +428,9 @@ fn dimension_of([m, kg, s, k, a]: Dim) -> Dimension {
 /// The body in a record's geometry.
 fn body_of(estimate: &Estimate) -> Result<Body, IdentifyError> {
     let get = |key: &str| {
-        estimate
-            .refers_to
-            .get(key)
-            .map(|m| m.value)
-            .ok_or_else(|| IdentifyError::NoGeometry { id: estimate.id.clone(), key: key.to_owned() })
+        let lacks =
+            || format!("estimate {}: its law needs geometry.{key}, which the record does not carry", estimate.id);
+        estimate.refers_to.get(key).map(|m| m.value).ok_or_else(|| IdentifyError::Refused(lacks()))
     };
     Ok(Body {
         link: Link {

@@ -71,7 +71,7 @@ pub fn records(campaign: &Campaign) -> impl Iterator<Item = &Path> {
 ///
 /// # Errors
 ///
-/// [`IdentifyError::CountedTwice`] where a file that is fitted is among the data of a record; a record that cannot be read.
+/// [`IdentifyError::Refused`] where a file that is fitted is among the data of a record; a record that cannot be read.
 pub fn inherit(campaign: &Campaign, fitted: &[Answer], files: &mut DataFiles<'_>) -> Result<(), IdentifyError> {
     let sources: Vec<&Source> = campaign.sources.iter().filter(|source| !source.is_validation).collect();
     for taken in taken(campaign, &sources) {
@@ -81,12 +81,12 @@ pub fn inherit(campaign: &Campaign, fitted: &[Answer], files: &mut DataFiles<'_>
         let keys = fitted.iter().flat_map(Answer::estimates).filter(of_source).flat_map(|e| &e.data);
         let observed = keys.filter_map(|key| files.get(key));
         if let Some(twice) = observed.into_iter().find(|file| data.iter().any(|data| data.sha256 == file.sha256)) {
-            return Err(IdentifyError::CountedTwice {
-                campaign: campaign.path.clone(),
-                key: taken.key,
-                record: taken.path.to_owned(),
-                file: twice.path.clone(),
-            });
+            let (campaign, key, record) = (campaign.path.display(), taken.key, taken.path.display());
+            return Err(IdentifyError::Refused(format!(
+                "{campaign}: {key}: {record} was itself fitted to {}, which this job fits again: the same data would count twice, and the \
+                 interval would be too narrow. Take the {key} from a record of other data, or leave it out",
+                twice.path
+            )));
         }
         files.key(taken.path, "record")?;
         for file in data {

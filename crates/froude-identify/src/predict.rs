@@ -140,7 +140,12 @@ pub fn predict(estimate: &Estimate, others: &[&Estimate], data: &Dataset) -> Res
 fn by_law(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyError> {
     let data = &with_loads(estimate, data);
     let law = ForceLaw::of_estimate(estimate, data)?;
-    let unknown = |name: &str| IdentifyError::NoValue { id: estimate.id.clone(), coefficient: name.to_owned() };
+    let unknown = |name: &str| {
+        IdentifyError::Refused(format!(
+            "estimate {}: {name} has no value, as its data do not determine it; forces follow from a law whose coefficients all have one",
+            estimate.id
+        ))
+    };
     let values = law.values_of(estimate).map_err(unknown)?;
     let forces = law.predict(data, &values)?;
     let slopes = Slopes::of(estimate, &law, &law.regressors(data, &values)?);

@@ -213,7 +213,7 @@ fn not_a_table(source: &Source, input: &Input) -> IdentifyError {
         Input::Mesh(_) => "`mesh` gives added mass; give its result as `record`",
         Input::Record { .. } | Input::Table(_) => "a published record is compared, not fitted",
     };
-    IdentifyError::NotATable { source_name: source.name.clone(), what: what.to_owned() }
+    IdentifyError::Refused(format!("source {:?}: {what}", source.name))
 }
 
 /// The table's columns as channels, with velocity from speed and angle or the other way round.

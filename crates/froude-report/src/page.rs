@@ -21,7 +21,7 @@ use crate::symbol::unit_text;
 use crate::tables::counter::Tables;
 use crate::tables::symbols::{html_symbol, html_unit};
 use crate::tables::typed::table_markup;
-use crate::tables::{self, counted};
+use crate::tables::{self, counted, distinct};
 use froude_records::page::Report;
 
 /// What a reader of two sources needs to know first.
@@ -300,13 +300,7 @@ impl Page<'_> {
         }
         let is_beside = !report.sources.is_empty();
         let heading = self.open("published", if is_beside { "Published coefficients" } else { "Records" }, "");
-        let mut sources: Vec<&str> = Vec::new();
-        for estimate in &report.published {
-            if !sources.contains(&estimate.source.as_str()) {
-                sources.push(&estimate.source);
-            }
-        }
-        let tables: Vec<Markup> = sources
+        let tables: Vec<Markup> = distinct(report.published.iter().map(|estimate| &estimate.source))
             .into_iter()
             .map(|source| {
                 let own: Vec<Estimate> = report.published.iter().filter(|e| e.source == source).cloned().collect();

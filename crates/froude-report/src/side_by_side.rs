@@ -9,6 +9,8 @@ use froude_records::comparison::{
 use froude_records::number::{self, MISSING};
 use froude_records::text::counted;
 
+use crate::tables::distinct;
+
 /// Most rows of coefficients that are shown, whichever they are; of more, those of the recommended laws.
 const MOST_ROWS: usize = 40;
 /// Most places with predicted loads; of more, the ends and the middle of speed and angle.
@@ -80,7 +82,8 @@ fn coefficients(joint: &Joint<'_>, rows: &[CoefficientComparison]) -> Vec<Block>
         said.push(coverage_note(one, rows.iter().map(|r| &r.first)));
         said.extend((one != other).then(|| coverage_note(other, rows.iter().map(|r| &r.second))));
     }
-    said.extend(reasons(rows.iter().map(|r| &r.note)).iter().map(|why| format!("no E_n: {why}")));
+    let reasons = distinct(rows.iter().map(|r| &r.note).filter(|note| !note.is_empty()));
+    said.extend(reasons.iter().map(|why| format!("no E_n: {why}")));
     if let Some(j) = joint.get(&[rows[0].model.as_str(), one, other]) {
         said.extend(match (j.chi_squared, j.dof, j.p) {
             (Some(chi2), Some(dof), Some(p)) => Some(format!(
@@ -145,8 +148,8 @@ fn loads(c: &Comparison) -> Vec<Block> {
     said.extend(c.coverage.iter().cloned());
     for id in others {
         // A missing uncertainty has just been named.
-        let notes = reasons(rows_of(id).into_iter().map(|r| &r.note));
-        let notes = notes.iter().filter(|why| !why.starts_with("no uncertainty stated"));
+        let notes = rows_of(id).into_iter().map(|r| &r.note).filter(|note| !note.is_empty());
+        let notes = distinct(notes).into_iter().filter(|why| !why.starts_with("no uncertainty stated"));
         said.extend(notes.map(|why| format!("no E_n of {id} against {first}: {why}")));
     }
     if places.len() <= MOST_PLACES {
@@ -190,15 +193,4 @@ fn load(side: &Side) -> String {
         Some(load) if side.standard_uncertainty.is_none() => number::fixed(load, 4),
         _ => with_expanded(side),
     }
-}
-
-/// Reasons in the order of appearance, each once.
-fn reasons<'a>(notes: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
-    let mut out: Vec<&str> = Vec::new();
-    for reason in notes.filter(|note| !note.is_empty()) {
-        if !out.contains(&reason.as_str()) {
-            out.push(reason);
-        }
-    }
-    out
 }

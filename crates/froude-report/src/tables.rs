@@ -7,6 +7,8 @@ mod selection;
 pub(crate) mod symbols;
 pub(crate) mod typed;
 
+use std::collections::BTreeSet;
+
 use froude_records::block::TableBuilder;
 use froude_records::estimate::words;
 use froude_records::estimate::{Coefficient, Estimate, Range, Status};
@@ -81,15 +83,10 @@ pub(crate) fn expanded(c: &Coefficient, estimate: &Estimate) -> Markup {
     }
 }
 
-/// Keys over several estimates, in the order of appearance.
-fn union<'a, I: IntoIterator<Item = &'a String>>(keys: I) -> Vec<&'a str> {
-    let mut out: Vec<&str> = Vec::new();
-    for key in keys {
-        if !out.contains(&key.as_str()) {
-            out.push(key);
-        }
-    }
-    out
+/// Distinct texts in the order of their appearance.
+pub(crate) fn distinct<'a, T: AsRef<str> + ?Sized + 'a>(texts: impl IntoIterator<Item = &'a T>) -> Vec<&'a str> {
+    let mut seen = BTreeSet::new();
+    texts.into_iter().map(AsRef::as_ref).filter(|text| seen.insert(*text)).collect()
 }
 
 impl Tables {

@@ -62,7 +62,10 @@ impl Solution {
     pub fn covariance(&self, scatter: Scatter) -> Result<SharedCovariance, NonlinearError> {
         let rows: usize = self.residuals.iter().map(Vec::len).sum();
         let Some(sigma) = self.sigma() else {
-            return Err(NonlinearError::NoDegreesOfFreedom { rows, rank: rows - self.dof });
+            let rank = rows - self.dof;
+            return Err(NonlinearError(format!(
+                "{rows} residuals for {rank} determined parameters leave none to estimate the noise from; add data"
+            )));
         };
         let linear = eliminate(&self.point(), &self.layout, |j| !self.at_bound[j], &self.residuals, None);
         let rank = linear.shared.qr.rank;

@@ -82,7 +82,9 @@ impl Settings {
     pub(crate) fn check(&self) -> Result<(), NonlinearError> {
         let positive = [("difference", self.difference), ("offset", self.offset), ("step", self.step)];
         match positive.into_iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
-            Some((setting, value)) => Err(NonlinearError::Setting { setting, value, must: "positive and finite" }),
+            Some((setting, value)) => {
+                Err(NonlinearError(format!("{setting} is {value}; it must be positive and finite")))
+            }
             None => Ok(()),
         }
     }

@@ -62,19 +62,25 @@ impl<'a> Problem<'a> {
         let theta: Vec<f64> = parameters.iter().map(|p| p.start).collect();
         let mut residuals = Vec::with_capacity(runs);
         for run in 0..runs {
-            let r = model.residuals(run, &theta).ok_or(NonlinearError::Impossible { run })?;
+            let impossible = || format!("the model of run {run} is impossible at the start; start elsewhere");
+            let r = model.residuals(run, &theta).ok_or_else(|| NonlinearError(impossible()))?;
             if r.is_empty() {
-                return Err(NonlinearError::NoRows { run });
+                return Err(NonlinearError(format!("run {run} has no residuals; leave it out")));
             }
             if let Some(row) = r.iter().position(|r| !(r * r).is_finite()) {
-                return Err(NonlinearError::ResidualNotFinite { run, row, value: r[row] });
+                return Err(NonlinearError(format!(
+                    "residual {row} of run {run} is {} at the start; it and its square must be finite",
+                    r[row]
+                )));
             }
             residuals.push(r);
         }
         let rows: Vec<usize> = residuals.iter().map(Vec::len).collect();
-        let (n, free) = (rows.iter().sum(), parameters.iter().filter(|p| p.lower < p.upper).count());
+        let (n, free) = (rows.iter().sum::<usize>(), parameters.iter().filter(|p| p.lower < p.upper).count());
         if n < free {
-            return Err(NonlinearError::TooFewRows { rows: n, parameters: free });
+            return Err(NonlinearError(format!(
+                "{n} residuals cannot determine {free} free parameters; add data or fix some"
+            )));
         }
         let problem = Self { model, parameters, settings, layout: Layout::new(parameters, runs), rows };
         let columns = problem.columns(&theta, &residuals)?;
@@ -93,7 +99,7 @@ impl<'a> Problem<'a> {
             return Ok(None);
         };
         if r.len() != self.rows[run] {
-            return Err(NonlinearError::Size { what: "residuals", run, found: r.len(), expected: self.rows[run] });
+            return Err(wrong_size("residuals", run, r.len(), self.rows[run]));
         }
         Ok(Some(r).filter(|r| r.iter().all(|r| r.is_finite())))
     }
@@ -122,20 +128,25 @@ impl<'a> Problem<'a> {
             && given.len() != theta.len()
         {
             let (found, expected) = (given.len(), theta.len());
-            return Err(NonlinearError::Size { what: "columns of derivatives", run, found, expected });
+            return Err(wrong_size("columns of derivatives", run, found, expected));
         }
         let column = |j: usize| {
             let column = match &given {
                 Some(given) if given[j].len() != here.len() => {
-                    let (found, expected) = (given[j].len(), here.len());
-                    return Err(NonlinearError::Size { what: "a column of derivatives", run, found, expected });
+                    return Err(wrong_size("a column of derivatives", run, given[j].len(), here.len()));
                 }
                 Some(given) => Some(given[j].iter().map(|d| -d).collect()),
                 None => self.difference(run, theta, j, here)?,
             };
             column
                 .filter(|c: &Vec<f64>| c.iter().all(|c| c.is_finite()))
-                .ok_or_else(|| NonlinearError::NoDerivative { run, name: self.parameters[j].name.clone() })
+                .ok_or_else(|| {
+                    NonlinearError(format!(
+                        "the derivative of run {run} with respect to {:?} does not exist at the start; start further from where the model \
+                         is impossible, or make the parameter's scale smaller",
+                        self.parameters[j].name
+                    ))
+                })
         };
         self.layout.moving(run).map(column).collect()
     }
@@ -221,34 +232,41 @@ impl Point {
     }
 }
 
+/// Refuses parameters that contradict themselves or the runs.
 fn check(parameters: &[Parameter], runs: usize) -> Result<(), NonlinearError> {
+    let refuse = |problem: String| Err(NonlinearError(problem));
     if parameters.is_empty() {
-        return Err(NonlinearError::NoParameters);
+        return refuse("no parameters are given; name at least one".to_owned());
     }
     if runs == 0 {
-        return Err(NonlinearError::NoRuns);
+        return refuse("the model has no runs; give at least one".to_owned());
     }
     let mut seen = std::collections::BTreeMap::new();
     for (second, Parameter { name, start, scale, lower, upper, run }) in parameters.iter().enumerate() {
-        let (name, start, lower, upper) = (name.clone(), *start, *lower, *upper);
-        if let Some(first) = seen.insert(name.clone(), second) {
-            return Err(NonlinearError::DuplicateName { name, first, second });
+        if let Some(first) = seen.insert(name, second) {
+            return refuse(format!("parameter {name:?} is named twice (parameters {first} and {second}); rename one"));
         }
         if !start.is_finite() {
-            return Err(NonlinearError::Number { name, what: "start", value: start, must: "finite" });
+            return refuse(format!("start of {name:?} is {start}; it must be finite"));
         }
         if !(scale.is_finite() && *scale > 0.0) {
-            return Err(NonlinearError::Number { name, what: "scale", value: *scale, must: "positive and finite" });
+            return refuse(format!("scale of {name:?} is {scale}; it must be positive and finite"));
         }
         if lower.is_nan() || upper.is_nan() || lower > upper {
-            return Err(NonlinearError::Bounds { name, lower, upper });
+            return refuse(format!("bounds of {name:?} are [{lower}, {upper}]; the lower must not exceed the upper"));
         }
         if !(lower..=upper).contains(&start) {
-            return Err(NonlinearError::StartOutsideBounds { name, start, lower, upper });
+            return refuse(format!(
+                "{name:?} starts at {start}, outside its bounds [{lower}, {upper}]; start inside or widen them"
+            ));
         }
         if let Some(run) = run.filter(|&run| run >= runs) {
-            return Err(NonlinearError::NoSuchRun { name, run, runs });
+            return refuse(format!("{name:?} belongs to run {run}, but the model has {runs}"));
         }
     }
     Ok(())
+}
+
+fn wrong_size(what: &str, run: usize, found: usize, expected: usize) -> NonlinearError {
+    NonlinearError(format!("{what} of run {run}: {found} entries where {expected} are needed"))
 }

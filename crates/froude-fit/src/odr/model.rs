@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use crate::error::FitError;
-use crate::problem::size;
+use crate::problem::{size, unique};
 
 /// Regressors as a function of uncertain inputs.
 pub trait InputModel {
@@ -83,7 +83,7 @@ impl OdrProblem {
             return Err(FitError::NoRows);
         }
         if p == 0 {
-            return Err(FitError::NoCoefficients);
+            return Err(FitError::no_coefficients());
         }
         let of_model = "set by the model";
         let of_rows = "one per observation";
@@ -95,16 +95,12 @@ impl OdrProblem {
         size("input_standard columns", self.input_standard.ncols(), m, of_model)?;
         size("inputs", self.inputs.nrows(), n, of_rows)?;
         size("input_standard", self.input_standard.nrows(), n, of_rows)?;
-        for (second, name) in self.names.iter().enumerate() {
-            if let Some(first) = self.names[..second].iter().position(|other| other == name) {
-                return Err(FitError::DuplicateName { name: name.clone(), first, second });
-            }
-        }
+        unique(&self.names)?;
         for sigma in &self.sigma {
             if let Sigma::Known(value) = *sigma
                 && !(value > 0.0 && value.is_finite())
             {
-                return Err(FitError::Option { option: "a known σ", value, must: "positive and finite" });
+                return Err(FitError::option("a known σ", value, "positive and finite"));
             }
         }
         let mut out = vec![0.0; c * p];
@@ -112,26 +108,23 @@ impl OdrProblem {
             for k in 0..c {
                 let value = self.response[(i, k)];
                 if !value.is_finite() {
-                    return Err(FitError::ResponseNotFinite { row: i, value });
+                    return Err(FitError::response_not_finite(i, value));
                 }
             }
             for k in 0..m {
                 let value = self.inputs[(i, k)];
                 if !value.is_finite() {
-                    return Err(FitError::Option { option: "an input", value, must: "finite" });
+                    return Err(FitError::option("an input", value, "finite"));
                 }
                 let value = self.input_standard[(i, k)];
                 if !(value >= 0.0 && value.is_finite()) {
-                    return Err(FitError::Option {
-                        option: "the standard deviation of an input",
-                        value,
-                        must: "zero or positive, and finite",
-                    });
+                    let must = "zero or positive, and finite";
+                    return Err(FitError::option("the standard deviation of an input", value, must));
                 }
             }
             model.regressors(i, &crate::dense::row(self.inputs.as_ref(), i), &mut out);
             if let Some(bad) = out.iter().position(|x| !x.is_finite()) {
-                return Err(FitError::DesignNotFinite { row: i, name: self.names[bad % p].clone(), value: out[bad] });
+                return Err(FitError::design_not_finite(i, &self.names[bad % p], out[bad]));
             }
         }
         Ok(())

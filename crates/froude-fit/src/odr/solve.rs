@@ -50,11 +50,10 @@ impl State {
                 Sigma::Known(sigma) => sigma,
                 Sigma::Estimated if n > qr.rank => (rss / (n - qr.rank) as f64).sqrt(),
                 Sigma::Estimated => {
-                    return Err(FitError::NoDegreesOfFreedom {
-                        component: problem.components[k].clone(),
-                        n,
-                        rank: qr.rank,
-                    });
+                    return Err(FitError::Refused(format!(
+                        "component {:?} has {n} rows for {} coefficients: none is left to estimate its standard deviation from",
+                        problem.components[k], qr.rank
+                    )));
                 }
             };
         }

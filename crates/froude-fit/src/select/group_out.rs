@@ -22,7 +22,7 @@ const FEWEST_GROUPS: usize = 3;
 ///
 /// # Errors
 ///
-/// As [`fit`], and [`FitError::Size`] when `groups` has not an entry per row.
+/// As [`fit`], and [`FitError::Refused`] when `groups` has not an entry per row.
 pub fn leave_one_group_out(
     problem: &Problem,
     options: &Options,

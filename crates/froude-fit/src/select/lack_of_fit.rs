@@ -27,7 +27,7 @@ pub struct LackOfFit {
 ///
 /// # Errors
 ///
-/// [`FitError::Size`] when `settings` has not an entry per row of the problem.
+/// [`FitError::Refused`] when `settings` has not an entry per row of the problem.
 ///
 /// # Source
 ///

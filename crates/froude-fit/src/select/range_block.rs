@@ -21,7 +21,7 @@ pub struct RangeBlock {
 ///
 /// # Errors
 ///
-/// As [`fit`]; [`FitError::Size`] when `train` has not an entry per row;
+/// As [`fit`]; [`FitError::Refused`] when `train` has not an entry per row;
 /// [`FitError::NoRows`] when it is false everywhere.
 pub fn range_block(problem: &Problem, options: &Options, train: &[bool]) -> Result<RangeBlock, FitError> {
     problem.check()?;

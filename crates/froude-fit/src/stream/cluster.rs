@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::in_memory::columns_of;
-use super::{Accumulator, Factor, Shape, StreamError, check_finite, check_lengths};
+use super::{Accumulator, Factor, Shape, StreamError, check_count, check_finite, check_lengths};
 
 /// Rows taken in chunk after chunk, each row in a cluster (a run, a stretch of time).
 ///
@@ -38,9 +38,7 @@ impl ClusterAccumulator {
     pub fn push(&mut self, clusters: &[u64], regressors: &[&[f64]], responses: &[&[f64]]) -> Result<(), StreamError> {
         let columns = columns_of(self.shape, regressors, responses)?;
         let rows = check_lengths(&columns)?;
-        if clusters.len() != rows {
-            return Err(StreamError::Shape { what: "clusters of rows", found: clusters.len(), expected: rows });
-        }
+        check_count("clusters of rows", clusters.len(), rows)?;
         check_finite(&columns, 0..rows, self.taken)?;
         let mut start = 0;
         for run in clusters.chunk_by(|a, b| a == b) {
@@ -62,7 +60,10 @@ impl ClusterAccumulator {
             return known.merge(&factor);
         }
         if self.factors.len() >= self.limit {
-            return Err(StreamError::TooManyClusters { cluster, limit: self.limit });
+            return Err(StreamError::Refused(format!(
+                "cluster {cluster} is one more than the limit of {}: each keeps a triangle of its own; raise the limit, or use longer clusters",
+                self.limit
+            )));
         }
         self.factors.insert(cluster, factor);
         Ok(())

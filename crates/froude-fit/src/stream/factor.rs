@@ -52,7 +52,10 @@ impl Factor {
     /// [`StreamError::Merge`] when the shapes differ.
     pub fn merge(&mut self, other: &Self) -> Result<(), StreamError> {
         if self.shape != other.shape {
-            return Err(StreamError::Merge { found: other.shape, expected: self.shape });
+            return Err(StreamError::Refused(format!(
+                "a factor of shape {:?} cannot be merged into one of {:?}",
+                other.shape, self.shape
+            )));
         }
         Folder::new(self.shape).fold_triangle(&mut self.triangle, &other.triangle);
         self.rows += other.rows;
@@ -93,24 +96,30 @@ impl Factor {
     }
 
     fn check_response(&self, response: usize) -> Result<(), StreamError> {
-        if response < self.shape.responses {
+        let responses = self.shape.responses;
+        if response < responses {
             return Ok(());
         }
-        Err(StreamError::NoSuchResponse { response, responses: self.shape.responses })
+        Err(StreamError::Refused(format!("response {response} is asked for, but there are {responses}")))
     }
 
     /// Refuses a design that does not determine all its coefficients.
     fn check_determined(&self) -> Result<f64, StreamError> {
         let p = self.shape.regressors;
         if self.rows <= p as u64 {
-            return Err(StreamError::TooFewRows { rows: self.rows, regressors: p });
+            let rows = self.rows;
+            let problem = format!("{rows} rows do not determine {p} coefficients and their scatter");
+            return Err(StreamError::Refused(problem));
         }
         let (condition_number, column) = self.conditioning();
         // Rounding alone gives parallel columns a condition number of about 1/(p·ε).
         if condition_number < 0.1 / (p.max(1) as f64 * f64::EPSILON) {
             return Ok(condition_number);
         }
-        Err(StreamError::Undetermined { column, condition_number })
+        Err(StreamError::Refused(format!(
+            "the data do not determine coefficient {column}: its regressor is a combination of the others (condition number \
+             {condition_number:.1e}); leave one out, or add data that excite it"
+        )))
     }
 
     /// `R⁻¹` of the design, `p × p`, upper triangular.

@@ -8,7 +8,7 @@ use super::error::StreamError;
 use super::factor::Factor;
 use super::folder::Folder;
 use super::kernel::Ahead;
-use super::{Shape, check_finite, check_lengths};
+use super::{Shape, check_count, check_finite, check_lengths};
 
 /// How many blocks before its turn a block is asked for.
 const BLOCKS_AHEAD: usize = 4;
@@ -102,12 +102,7 @@ pub(super) fn columns_of<'a>(
     regressors: &[&'a [f64]],
     responses: &[&'a [f64]],
 ) -> Result<Vec<&'a [f64]>, StreamError> {
-    for (what, found, expected) in
-        [("regressors", regressors.len(), shape.regressors), ("responses", responses.len(), shape.responses)]
-    {
-        if found != expected {
-            return Err(StreamError::Shape { what, found, expected });
-        }
-    }
+    check_count("regressors", regressors.len(), shape.regressors)?;
+    check_count("responses", responses.len(), shape.responses)?;
     Ok(regressors.iter().chain(responses).copied().collect())
 }

@@ -390,7 +390,7 @@ fn nothing_in_gives_nothing_out() {
     let factor = reduce_columns(&[&[]], &[&[]]).unwrap();
     assert_eq!(factor.rows(), 0);
     let error = factor.solve(0).unwrap_err();
-    assert_eq!(error, StreamError::TooFewRows { rows: 0, regressors: 1 });
+    assert_eq!(error.to_string(), "0 rows do not determine 1 coefficients and their scatter");
     assert!(factor.solve(1).is_err());
     let none = reduce_columns(&[], &[]).unwrap();
     assert_eq!(none.shape().width(), 0);

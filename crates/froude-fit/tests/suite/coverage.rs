@@ -1,8 +1,7 @@
 //! The 95 % interval holds the truth 95 times in 100.
 
 use froude_fit::coverage::{Count, z_limit};
-use froude_fit::distribution::coverage_factor;
-use froude_fit::{Bound, CovarianceKind, Factored, Problem};
+use froude_fit::{Bound, CovarianceKind, Options, Problem, fit};
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::{names, rng};
@@ -35,9 +34,6 @@ fn t_intervals_cover_with_and_without_bounds() {
     let problem = design();
     let truth = [0.3, 1.0, 0.0, 5.0];
     let sigma = [0.1, 2.0];
-    let factored = Factored::new(&problem, CovarianceKind::Classical).unwrap();
-    let k = factored.coverage_factors(0.95);
-    let mut solution = factored.buffer();
     let mut free = [Count::default(); 4];
     let mut bounded = [Count::default(); 4];
     let mut rng = rng(2024);
@@ -52,14 +48,12 @@ fn t_intervals_cover_with_and_without_bounds() {
                 y + sigma[c] * e
             })
             .collect();
-        factored.solve(&response, &mut solution);
-        for j in 0..4 {
-            let holds = |bound: Bound| {
-                Factored::interval(&solution, j, k[j], bound)
-                    .is_some_and(|[low, high]| low <= truth[j] && truth[j] <= high)
-            };
-            free[j].add(holds(Bound::FREE));
-            bounded[j].add(holds(Bound::NON_NEGATIVE));
+        let problem = Problem { response, ..problem.clone() };
+        for (counts, bound) in [(&mut free, Bound::FREE), (&mut bounded, Bound::NON_NEGATIVE)] {
+            let fitted = fit(&problem, &Options { bounds: vec![bound; 4], ..Options::default() }).unwrap();
+            for (j, c) in fitted.coefficients.iter().enumerate() {
+                counts[j].add(c.interval.is_some_and(|[low, high]| low <= truth[j] && truth[j] <= high));
+            }
         }
     }
     let limit = z_limit(0.01, 8);
@@ -85,7 +79,6 @@ fn under_clustered_errors_only_the_cluster_interval_covers() {
     let mut rng = rng(77);
     let mut rates = [Count::default(); 2];
     let kinds = [CovarianceKind::Classical, CovarianceKind::Cr3];
-    let factored = kinds.map(|kind| Factored::new(&problem, kind).unwrap());
     for _ in 0..REPETITIONS {
         let common: Vec<f64> = (0..clusters).map(|_| StandardNormal.sample(&mut rng)).collect();
         let response: Vec<f64> = (0..n)
@@ -94,11 +87,10 @@ fn under_clustered_errors_only_the_cluster_interval_covers() {
                 common[i / size] + 0.5 * own
             })
             .collect();
-        for (count, factored) in rates.iter_mut().zip(&factored) {
-            let mut solution = factored.buffer();
-            factored.solve(&response, &mut solution);
-            let k = coverage_factor(0.95, factored.dof()[1]);
-            count.add(solution.value[1].abs() <= k * solution.standard[1]);
+        let problem = Problem { response, ..problem.clone() };
+        for (count, covariance) in rates.iter_mut().zip(kinds) {
+            let fitted = fit(&problem, &Options { covariance, ..Options::default() }).unwrap();
+            count.add(fitted.coefficients[1].interval.is_some_and(|[low, high]| low <= 0.0 && high >= 0.0));
         }
     }
     assert!(rates[0].rate() < 0.7, "classical {}", rates[0].rate());

@@ -3,7 +3,7 @@
 use faer::Mat;
 use froude_fit::coverage::{Count, z_limit};
 use froude_fit::odr::{InputModel, OdrProblem, Sigma, odr};
-use froude_fit::{End, FitError, Options, Status, fit};
+use froude_fit::{End, Options, Status, fit};
 
 use crate::{assert_close, names, normal, rng, single};
 
@@ -298,5 +298,6 @@ fn bad_input_is_refused_in_words() {
     bad.names.pop();
     assert_eq!(words(&bad), "names has 1 entries where 2 are needed (set by the model)");
     bad = line(&x[..2], &y[..2], 0.1, Sigma::Estimated);
-    assert!(matches!(odr(&Line, &bad, 0.95).unwrap_err(), FitError::NoDegreesOfFreedom { n: 2, rank: 2, .. }));
+    let left = "has 2 rows for 2 coefficients: none is left to estimate its standard deviation from";
+    assert!(words(&bad).ends_with(left), "{}", words(&bad));
 }

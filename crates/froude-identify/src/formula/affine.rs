@@ -88,13 +88,13 @@ impl Affine {
                 continue;
             };
             let (name, here) = self.parts.swap_remove(place);
-            let sum = here.sum(&part, op).map_err(|e| match e {
-                FormulaError::UnlikeSum { left_unit, right_unit, .. } => {
-                    FormulaError::CoefficientUnits { coefficient: name.clone(), first: left_unit, second: right_unit }
-                }
-                other => other,
-            })?;
-            self.parts.push((name, sum));
+            if here.unit != part.unit {
+                return Err(FormulaError(format!(
+                    "the coefficient {name} stands beside {} in one term and beside {} in another; give the two terms different names",
+                    here.unit, part.unit
+                )));
+            }
+            self.parts.push((name, here.sum(&part, op)?));
         }
         self.fixed = match (self.fixed, other.fixed) {
             (Some(a), Some(b)) => Some(a.sum(&b, op)?),
@@ -110,7 +110,7 @@ impl Affine {
             (Some(factor), None) => other.each(|part| part.product(factor, true)),
             (None, None) => {
                 let term = format!("{}*{}", self.factor_text(), other.factor_text());
-                Err(FormulaError::NotLinear { term: format!("{term} multiplies coefficients with each other") })
+                Err(FormulaError::not_linear(&format!("{term} multiplies coefficients with each other")))
             }
         }
     }
@@ -120,7 +120,7 @@ impl Affine {
             return self.each(|part| part.quotient(divisor));
         }
         let term = format!("{}/{}", self.factor_text(), other.factor_text());
-        Err(FormulaError::NotLinear { term: format!("{term} divides by a coefficient") })
+        Err(FormulaError::not_linear(&format!("{term} divides by a coefficient")))
     }
 
     fn power(self, other: &Self) -> Result<Self, FormulaError> {
@@ -130,16 +130,17 @@ impl Affine {
             (_, None) => "has a coefficient in its exponent",
         };
         let term = format!("{}^{}", self.factor_text(), other.factor_text());
-        Err(FormulaError::NotLinear { term: format!("{term} {what}") })
+        Err(FormulaError::not_linear(&format!("{term} {what}")))
     }
 
     #[inline(never)]
     fn function(self, function: Function) -> Result<Self, FormulaError> {
         match self.known() {
             Some(argument) => argument.clone().function(function).map(Self::fixed),
-            None => Err(FormulaError::NotLinear {
-                term: format!("{}({}) has a coefficient in it", function.name(), self.text()),
-            }),
+            None => {
+                let term = format!("{}({}) has a coefficient in it", function.name(), self.text());
+                Err(FormulaError::not_linear(&term))
+            }
         }
     }
 

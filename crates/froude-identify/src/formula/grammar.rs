@@ -146,7 +146,9 @@ impl<'a> Reader<'_, 'a> {
         self.at += 1;
         let exponent = self.exponent()?;
         match self.token() {
-            Token { kind: Kind::Power, position, .. } => Err(FormulaError::PowerOfPower { position }),
+            Token { kind: Kind::Power, position, .. } => Err(FormulaError(format!(
+                "at character {position} a power is raised to a power; write (a^b)^c or a^(b^c) to say which is meant"
+            ))),
             _ => Ok(Expression::chain(base, vec![(Binary::Power, exponent)])),
         }
     }
@@ -187,7 +189,11 @@ impl<'a> Reader<'_, 'a> {
             (Some(function), Kind::Open) => Ok(Expression::Call(function, Box::new(self.bracket()?))),
             (Some(_), _) => Err(next.instead_of("\"(\" after a function's name")),
             (None, Kind::Open) => {
-                Err(FormulaError::UnknownFunction { position: token.position, name: token.text.to_owned() })
+                let Token { text, position, .. } = token;
+                Err(FormulaError(format!(
+                    "{text} at character {position} is not a function; known are abs, sqrt, sin, cos, tan, exp, ln and sign; a product is \
+                     written {text}*(…)"
+                )))
             }
             (None, _) => Ok(Expression::Name(self.place_of(token.text))),
         }
@@ -204,7 +210,9 @@ impl<'a> Reader<'_, 'a> {
     fn bracket(&mut self) -> Result<Expression, FormulaError> {
         self.open += 1;
         if self.open > DEPTH_LIMIT {
-            return Err(FormulaError::TooDeep { position: self.token().position });
+            let position = self.token().position;
+            let problem = format!("at character {position} more than {DEPTH_LIMIT} parentheses are open at once");
+            return Err(FormulaError(problem));
         }
         self.at += 1;
         let inside = self.sum()?;

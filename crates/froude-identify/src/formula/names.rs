@@ -89,7 +89,9 @@ pub(super) fn resolve<'a>(
         out.values.push(value);
     }
     if out.coefficients.len() > COEFFICIENT_LIMIT {
-        return Err(FormulaError::TooManyCoefficients { count: out.coefficients.len() });
+        let count = out.coefficients.len();
+        let problem = format!("the formula has {count} coefficients; at most {COEFFICIENT_LIMIT} are read");
+        return Err(FormulaError(problem));
     }
     Ok(out)
 }
@@ -103,7 +105,7 @@ impl<'a> Resolved<'a> {
     ) -> Result<Affine, FormulaError> {
         if let Some((_, value, dim)) = constants.iter().find(|(known, ..)| known == name) {
             if !value.is_finite() {
-                return Err(FormulaError::NotFinite { part: name.to_owned() });
+                return Err(FormulaError::not_finite(name));
             }
             return Ok(Affine::known_as(name, Op::Number(*value), Unit::of(*dim)));
         }
@@ -114,7 +116,9 @@ impl<'a> Resolved<'a> {
         // A column of the table hides a letter, never the other way round; a load itself is what the formula gives.
         let own = channels(name).filter(|_| load != Some(name));
         if load.is_some() && own.is_none() {
-            return Err(FormulaError::LoadName { name: name.to_owned() });
+            return Err(FormulaError(format!(
+                "{name} is the name of a load and cannot stand in a formula; give a coefficient another name"
+            )));
         }
         let of = |column: &'static str| channels(column).map(|dim| (column, dim));
         let aliased = channel_of_alias(name);
@@ -122,10 +126,12 @@ impl<'a> Resolved<'a> {
             return Ok(Affine::known_as(name, Op::Channel(self.index_of(column)), Unit::of(dim)));
         }
         if let Some(column) = aliased {
-            return Err(FormulaError::MissingAlias { name: name.to_owned(), column: column.to_owned() });
+            let problem = format!("{name} stands for the column {column}, which the table does not have");
+            return Err(FormulaError(problem));
         }
         if is_column_name(name) {
-            return Err(FormulaError::MissingColumn { name: name.to_owned() });
+            let problem = format!("{name} is the name of a column, which the table does not have");
+            return Err(FormulaError(problem));
         }
         self.coefficients.push(name);
         Ok(Affine::coefficient(name))

@@ -61,7 +61,7 @@ impl Part {
     /// As it is, if a program that is one number has a finite one.
     fn finite(self) -> Result<Self, FormulaError> {
         if self.number().is_some_and(|x| !x.is_finite()) {
-            return Err(FormulaError::NotFinite { part: self.text });
+            return Err(FormulaError::not_finite(&self.text));
         }
         Ok(self)
     }
@@ -75,12 +75,10 @@ impl Part {
     pub(super) fn sum(mut self, other: &Self, op: Binary) -> Result<Self, FormulaError> {
         let sign = if op == Binary::Add { "+" } else { "-" };
         if self.unit != other.unit {
-            return Err(FormulaError::UnlikeSum {
-                left: self.text,
-                left_unit: self.unit.to_string(),
-                right: other.text.clone(),
-                right_unit: other.unit.to_string(),
-            });
+            return Err(FormulaError(format!(
+                "{} is {} and {} is {}: they cannot be added",
+                self.text, self.unit, other.text, other.unit
+            )));
         }
         let right = other.inside(if op == Binary::Add { Binding::Sum } else { Binding::Product });
         let text = format!("{} {sign} {right}", self.text);
@@ -119,7 +117,7 @@ impl Part {
         }
         let text = format!("{}/{}", self.inside(Binding::Product), other.inside(Binding::Power));
         if other.is_zero() {
-            return Err(FormulaError::NotFinite { part: shortened(text) });
+            return Err(FormulaError::not_finite(&shortened(text)));
         }
         self.unit = self.unit.over(other.unit);
         self.join(Binary::Divide, other);
@@ -137,11 +135,7 @@ impl Part {
     }
 
     pub(super) fn power(mut self, exponent: &Self) -> Result<Self, FormulaError> {
-        let wrong = |reason: String| FormulaError::Exponent {
-            exponent: exponent.text.clone(),
-            base: self.text.clone(),
-            reason,
-        };
+        let wrong = |reason: String| FormulaError(format!("the exponent {} of {} {reason}", exponent.text, self.text));
         if exponent.unit != Unit::ONE {
             return Err(wrong(format!("is {}, but must be a pure number", exponent.unit)));
         }
@@ -167,18 +161,16 @@ impl Part {
         self.unit = match function {
             Function::Abs => self.unit,
             Function::Sign => Unit::ONE,
-            Function::Sqrt => self.unit.power(0.5).ok_or_else(|| FormulaError::Exponent {
-                exponent: "1/2".to_owned(),
-                base: self.text.clone(),
-                reason: format!("gives {} a power that cannot be recorded", self.unit),
+            Function::Sqrt => self.unit.power(0.5).ok_or_else(|| {
+                FormulaError(format!(
+                    "the exponent 1/2 of {} gives {} a power that cannot be recorded",
+                    self.text, self.unit
+                ))
             })?,
             _ if self.unit == Unit::ONE => Unit::ONE,
             _ => {
-                return Err(FormulaError::DimensionalArgument {
-                    function: function.name(),
-                    argument: self.text,
-                    unit: self.unit.to_string(),
-                });
+                let (name, Self { text, unit, .. }) = (function.name(), &self);
+                return Err(FormulaError(format!("{name}({text}) needs a pure number, but {text} is {unit}")));
             }
         };
         match self.number() {

@@ -31,9 +31,9 @@ pub(super) struct Token<'a> {
 
 impl Token<'_> {
     /// That something else is expected where this token stands.
-    pub(super) fn instead_of(&self, expected: &'static str) -> FormulaError {
+    pub(super) fn instead_of(&self, expected: &str) -> FormulaError {
         let found = if self.kind == Kind::End { "the end".to_owned() } else { format!("{:?}", self.text) };
-        FormulaError::Syntax { position: self.position, found, expected }
+        FormulaError(format!("at character {} stands {found}, but {expected} is expected there", self.position))
     }
 }
 
@@ -44,11 +44,13 @@ impl Token<'_> {
 /// A text that is empty or too long, a character that no formula has, a number that is not finite.
 pub(super) fn tokens(text: &str) -> Result<Vec<Token<'_>>, FormulaError> {
     if text.trim().is_empty() {
-        return Err(FormulaError::Empty);
+        let problem = "the formula is empty; write for example \"Y_v*v + Y_vav*v*abs(v)\"";
+        return Err(FormulaError(problem.to_owned()));
     }
     let length = text.chars().count();
     if length > LENGTH_LIMIT {
-        return Err(FormulaError::TooLong { length });
+        let problem = format!("the formula has {length} characters; at most {LENGTH_LIMIT} are read");
+        return Err(FormulaError(problem));
     }
     // Every character that passes is one byte: byte place = character place.
     let mut out = Vec::new();
@@ -83,7 +85,8 @@ fn token(text: &str, at: usize) -> Result<Token<'_>, FormulaError> {
         '0'..='9' | '.' => {
             let text = &rest[..length];
             let value = f64::from_str(text).ok().filter(|value| value.is_finite());
-            Kind::Number(value.ok_or_else(|| FormulaError::Number { position, text: text.to_owned() })?)
+            let problem = || format!("{text:?} at character {position} is not a finite number");
+            Kind::Number(value.ok_or_else(|| FormulaError(problem()))?)
         }
         '+' => Kind::Plus,
         '-' => Kind::Minus,
@@ -92,7 +95,11 @@ fn token(text: &str, at: usize) -> Result<Token<'_>, FormulaError> {
         '^' => Kind::Power,
         '(' => Kind::Open,
         ')' => Kind::Close,
-        _ => return Err(FormulaError::Character { position, character }),
+        _ => {
+            return Err(FormulaError(format!(
+                "character {position} is {character:?}; a formula is made of names, numbers, + - * / ^ and parentheses"
+            )));
+        }
     };
     Ok(Token { kind, text: &rest[..length], position })
 }

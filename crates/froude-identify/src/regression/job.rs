@@ -114,9 +114,7 @@ impl<'a> Job<'a> {
     /// What the fit refused, with source and law; numbers without bounds are those of the iteration.
     pub(crate) fn refusal(&self, source: fit::FitError) -> IdentifyError {
         match source {
-            fit::FitError::DesignNotFinite { .. } | fit::FitError::ResponseNotFinite { .. }
-                if self.law.is_nonlinear() =>
-            {
+            fit::FitError::NotFinite(_) if self.law.is_nonlinear() => {
                 self.no_fit(ran_away(self.law, self.data, &self.newtons))
             }
             source => IdentifyError::Fit {

@@ -41,7 +41,8 @@ pub fn asked_models(campaign: &Campaign, source: &Source) -> Result<Vec<String>,
             let own = if user.is_empty() { "none here".to_owned() } else { user.join(", ") };
             format!("built in are f1 to f6, {}; [[identify.model]] adds its own: {own}", PLAIN_MODELS.join(", "))
         });
-        return Err(IdentifyError::UnknownModel { place: places.get(i).cloned(), model: unknown.clone(), advice });
+        let place = places.get(i).map_or_else(String::new, |place| format!("{place}: "));
+        return Err(IdentifyError::Refused(format!("{place}model {unknown:?} is not known; {advice}")));
     }
     let mut asked = if !source.models.is_empty() {
         source.models.clone()
@@ -199,8 +200,8 @@ pub(crate) fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> Ident
             loads.join(", ")
         )
     };
-    let columns = data.headers.clone();
-    IdentifyError::NoLoad { path: source.input.path().to_owned(), lacks, columns }
+    let (path, columns) = (source.input.path().display(), data.headers.join(", "));
+    IdentifyError::Refused(format!("{path}: no load to fit: {lacks}; the table has {columns}"))
 }
 
 /// f = −D_I·v − D_II·v|v| per axis, or the quadratic term alone; of motion across the body with lift, Y_uv·v_x·v_y, and with the moments
@@ -372,6 +373,10 @@ pub(crate) fn body(campaign: &Campaign, data: &Dataset, model: &str) -> Result<B
         (Some(link), Some(head), Some(tail)) if missing.is_empty() => {
             Ok(Body { link, head_side_area_m2: head, tail_side_area_m2: tail })
         }
-        _ => Err(IdentifyError::NoBody { model: model.to_owned(), missing }),
+        _ => {
+            let missing = missing.join(", ");
+            let problem = format!("model {model}: needs the body's geometry; the campaign lacks {missing}");
+            Err(IdentifyError::Refused(problem))
+        }
     }
 }

@@ -6,13 +6,13 @@ use froude_records::number;
 use froude_records::page::{BudgetRow, SourceSection};
 
 use crate::canvas::{Align, Canvas, WHITE, shortened, text_width};
-use crate::figures::drawing::{Drawing, MOST_ROWS, distinct, recommended};
+use crate::figures::drawing::{Drawing, MOST_ROWS, recommended};
 use crate::plot::{
     AXIS, Entry, LABEL_SIZE, MUTED, Panel, RULE, Span, Swatch, TEXT, TICK_SIZE, WIDTH, category, draw_legend,
     legend_height,
 };
 use crate::symbol::{Rich, symbol};
-use crate::tables::counted;
+use crate::tables::{counted, distinct};
 
 /// The rows of the budget that the report shows first: those of the recommended
 /// model, else of the first model in the budget.

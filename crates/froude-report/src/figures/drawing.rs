@@ -43,12 +43,6 @@ pub(crate) fn recommended(section: &SourceSection) -> Option<&Estimate> {
     section.estimates.iter().find(|e| e.recommended)
 }
 
-/// Distinct texts in the order of their appearance.
-pub(crate) fn distinct<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut seen = std::collections::BTreeSet::new();
-    texts.into_iter().filter(|t| seen.insert(*t)).collect()
-}
-
 /// What a caption states about points that are a sample.
 pub(crate) fn drawn_by_chance(section: &SourceSection) -> String {
     section.sample_of.map_or_else(String::new, |n| format!(" The points are a random sample of {n} observations."))

@@ -9,13 +9,13 @@ use froude_records::estimate::{Estimate, Status};
 use froude_records::number;
 
 use crate::canvas::{Align, Canvas, Ink, shortened, text_width};
-use crate::figures::drawing::{Drawing, MOST_ROWS, distinct};
+use crate::figures::drawing::{Drawing, MOST_ROWS};
 use crate::plot::{
     ACCENT, ALERT, AXIS, Entry, LABEL_SIZE, MUTED, Panel, RULE, Span, Swatch, TEXT, TICK_SIZE, Ticks, WIDTH,
     chunk_size, draw_legend, drawable, grid_shape, legend_height,
 };
 use crate::symbol::{Rich, Style, symbol_and_unit};
-use crate::tables::counted;
+use crate::tables::{counted, distinct};
 use froude_records::page::Report;
 
 /// Every estimate with the label of its source, fitted ones first.

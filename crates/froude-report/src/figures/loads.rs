@@ -11,15 +11,13 @@ use froude_records::page::{Abscissa as Held, Against, Curve, Point, SourceSectio
 use indexmap::IndexMap;
 
 use crate::canvas::{Align, Canvas, Ink, shortened};
-use crate::figures::drawing::{
-    Drawing, MOST_NAMED, MOST_POINTS, distinct, drawn_by_chance, evenly, recommended, thinned,
-};
+use crate::figures::drawing::{Drawing, MOST_NAMED, MOST_POINTS, drawn_by_chance, evenly, recommended, thinned};
 use crate::plot::{
     ACCENT, Entry, LABEL_SIZE, MUTED, Panel, Span, Swatch, TEXT, Ticks, WIDTH, chunk_size, degree_ticks, draw_legend,
     drawable, grid_shape, legend_height, level_ink,
 };
 use crate::symbol::{Rich, Style, symbol_and_unit, unit_text};
-use crate::tables::counted;
+use crate::tables::{counted, distinct};
 
 /// From this many points on a panel shows them as a cloud behind the line, without bars.
 const CLOUD: usize = 120;

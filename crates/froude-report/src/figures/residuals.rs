@@ -5,14 +5,13 @@ use std::collections::BTreeMap;
 use froude_records::page::{Point, SourceSection};
 
 use crate::canvas::{Align, Canvas, Ink, shortened};
-use crate::figures::drawing::{
-    Drawing, MOST_NAMED, MOST_POINTS, distinct, drawn_by_chance, evenly, recommended, thinned,
-};
+use crate::figures::drawing::{Drawing, MOST_NAMED, MOST_POINTS, drawn_by_chance, evenly, recommended, thinned};
 use crate::plot::{
     ACCENT, AXIS, Entry, LABEL_SIZE, Panel, Span, Swatch, TEXT, WIDTH, draw_legend, drawable, legend_height, level_ink,
 };
 use crate::statistics::{mean_and_deviation, normal_quantile};
 use crate::symbol::{Rich, symbol_and_unit};
+use crate::tables::distinct;
 
 /// Components in one residual figure: three rows of three panels.
 const RESIDUAL_ROWS: usize = 3;

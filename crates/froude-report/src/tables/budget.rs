@@ -3,9 +3,9 @@
 use maud::{Markup, html};
 
 use super::counter::Tables;
+use super::distinct;
 use super::symbols::{head_unit, html_symbol};
 use super::typed::table_markup;
-use super::union;
 use crate::figures::{budget_rows, ranked_inputs, share};
 use crate::symbol::unit_text;
 use froude_records::block::TableBuilder;
@@ -51,7 +51,7 @@ fn budget_table(rows: &[&BudgetRow], caption: String, tables: &mut Tables) -> Ma
                     }
                 }
                 tbody {
-                    @for coefficient in union(rows.iter().map(|r| &r.coefficient)) {
+                    @for coefficient in distinct(rows.iter().map(|r| &r.coefficient)) {
                         @let unit = rows.iter().find(|r| r.coefficient == coefficient).map_or("1", |r| r.unit.as_str());
                         @let largest = rows.iter().filter(|r| r.coefficient == coefficient).map(|r| share(r)).fold(0.0, f64::max);
                         tr {
@@ -76,7 +76,7 @@ fn budget_table(rows: &[&BudgetRow], caption: String, tables: &mut Tables) -> Ma
 
 fn long_budget_table(rows: &[&BudgetRow], caption: String, tables: &mut Tables) -> Markup {
     let order: Vec<&str> = ranked_inputs(rows).into_iter().map(|(input, _)| input).collect();
-    let coefficients = union(rows.iter().map(|r| &r.coefficient));
+    let coefficients = distinct(rows.iter().map(|r| &r.coefficient));
     let own = |coefficient| sorted(rows, coefficient, &order).into_iter().enumerate();
     let rows: Vec<(usize, &BudgetRow)> = coefficients.into_iter().flat_map(own).collect();
     let t = TableBuilder::new("", caption, &rows);
@@ -110,7 +110,7 @@ impl Tables {
         );
         let table = budget_table(&rows, caption, self);
         let others =
-            union(source.budget.iter().map(|r| &r.model)).into_iter().filter(|m| *m != model).collect::<Vec<_>>();
+            distinct(source.budget.iter().map(|r| &r.model)).into_iter().filter(|m| *m != model).collect::<Vec<_>>();
         let folded: Vec<Markup> = others
             .into_iter()
             .map(|other| {

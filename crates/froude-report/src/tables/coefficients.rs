@@ -11,7 +11,7 @@ use maud::{Markup, html};
 use super::counter::Tables;
 use super::symbols::{head_unit, html_symbol, html_unit};
 use super::typed::table_markup;
-use super::{called, dagger, is_bare, named, sigma, union, wider_range};
+use super::{called, dagger, distinct, is_bare, named, sigma, wider_range};
 use crate::symbol::unit_text;
 
 /// Most models side by side in one table.
@@ -141,7 +141,7 @@ impl Tables {
 
     fn coefficient_group(&mut self, source: &str, group: &[&Estimate]) -> Markup {
         let mut marks = Marks::default();
-        let names = union(group.iter().flat_map(|e| e.coefficients.keys()));
+        let names = distinct(group.iter().flat_map(|e| e.coefficients.keys()));
         let recommended = group.iter().any(|e| e.recommended);
         let class = |e: &Estimate| if e.recommended { "best" } else { "" };
         let has_interval = group.iter().any(|e| e.coefficients.values().any(|c| c.interval_95.is_some()));
@@ -210,7 +210,7 @@ impl Tables {
         let name = |i: usize, j: usize| format!("A{}{}", i + 1, j + 1);
         let is_in_matrix = |key: &str| (0..36).any(|k| name(k / 6, k % 6) == key);
         let others: Vec<&String> = estimate.coefficients.keys().filter(|k| !is_in_matrix(k)).collect();
-        let units = union(estimate.coefficients.values().map(|c| &c.unit));
+        let units = distinct(estimate.coefficients.values().map(|c| &c.unit));
         let caption = self.caption(&format!(
             "Added mass of {source}, rows forces and moments, columns accelerations{}.",
             if units.is_empty() {
@@ -306,13 +306,13 @@ fn diagnostics(group: &[&Estimate]) -> Markup {
         }
     };
     let each = |of: &dyn Fn(&Estimate) -> Option<String>| group.iter().map(|e| of(e)).collect::<Vec<_>>();
-    let components = union(group.iter().flat_map(|e| e.sigma.keys().chain(e.diagnostics.relative_residual.keys())));
+    let components = distinct(group.iter().flat_map(|e| e.sigma.keys().chain(e.diagnostics.relative_residual.keys())));
     let finite = |x: Option<f64>, text: &dyn Fn(f64) -> String| number::finite(x).map(text);
     let rows = html! {
         (row(html! { "observations" }, each(&|e| (e.n_observations > 0).then(|| number::count(e.n_observations)))))
         @for component in &components {
             // A fit of logarithms has a σ without unit: a row for each unit.
-            @for unit in union(group.iter().filter_map(|e| e.sigma.get(*component)).map(|m| &m.unit)) {
+            @for unit in distinct(group.iter().filter_map(|e| e.sigma.get(*component)).map(|m| &m.unit)) {
                 @let own = |e: &Estimate| e.sigma.get(*component).filter(|m| m.unit == unit).map(|m| m.value);
                 (row(html! { (sigma(component, unit)) (head_unit(unit)) },
                     each(&|e| finite(own(e), &|x| number::significant(x, 3)))))

@@ -6,18 +6,18 @@ use froude_records::page::{SelectionRow, SourceSection};
 use maud::{Markup, html};
 
 use super::counter::Tables;
+use super::distinct;
 use super::symbols::html_symbol;
 use super::typed::table_markup;
-use super::union;
 use crate::symbol::unit_text;
 
 impl Tables {
     /// The contest of the models.
     pub(crate) fn selection<'a>(&mut self, source: &'a SourceSection) -> Markup {
         let rows = &source.selection;
-        let blocks = union(rows.iter().flat_map(|r| r.range_blocks.iter().map(|(name, _)| name)));
+        let blocks = distinct(rows.iter().flat_map(|r| r.range_blocks.iter().map(|(name, _)| name)));
         let has_lack = rows.iter().any(|r| r.lack_of_fit_p.is_some());
-        let components = union(rows.iter().map(|r| &r.component));
+        let components = distinct(rows.iter().map(|r| &r.component));
         let best = crate::figures::drawing::recommended(source).map(|e| e.law.name.as_str());
         let is_left = |r: &SelectionRow| {
             let id_of = |e: &&froude_records::estimate::Estimate| e.law.name == r.model;
@@ -29,7 +29,7 @@ impl Tables {
         };
         let has_scores = rows.iter().any(|r| r.cross_validation.is_ok());
         let scored = |r: &'a SelectionRow| r.cross_validation.as_ref().err().filter(|_| has_scores);
-        let reasons = union(rows.iter().flat_map(|r| r.delta_aicc.as_ref().err().into_iter().chain(scored(r))));
+        let reasons = distinct(rows.iter().flat_map(|r| r.delta_aicc.as_ref().err().into_iter().chain(scored(r))));
         let footnote = |reason: &String| {
             html! {
                 @if let Some(i) = reasons.iter().position(|x| x == reason) { sup { (i + 1) } }
@@ -90,7 +90,7 @@ impl Tables {
                     }
                     @for component in &components {
                         @let own = || rows.iter().filter(|r| r.component == *component);
-                        @let units = union(own().map(|r| &r.unit));
+                        @let units = distinct(own().map(|r| &r.unit));
                         tbody {
                             tr class="group" {
                                 th scope="rowgroup" colspan=(n_columns) {
@@ -154,9 +154,11 @@ fn bare_reason(reason: &str) -> &str {
 
 /// The sentence that stands for a column in which no model has a cross-validation.
 fn unscored(rows: &[SelectionRow]) -> Markup {
-    let reasons = union(rows.iter().filter_map(|r| r.cross_validation.as_ref().err()));
+    let reasons = distinct(rows.iter().filter_map(|r| r.cross_validation.as_ref().err()));
     let models = |reason: &str| {
-        union(rows.iter().filter(|r| r.cross_validation.as_ref().err().is_some_and(|x| x == reason)).map(|r| &r.model))
+        distinct(
+            rows.iter().filter(|r| r.cross_validation.as_ref().err().is_some_and(|x| x == reason)).map(|r| &r.model),
+        )
     };
     let sentence = match reasons.as_slice() {
         [] => return Markup::default(),
