@@ -84,8 +84,9 @@ impl Plan {
                     points = with_each(&points, &each, |point, own| point.configuration.clone_from(own));
                 }
                 Kind::Text => {
-                    let own = values.text(name).unwrap_or_default();
-                    points.iter_mut().for_each(|point| own.clone_into(&mut point.configuration));
+                    for point in &mut points {
+                        values.text(name).unwrap_or_default().clone_into(&mut point.configuration);
+                    }
                 }
                 Kind::Word(_) if name == self.roles.0 => {
                     let role = values.need(name, values.word(name, self.roles.1))?;
