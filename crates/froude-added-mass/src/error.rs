@@ -38,7 +38,7 @@ pub enum AddedMassError {
     /// There is no such water.
     #[error("[fluid]: {0}")]
     Water(#[from] FluidError),
-    /// What is asked for does not go, with what to do; the file or the option stands in front.
+    /// A request that cannot be carried out. The message starts with the file or the option and ends with what to do.
     #[error("{0}")]
     Refused(String),
 }

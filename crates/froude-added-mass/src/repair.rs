@@ -49,7 +49,7 @@ pub fn repair(
     }
     if target.symlink_metadata().is_ok() {
         let why = format!(
-            "{} exists, and a repair writes over nothing; name another file, or delete that one",
+            "{} already exists and is not overwritten; name another file, or delete that one",
             target.display()
         );
         return Err(AddedMassError::Refused(why));

@@ -138,7 +138,7 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
         ));
     }
     if out.is_empty() {
-        return Err(nothing_fitted(source, "none of the methods asked for can use these runs", &report.findings));
+        return Err(nothing_fitted(source, "none of the requested methods can use these runs", &report.findings));
     }
     Ok(Found {
         results: out,

@@ -1,6 +1,6 @@
 //! Added mass of a circular cylinder, as a recommended practice prints it.
 //!
-//! For an estimate at the desk. The table is older than panel methods and rounded to two digits: within its rounding of
+//! For a quick estimate. The table is older than panel methods and rounded to two digits: within its rounding of
 //! potential flow for short cylinders, 3 % above it at 5 and 9 diameters (see the tests). A panel method is not to be
 //! checked against it: for that there is [`ellipsoid`](crate::ellipsoid).
 //!
@@ -16,7 +16,7 @@ const PRINTED: [(f64, f64); 5] = [(1.2, 0.62), (2.5, 0.78), (5.0, 0.90), (9.0, 0
 
 /// Added mass over ρ of a circular cylinder moving square to its axis, `C πa²b` \[m³\].
 ///
-/// Between rows the coefficient runs linearly in the inverse of the ratio, so that the row of the endless cylinder has its
+/// Between rows the coefficient runs linearly in the inverse of the ratio, so that the row of the infinite cylinder has its
 /// place. `None` below 1.2 diameters: nothing is extrapolated.
 ///
 /// # Source

@@ -25,7 +25,7 @@ pub struct Trouble {
     words: String,
 }
 
-/// What sort of trouble a mesh has.
+/// Kind of trouble that a mesh has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Its numbers are none of a mesh.

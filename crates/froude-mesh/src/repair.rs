@@ -167,7 +167,7 @@ fn orient(mesh: &mut Mesh, reported: &mut Vec<String>) {
             sheet.panels.iter().for_each(|p| turned[*p] = false);
             let (panels, at) = (sheet.panels.len(), at(mesh, sheet));
             reported.push(format!(
-                "not possible: {panels} panels at {at:?} m have no two sides; they are left as they were"
+                "not oriented: {panels} panels at {at:?} m cannot be oriented (a surface with one side); they are left unchanged"
             ));
         } else if 2 * count > sheet.panels.len() {
             sheet.panels.iter().for_each(|p| turned[*p] = !turned[*p]);
@@ -365,7 +365,7 @@ mod tests {
         let band = Mesh { vertices: vertices.collect(), panels: (0..8).map(quad).collect() };
         let (out, repairs) = repaired(&band, 0.0);
         assert_eq!(out.panels, band.panels);
-        assert!(repairs[0].starts_with("not possible: 8 panels"), "{repairs:?}");
+        assert!(repairs[0].starts_with("not oriented: 8 panels"), "{repairs:?}");
     }
 
     #[test]

@@ -77,7 +77,7 @@ pub enum VerbError {
     /// A robot file gives no robot.
     #[error(transparent)]
     Robot(#[from] RobotError),
-    /// Something that is asked for cannot be; with the file, if it is one's.
+    /// A request that cannot be carried out. The message starts with the file, if one is at fault.
     #[error("{0}")]
     Refused(String),
     /// A gait has no answer.

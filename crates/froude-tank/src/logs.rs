@@ -38,7 +38,7 @@ pub(crate) struct Logs {
 pub(crate) struct Wanted<'a> {
     /// The method that they are of.
     pub method: &'a str,
-    /// Whether each says so; else one that says nothing is of this method, and all are in the first of `roles`.
+    /// Whether every log must state its method. If not, a log that states none is of this method, and it is in the first of `roles`.
     pub is_stated: bool,
     /// Their roles.
     pub roles: &'a [Role],

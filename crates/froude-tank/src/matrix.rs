@@ -43,12 +43,12 @@ pub(crate) struct Plan {
     pub roles: (&'static str, &'static [Role]),
     /// How many runs a point is, and how long each lasts, s.
     pub asks: fn(&Point) -> (usize, f64),
-    /// What no key states for itself.
+    /// Checks the keys of a block against each other.
     pub check: fn(&Values) -> Result<(), RecordError>,
 }
 
 impl Plan {
-    /// One run a point, of the role test.
+    /// One run per point, of the role test.
     pub(crate) const fn of(keys: &'static [Key], lasts_s: fn(&Point) -> (usize, f64)) -> Self {
         Self { keys, roles: ("", &[Role::Test]), asks: lasts_s, check: |_| Ok(()) }
     }

@@ -12,7 +12,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::channel::Channel;
 use crate::error::undeclared;
 
-/// Draws that a seed determines, each after the last; without one, of twins that do not err, all are zero.
+/// Random draws in sequence from a seed; without a seed, of a twin without errors, all are zero.
 #[derive(Debug)]
 pub(crate) struct Draws(Option<Pcg64Mcg>);
 
@@ -138,7 +138,7 @@ pub(crate) fn truths<'c>(
     Err(undeclared(campaign.path.display(), what))
 }
 
-/// Those of these names.
+/// True coefficients in the order of `names`.
 pub(crate) fn true_values<const N: usize>(
     values: &IndexMap<String, f64>,
     names: [&str; N],

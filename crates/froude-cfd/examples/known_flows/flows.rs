@@ -167,7 +167,7 @@ pub fn capsule(
 impl Room {
     /// # Errors
     ///
-    /// OpenFOAM is not there.
+    /// OpenFOAM is not installed.
     pub fn new(folder: PathBuf) -> Result<Self> {
         Ok(Self { folder, openfoam: OpenFoam::find()? })
     }

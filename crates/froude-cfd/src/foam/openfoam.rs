@@ -83,7 +83,7 @@ impl OpenFoam {
             .find(|program| program.is_file())
             .ok_or_else(|| {
                 OpenFoamError::Unusable(format!(
-                    "OpenFOAM is not there: no program {name} on PATH; install the package openfoam of Debian or Ubuntu"
+                    "OpenFOAM is not installed: no program {name} on PATH; install the package openfoam of Debian or Ubuntu"
                 ))
             })?;
         let said = program.display().to_string();
@@ -254,7 +254,7 @@ mod tests {
         let absent = OpenFoam::find_on(OsStr::new(""), None).unwrap_err();
         assert_eq!(
             absent.to_string(),
-            "OpenFOAM is not there: no program simpleFoam on PATH; install the package openfoam of Debian or Ubuntu"
+            "OpenFOAM is not installed: no program simpleFoam on PATH; install the package openfoam of Debian or Ubuntu"
         );
     }
 

@@ -30,7 +30,7 @@ pub struct Change {
 ///
 /// # Errors
 ///
-/// [`StoreError::Refused`]: a name that is none or stands twice, or a case that starts from one that does not stand before it. [`StoreError::Held`]: the campaign is running, or a case that would be moved. [`StoreError::Refused`]: something cannot be written.
+/// [`StoreError::Refused`] if a name is invalid or repeated, if a case starts from one that is not listed before it, or if a file cannot be written. [`StoreError::Held`] if the campaign, or a case to be moved, is running.
 pub fn plan(root: &Path, cases: &[Case], inputs_sha256: &str) -> Result<(Store, Change), StoreError> {
     check(cases)?;
     only_own(root)?;

@@ -11,7 +11,7 @@ use crate::store_error::StoreError;
 ///
 /// # Errors
 ///
-/// [`StoreError::Refused`]; [`StoreError::Refused`] for a named case that has no result to set aside, or one that counts; [`StoreError::Refused`] where its inputs were changed; [`StoreError::Held`] where the campaign is running. Nothing is set aside then.
+/// [`StoreError::Refused`] if a named case is unknown, has no result, has one that counts, or its inputs changed. [`StoreError::Held`] if the campaign is running. On error nothing is set aside.
 pub fn retry(store: &Store, named: &[String]) -> Result<Vec<String>, StoreError> {
     let _lock = Lock::take(store.root())?;
     for id in named {

@@ -161,7 +161,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// [`StoreError::Refused`]; [`StoreError::Refused`] where it cannot be read; [`StoreError::Refused`] where its inputs are not those that were planned.
+    /// [`StoreError::Refused`] if the case is not planned, cannot be read, or its inputs differ from the plan.
     pub fn case(&self, id: &str) -> Result<Case, StoreError> {
         let planned = self.planned(id)?;
         let path = self.case_folder(id);

@@ -17,7 +17,7 @@ pub enum MeshError {
         /// Where.
         place: String,
     },
-    /// OpenFOAM is not there, or was ended.
+    /// OpenFOAM is not installed, or was ended.
     #[error(transparent)]
     OpenFoam(#[from] crate::openfoam::OpenFoamError),
     /// The folder cannot be written.

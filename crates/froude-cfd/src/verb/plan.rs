@@ -69,7 +69,7 @@ struct PlannedConfiguration {
 ///
 /// # Errors
 ///
-/// A campaign, a body file or a surface that cannot be used; a body that no mesh fits; OpenFOAM is not there and a mesh needs it; a folder that cannot be written, or that another process runs.
+/// A campaign, a body file or a surface that cannot be used; a body that no mesh fits; OpenFOAM is not installed and a mesh needs it; a folder that cannot be written, or that another process runs.
 pub fn plan(
     campaign: &Path,
     source: Option<&str>,

@@ -55,7 +55,7 @@ pub struct Job {
 ///
 /// # Errors
 ///
-/// As [`super::plan`]; OpenFOAM is not there; another process runs the campaign.
+/// As [`super::plan`]; OpenFOAM is not installed; another process runs the campaign.
 pub fn run(job: &Job, cancel: &AtomicBool, running: &Running<'_>) -> Result<Outcome, VerbError> {
     let programs = OpenFoam::find()?;
     let planned = planned(&job.campaign, job.source.as_deref(), cancel, running.now)?;
@@ -77,7 +77,7 @@ pub fn run(job: &Job, cancel: &AtomicBool, running: &Running<'_>) -> Result<Outc
 ///
 /// # Errors
 ///
-/// A folder that is no case of a campaign; OpenFOAM is not there; the case is another's, or was edited.
+/// A folder that is no case of a campaign; OpenFOAM is not installed; the case is another's, or was edited.
 pub fn run_case(folder: &Path, ranks: usize, cancel: &AtomicBool) -> Result<String, VerbError> {
     let programs = OpenFoam::find()?;
     let (store, id) = Store::of_case(folder)?;

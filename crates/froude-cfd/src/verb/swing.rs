@@ -106,7 +106,7 @@ struct Job {
 ///
 /// # Errors
 ///
-/// A campaign without such a source, or that does not say how its flow is computed; OpenFOAM is not there; logs that the plan does not have, or that other inputs gave; another process computes it.
+/// A campaign without such a source, or that does not say how its flow is computed; OpenFOAM is not installed; logs that the plan does not have, or that other inputs gave; another process computes it.
 pub fn swing(
     campaign: &Path,
     name: Option<&str>,

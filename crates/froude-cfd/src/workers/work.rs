@@ -57,7 +57,7 @@ pub enum Worked {
 ///
 /// # Errors
 ///
-/// [`StoreError::Held`]: another worker has it. [`StoreError::Refused`]: a file of it was changed. [`StoreError::Refused`]: its folder cannot be written, as on a full disk; the case is as if its attempt was interrupted.
+/// [`StoreError::Held`] if another worker has the case. [`StoreError::Refused`] if one of its files was changed or its folder cannot be written (a full disk); the case then counts as interrupted.
 pub fn work(
     store: &Store,
     id: &str,

@@ -626,5 +626,5 @@ fn without_openfoam_a_sentence_says_what_to_install() {
     let output = bare("run");
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("OpenFOAM is not there") && said.contains("install the package openfoam"), "{said}");
+    assert!(said.contains("OpenFOAM is not installed") && said.contains("install the package openfoam"), "{said}");
 }

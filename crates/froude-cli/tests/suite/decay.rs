@@ -158,7 +158,10 @@ fn what_is_missing_is_named() {
     let runs = folder.path().join("releases");
     let told = |method: &str, declared: &str| refusal(&["identify", text(&campaign(folder.path(), method, declared))]);
     std::fs::create_dir(&runs).unwrap();
-    assert!(told("\"decay_envelope\"", DECLARED).contains("no runs: put one log per run there, as CSV, Parquet or MCAP with `time [s]` and `position [m]`"));
+    assert!(
+        told("\"decay_envelope\"", DECLARED)
+            .contains("no runs: put one log per run there, as CSV, Parquet or MCAP with `time [s]` and `position [m]`")
+    );
     releases(&runs, HEAVE, 3, "force [N]");
     let said = told("\"decay_envelope\"", DECLARED);
     assert!(said.contains("release-1.csv: a release needs `position [m]`; it has force"), "{said}");

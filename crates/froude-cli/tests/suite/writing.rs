@@ -234,7 +234,7 @@ fn a_repair_writes_over_nothing() {
     refuses(
         at,
         &["added-mass", "m.obj", "--repair", "n.obj"],
-        "n.obj exists, and a repair writes over nothing; name another file, or delete that one",
+        "n.obj already exists and is not overwritten; name another file, or delete that one",
     );
     assert_eq!(read(at, "n.obj"), "mine");
 }

@@ -20,7 +20,7 @@ fn the_table_answers_its_own_rows_and_runs_between_them() {
         let between = coefficient(pair[0].0.midpoint(pair[1].0));
         assert!(pair[0].1 < between && between < pair[1].1, "{}", pair[0].0);
     }
-    // Halfway to the endless cylinder, in the inverse: 18.
+    // Halfway to the infinite cylinder, in the inverse: 18.
     assert!((coefficient(18.0) - 0.98).abs() < 1e-12);
     assert!((circular_cylinder_added_mass_m3(0.1, 0.5).unwrap() - 0.78 * PI * 0.005).abs() < 1e-12);
 }

@@ -57,7 +57,9 @@ pub(super) fn expression<'a>(tokens: &[Token<'a>]) -> Result<(Expression, Vec<&'
     let sum = reader.sum()?;
     match reader.token() {
         Token { kind: Kind::End, .. } => Ok((sum, reader.names)),
-        token @ Token { kind: Kind::Close, .. } => Err(token.instead_of("no \")\" without its \"(\"")),
+        token @ Token { kind: Kind::Close, .. } => {
+            Err(FormulaError(format!("unmatched \")\" at character {}", token.position)))
+        }
         token => Err(token.instead_of(OPERATOR)),
     }
 }

@@ -32,8 +32,8 @@ pub(super) struct Token<'a> {
 impl Token<'_> {
     /// That something else is expected where this token stands.
     pub(super) fn instead_of(&self, expected: &str) -> FormulaError {
-        let found = if self.kind == Kind::End { "the end".to_owned() } else { format!("{:?}", self.text) };
-        FormulaError(format!("at character {} stands {found}, but {expected} is expected there", self.position))
+        let found = if self.kind == Kind::End { "end".to_owned() } else { format!("{:?}", self.text) };
+        FormulaError(format!("unexpected {found} at character {}; expected {expected}", self.position))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Added mass of a sphere near a plane, or inside a shell: yardsticks for mirrors and for several bodies.
+//! Added mass of a sphere near a plane, or inside a shell: reference solutions for mirror planes and for several bodies.
 //!
 //! **Setting.** A sphere of radius 1 in ideal fluid: its centre `h` from a plane, else unbounded; or at the centre of a spherical
 //! shell of radius `b`, fluid between the two. Coefficients `[-]` are per displaced mass; ½ in unbounded fluid.

@@ -30,7 +30,7 @@ use crate::seen::Seen;
 use crate::shares::gains;
 use crate::stability::{REAL_LIMIT, Stiffness, stiffness};
 
-/// Where roll and pitch are not among what must repeat.
+/// Where roll and pitch need not repeat.
 const NOT_PERIODIC: &str = "no motion of this gait repeats itself from period to period within reach; check its lengths, masses and added masses, where a slip of a unit does this; else take a smaller amplitude, or a frequency at which the drag settles it";
 /// Steps of a period, at least.
 pub const STEPS: usize = 400;

@@ -17,7 +17,7 @@ use froude_records::json::read_estimates;
 use crate::chain::Chain;
 use crate::robot_file::{FromRecord, RobotFile};
 
-/// Why a robot file and the records that it names are no robot.
+/// Why a robot file and its records do not define a robot.
 #[derive(Debug, thiserror::Error)]
 pub enum RobotError {
     /// A record cannot be read.

@@ -195,14 +195,14 @@ impl<'a, C: Dynamics> Ready<'a, C> {
         let grid = job.ranges.about(&base(&file, job)?);
         let too_many = |rows: String| {
             VerbError::Refused(format!(
-                "the sweep has {rows} rows; one of {MOST_ROWS} at most is made at a time: take fewer values, or sweep its parts into folders of their own"
+                "the sweep has {rows}, limit {MOST_ROWS}: take fewer values, or sweep its parts into folders of their own"
             ))
         };
         let each = job.draws.map_or(0, |drawing| drawing.n * laws.len()) + 1;
         let rows = grid.gaits().and_then(|gaits| gaits.checked_mul(each));
         match rows {
-            None => return Err(too_many("more than can be counted".to_owned())),
-            Some(rows) if rows > MOST_ROWS => return Err(too_many(rows.to_string())),
+            None => return Err(too_many("too many rows to count".to_owned())),
+            Some(rows) if rows > MOST_ROWS => return Err(too_many(format!("{rows} rows"))),
             Some(_) => {}
         }
         let (mut robots, mut beyond) = (vec![laws[0].estimated()], Beyond::default());

@@ -169,7 +169,7 @@ impl Twin {
         Self::with(campaign, source, section::plan(source)?)
     }
 
-    /// Of runs that are stated.
+    /// Of the given runs.
     ///
     /// # Errors
     ///

@@ -144,7 +144,7 @@ pub struct DecayFit {
     pub inertia: Uncertain,
     /// What drives the body back, as declared.
     pub restoring: Restoring,
-    /// What M and the restoring force err by, and what that does.
+    /// Declared errors of M and of the restoring force, with their sensitivities.
     pub errors: Vec<DeclaredError>,
     /// Where the coefficients hold.
     pub range: Range,
@@ -156,7 +156,7 @@ pub struct DecayFit {
     pub findings: Vec<Finding>,
 }
 
-/// What M and the restoring force do to the coefficients, exactly: A = C/ω² − M, and damping is C times what the motion shows, which knows only ratios to C.
+/// Exact sensitivities of the coefficients to M and C: A = C/ω² − M, and the motion gives damping only as a ratio to C.
 pub(super) fn declared(setup: &DecaySetup, [added, linear, quadratic]: [f64; 3]) -> Vec<DeclaredError> {
     let c = setup.restoring.stiffness();
     let by_stiffness = [(setup.inertia.value + added) / c, linear / c, quadratic / c];

@@ -49,7 +49,7 @@ impl Quartic {
             return None;
         }
         let x = Mat::from_fn(end - first, 5, |i, k| ((time_s[first + i] - centre_s) / half_s).powi(k as i32));
-        // The position, and units of which value and slope at the middle are the solution.
+        // The moments of the position, and two unit vectors: they give the variances of value and slope at the middle.
         let right = Mat::from_fn(5, 3, |k, j| match j {
             0 => (first..end).map(|i| x[(i - first, k)] * position[i]).sum(),
             _ => f64::from(u8::from(k + 1 == j)),

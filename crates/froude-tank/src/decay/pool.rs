@@ -101,7 +101,7 @@ impl Sums {
         (0..N).map(|i| x[i] * (0..N).map(|j| of[(i, j)] * y[j]).sum::<f64>()).sum()
     }
 
-    /// Inverse of the products of the first `n` columns of the half cycles; `None` where they are one.
+    /// Inverse of the products of the first `n` columns of the half cycles; `None` if the columns are linearly dependent.
     fn inverse(&self, n: usize) -> Option<Mat<f64>> {
         inverted(&self.rows.submatrix(0, 0, n, n).to_owned())
     }

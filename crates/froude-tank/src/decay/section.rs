@@ -178,7 +178,7 @@ fn consistent(values: &Values) -> Result<(), RecordError> {
     let angle = values.numbers("angle");
     match (angle.is_empty(), values.numbers("displacement").is_empty()) {
         (false, false) => {
-            let problem = "stands beside angle: a release is from one or the other";
+            let problem = "cannot be combined with angle; give one of them";
             return Err(values.wrong("displacement", problem));
         }
         (true, true) => {
@@ -189,14 +189,14 @@ fn consistent(values: &Values) -> Result<(), RecordError> {
         _ => {}
     }
     if let Some(turned) = angle.iter().find(|x| x.abs() >= PI) {
-        let problem = format!("is {} deg; a release is away from rest by less than half a turn", turned.to_degrees());
+        let problem = format!("is {} deg; it must lie between -180 and 180 deg", turned.to_degrees());
         return Err(values.wrong("angle", problem));
     }
     let number = |key: &str| values.need(key, values.number(key));
     let samples = (number("held")? + number("duration")?) * number("rate")?;
     if samples > MOST_SAMPLES {
         let key = if values.is_stated("rate") && !values.is_stated("duration") { "rate" } else { "duration" };
-        let problem = format!("makes {samples:.0} samples of a release; {MOST_SAMPLES:.0} are the most");
+        let problem = format!("gives {samples:.0} samples per release, limit {MOST_SAMPLES:.0}");
         return Err(values.wrong(key, problem));
     }
     Ok(())

@@ -51,11 +51,11 @@ const WINDOW: &[Key] = &[
 /// The keys of `[source.excited_response]`.
 pub const KEYS: &[Key] = &[
     required("axis", Kind::Word(&Motion::NAMES), "state what the free body does: axis = \"heave\"", "what the free body does: `heave`"),
-    required("mass", Kind::Constant(Dimension::MASS), "write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves", "all that moves, with its `standard` uncertainty; a number without one counts as exact, here and below, and is said")
+    required("mass", Kind::Constant(Dimension::MASS), "write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves", "all that moves, with its `standard` uncertainty; a number without one counts as exact, here and below, and the report says so")
     .within(Range::Positive),
     required("restoring", Kind::Constant(STIFFNESS), "write restoring = { value = \"2300 N/m\", standard = \"0.5 %\" }: C33 = rho g times the water plane, and springs", "C33")
     .within(Range::Positive),
-    usual("delay", Kind::Constant(Dimension::TIME), "0 s", "of the force behind the motion, each as it stands against the wavemaker in its own log: what filters differ by"),
+    usual("delay", Kind::Constant(Dimension::TIME), "0 s", "delay of the force relative to the motion, from filters that differ; both are timed from the start of the wavemaker in their own logs"),
     optional("window", Kind::Table(WINDOW), "none", "`from` and `to`, counted from the start of the wavemaker of each run. It begins when the wave has come up at the body, and ends before its reflections are back. Without it there is no B33"),
     usual("harmonics", Kind::Count(20), "3", "of every fit"),
 ];
@@ -92,7 +92,7 @@ pub const PLAN: &[Key] = &[
     passing("still", "2 s", "at rest on the log before the wavemaker starts"),
     passing("ramp", "2 s", "time in which the wavemaker reaches its full stroke"),
     passing("travel", "5 s", "from the wavemaker's start until the wave is at the body"),
-    usual("lasts", Kind::Quantity(Dimension::TIME), "25 s", "so long the wavemaker runs, and the log from there")
+    usual("lasts", Kind::Quantity(Dimension::TIME), "25 s", "how long the wavemaker runs; the log ends with it")
         .within(Range::Positive),
     usual("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), "200 Hz", "sampling rate of the log")
         .within(Range::Positive),

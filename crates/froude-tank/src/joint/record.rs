@@ -37,14 +37,14 @@ pub(crate) fn type_a(names: &[&str], budget: &[Part], kind: String) -> TypeA {
     TypeA::of(names.iter().map(|name| (*name).to_owned()).collect(), matrix, &dof, kind)
 }
 
-/// What the scatter of a joint fit is that of.
+/// What the scatter of a joint fit comes from, in words.
 pub(crate) fn scatter_of(fit: &JointFit) -> String {
     let scaled = if fit.is_scaled { " over its mean at equal errors" } else { "" };
     let runs = if fit.by == "cycle" && fit.has_runs { ", and variation of the drag from run to run" } else { "" };
     format!("CR3{scaled}, {} {}s{runs}", fit.clusters, fit.by)
 }
 
-/// What every estimate of a method says of campaign and source; `of` is the end of its id, the name of the method, and what it did.
+/// What all estimates of a source have in common; `of` is the end of the id and the name of the method, `words` what it did.
 pub(crate) fn about((campaign, source): (&Campaign, &Source), of: [&str; 2], words: String) -> Estimate {
     let [id, method] = of;
     let density = campaign.fluid.density_kg_m3.map(|value| Measured::of(value, "kg/m^3"));

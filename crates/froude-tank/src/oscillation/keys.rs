@@ -32,7 +32,7 @@ pub const KEYS: &[Key] = &[
     required("mass", Kind::PerConfiguration(Dimension::MASS), "write mass = { value = \"1.63 kg\", standard = \"5 g\" }: all that moves below the load cell; by configuration where there are several", "all that moves below the load cell: one number, or one for each configuration")
     .within(Range::NotNegative("a mass is not")),
     optional("buoyancy", Kind::PerConfiguration(Dimension::FORCE), "to be found", "buoyancy less weight, upwards positive, as far as it is known beforehand"),
-    optional("delay", Kind::Constant(Dimension::TIME), "to be found", "of the force behind the angle, positive where the force is stamped late"),
+    optional("delay", Kind::Constant(Dimension::TIME), "to be found", "delay of the force relative to the angle, positive if the force is stamped late"),
     CYCLES,
     HARMONICS,
 ];

@@ -31,7 +31,7 @@ pub const KEYS: &[Key] = &[
     .within(Range::NotNegative("an inertia is not")),
     optional("tare_inertia", Kind::Constant(INERTIA), "required with runs of the shaft alone", "the same without the body")
     .within(Range::NotNegative("an inertia is not")),
-    optional("restoring", Kind::Constant(Dimension::MOMENT), "required about a level axis, refused about an upright one", "K, from the torque at rest at two angles; with a standard uncertainty it is known beforehand and improved by the runs"),
+    optional("restoring", Kind::Constant(Dimension::MOMENT), "required about a level axis, refused about an upright one", "K, from the torque at rest at two angles; with a standard uncertainty it is a prior that the runs refine"),
     optional("delay", Kind::Constant(Dimension::TIME), "to be found", "of the torque behind the angle, positive where the torque is stamped late"),
     CYCLES,
     HARMONICS,

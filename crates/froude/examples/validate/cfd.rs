@@ -48,7 +48,7 @@ const OTHER_D: [(f64, Option<f64>, Option<f64>); 4] = [
 fn is_absent(claims: &mut Claims, section: &'static str, what: &str) -> bool {
     let is_absent = OpenFoam::find().is_err();
     if is_absent {
-        let found = "OpenFOAM is not there; cargo xtask test installs it".to_owned();
+        let found = "OpenFOAM is not installed; cargo xtask test installs it".to_owned();
         claims.add(section, what, "", found, Verdict::Skipped);
     }
     is_absent

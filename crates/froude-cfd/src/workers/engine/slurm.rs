@@ -29,7 +29,7 @@ const REFUSALS: usize = 3;
 ///
 /// # Errors
 ///
-/// [`StoreError::Held`]: another process runs this campaign. [`StoreError::Refused`]: Slurm is not there, or takes no job. [`StoreError::Refused`]: the folder cannot be written.
+/// [`StoreError::Held`] if another process runs this campaign. [`StoreError::Refused`] if Slurm is missing or rejects a job, or if the folder cannot be written.
 pub fn run(
     store: &Store,
     options: &SlurmOptions,
