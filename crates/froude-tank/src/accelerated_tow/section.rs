@@ -28,11 +28,31 @@ use crate::names::ACCELERATED_TOW;
 
 /// The keys of `[source.accelerated_tow]`.
 pub const KEYS: &[Key] = &[
-    required("axis", Kind::Word(&["x", "y"]), "state which axis of the body lies along the travel: \"x\" (forward) or \"y\" (to starboard); drag and added mass are those along it", "the axis of the body that lies along the travel, `x` or `y`: drag and added mass are those along it"),
-    optional("mass", Kind::PerConfiguration(Dimension::MASS), "by runs in air", "all that moves below the load cell; one number, or one for each configuration. Runs of the role `dry_air` determine it instead and override what is declared")
+    required(
+        "axis",
+        Kind::Word(&["x", "y"]),
+        "state which axis of the body lies along the travel: \"x\" (forward) or \"y\" (to starboard); drag and added mass are those along it",
+        "the axis of the body that lies along the travel, `x` or `y`: drag and added mass are those along it",
+    ),
+    optional(
+        "mass",
+        Kind::PerConfiguration(Dimension::MASS),
+        "by runs in air",
+        "all that moves below the load cell; one number, or one for each configuration. Runs of the role `dry_air` determine it instead and override what is declared",
+    )
     .within(Range::Positive),
-    optional("delay", Kind::Constant(Dimension::TIME), "none taken", "delay of the force relative to the motion, from filters and samplers in one channel only. Its `standard` is in the budget"),
-    usual("window", Kind::Quantity(Dimension::TIME), "0.4 s", "length of the windows that motion and force are weighted over")
+    optional(
+        "delay",
+        Kind::Constant(Dimension::TIME),
+        "none taken",
+        "delay of the force relative to the motion, from filters and samplers in one channel only. Its `standard` is in the budget",
+    ),
+    usual(
+        "window",
+        Kind::Quantity(Dimension::TIME),
+        "0.4 s",
+        "length of the windows that motion and force are weighted over",
+    )
     .within(Range::Positive),
 ];
 

@@ -50,13 +50,38 @@ const WINDOW: &[Key] = &[
 
 /// The keys of `[source.excited_response]`.
 pub const KEYS: &[Key] = &[
-    required("axis", Kind::Word(&Motion::NAMES), "state what the free body does: axis = \"heave\"", "what the free body does: `heave`"),
-    required("mass", Kind::Constant(Dimension::MASS), "write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves", "all that moves, with its `standard` uncertainty; a number without one counts as exact, here and below, and the report says so")
+    required(
+        "axis",
+        Kind::Word(&Motion::NAMES),
+        "state what the free body does: axis = \"heave\"",
+        "what the free body does: `heave`",
+    ),
+    required(
+        "mass",
+        Kind::Constant(Dimension::MASS),
+        "write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves",
+        "all that moves, with its `standard` uncertainty; a number without one counts as exact, here and below, and the report says so",
+    )
     .within(Range::Positive),
-    required("restoring", Kind::Constant(STIFFNESS), "write restoring = { value = \"2300 N/m\", standard = \"0.5 %\" }: C33 = rho g times the water plane, and springs", "C33")
+    required(
+        "restoring",
+        Kind::Constant(STIFFNESS),
+        "write restoring = { value = \"2300 N/m\", standard = \"0.5 %\" }: C33 = rho g times the water plane, and springs",
+        "C33",
+    )
     .within(Range::Positive),
-    usual("delay", Kind::Constant(Dimension::TIME), "0 s", "delay of the force relative to the motion, from filters that differ; both are timed from the start of the wavemaker in their own logs"),
-    optional("window", Kind::Table(WINDOW), "none", "`from` and `to`, counted from the start of the wavemaker of each run. It begins when the wave has come up at the body, and ends before its reflections are back. Without it there is no B33"),
+    usual(
+        "delay",
+        Kind::Constant(Dimension::TIME),
+        "0 s",
+        "delay of the force relative to the motion, from filters that differ; both are timed from the start of the wavemaker in their own logs",
+    ),
+    optional(
+        "window",
+        Kind::Table(WINDOW),
+        "none",
+        "`from` and `to`, counted from the start of the wavemaker of each run. It begins when the wave has come up at the body, and ends before its reflections are back. Without it there is no B33",
+    ),
     usual("harmonics", Kind::Count(20), "3", "of every fit"),
 ];
 

@@ -27,12 +27,32 @@ use crate::declared::{CYCLES, FREQUENCY, HARMONICS, PERIODS, RATE, REPEATS, STIL
 pub const KEYS: &[Key] = &[
     required("pivot", Kind::Word(&Pivot::NAMES), "state how the pivot axis lies: \"stream\" (along the stream, the body swings across it like a pendulum) or \"upright\" (the body \
              turns its heading into the stream); the two give different velocities and different added masses", "`stream` or `upright`"),
-    required("radius", Kind::Constant(Dimension::LENGTH), "write radius = { value = \"476 mm\", standard = \"1 mm\" }", "from the pivot axis to the body's reference point; `standard` is a standard uncertainty, here and below, and a number without it counts as exact")
+    required(
+        "radius",
+        Kind::Constant(Dimension::LENGTH),
+        "write radius = { value = \"476 mm\", standard = \"1 mm\" }",
+        "from the pivot axis to the body's reference point; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
+    )
     .within(Range::NotZero("the body swings about a pivot that lies away from it")),
-    required("mass", Kind::PerConfiguration(Dimension::MASS), "write mass = { value = \"1.63 kg\", standard = \"5 g\" }: all that moves below the load cell; by configuration where there are several", "all that moves below the load cell: one number, or one for each configuration")
+    required(
+        "mass",
+        Kind::PerConfiguration(Dimension::MASS),
+        "write mass = { value = \"1.63 kg\", standard = \"5 g\" }: all that moves below the load cell; by configuration where there are several",
+        "all that moves below the load cell: one number, or one for each configuration",
+    )
     .within(Range::NotNegative("a mass is not")),
-    optional("buoyancy", Kind::PerConfiguration(Dimension::FORCE), "to be found", "buoyancy less weight, upwards positive, as far as it is known beforehand"),
-    optional("delay", Kind::Constant(Dimension::TIME), "to be found", "delay of the force relative to the angle, positive if the force is stamped late"),
+    optional(
+        "buoyancy",
+        Kind::PerConfiguration(Dimension::FORCE),
+        "to be found",
+        "buoyancy less weight, upwards positive, as far as it is known beforehand",
+    ),
+    optional(
+        "delay",
+        Kind::Constant(Dimension::TIME),
+        "to be found",
+        "delay of the force relative to the angle, positive if the force is stamped late",
+    ),
     CYCLES,
     HARMONICS,
 ];

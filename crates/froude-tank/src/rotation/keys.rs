@@ -27,12 +27,32 @@ use crate::declared::{CYCLES, FREQUENCY, HARMONICS, INERTIA, PERIODS, RATE, REPE
 pub const KEYS: &[Key] = &[
     required("axis", Kind::Word(&Pivot::NAMES), "state how the axis of rotation lies: \"upright\" (gravity does nothing) or \"stream\" (level, along the stream: weight and buoyancy \
              restore, and their moment is taken off)", "`upright` or `stream` (level, along the tank)"),
-    optional("inertia", Kind::Constant(INERTIA), "from runs in air", "dry, of all that moves below the torque cell; `standard` is a standard uncertainty, here and below, and a number without it counts as exact")
+    optional(
+        "inertia",
+        Kind::Constant(INERTIA),
+        "from runs in air",
+        "dry, of all that moves below the torque cell; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
+    )
     .within(Range::NotNegative("an inertia is not")),
-    optional("tare_inertia", Kind::Constant(INERTIA), "required with runs of the shaft alone", "the same without the body")
+    optional(
+        "tare_inertia",
+        Kind::Constant(INERTIA),
+        "required with runs of the shaft alone",
+        "the same without the body",
+    )
     .within(Range::NotNegative("an inertia is not")),
-    optional("restoring", Kind::Constant(Dimension::MOMENT), "required about a level axis, refused about an upright one", "K, from the torque at rest at two angles; with a standard uncertainty it is a prior that the runs refine"),
-    optional("delay", Kind::Constant(Dimension::TIME), "to be found", "of the torque behind the angle, positive where the torque is stamped late"),
+    optional(
+        "restoring",
+        Kind::Constant(Dimension::MOMENT),
+        "required about a level axis, refused about an upright one",
+        "K, from the torque at rest at two angles; with a standard uncertainty it is a prior that the runs refine",
+    ),
+    optional(
+        "delay",
+        Kind::Constant(Dimension::TIME),
+        "to be found",
+        "of the torque behind the angle, positive where the torque is stamped late",
+    ),
     CYCLES,
     HARMONICS,
 ];

@@ -20,12 +20,32 @@ use crate::declared::{CYCLES, FREQUENCY, HARMONICS, PERIODS, RATE, REPEATS, STIL
 
 /// The keys of `[source.sway]`.
 pub const KEYS: &[Key] = &[
-    required("mass", Kind::Constant(Dimension::MASS), "write mass = { value = \"46.5 kg\", standard = \"0.05 kg\" }: of all that moves below the load cell, with the water that the hull encloses", "of all that moves below the load cell, with the water that the hull encloses; runs in air need the same water in it; `standard` is a standard uncertainty, here and below, and a number without it counts as exact")
+    required(
+        "mass",
+        Kind::Constant(Dimension::MASS),
+        "write mass = { value = \"46.5 kg\", standard = \"0.05 kg\" }: of all that moves below the load cell, with the water that the hull encloses",
+        "of all that moves below the load cell, with the water that the hull encloses; runs in air need the same water in it; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
+    )
     .within(Range::NotNegative("a mass is not")),
-    required("x_g", Kind::Constant(Dimension::LENGTH), "write x_g = { value = \"12 mm\", standard = \"2 mm\" }: the centre of gravity forward of the reference point, \"0 mm\" where they are one", "centre of gravity of that mass, forward of the reference point of the moment"),
-    optional("length", Kind::Quantity(Dimension::LENGTH), "no nondimensional coefficients", "L of the nondimensional coefficients and of the reduced frequency ωL/U")
+    required(
+        "x_g",
+        Kind::Constant(Dimension::LENGTH),
+        "write x_g = { value = \"12 mm\", standard = \"2 mm\" }: the centre of gravity forward of the reference point, \"0 mm\" where they are one",
+        "centre of gravity of that mass, forward of the reference point of the moment",
+    ),
+    optional(
+        "length",
+        Kind::Quantity(Dimension::LENGTH),
+        "no nondimensional coefficients",
+        "L of the nondimensional coefficients and of the reduced frequency ωL/U",
+    )
     .within(Range::Positive),
-    optional("delay", Kind::Constant(Dimension::TIME), "to be found", "of the loads behind the motion, positive where they are stamped late"),
+    optional(
+        "delay",
+        Kind::Constant(Dimension::TIME),
+        "to be found",
+        "of the loads behind the motion, positive where they are stamped late",
+    ),
     CYCLES,
     HARMONICS,
 ];

@@ -43,20 +43,45 @@ const TOW: &[Key] = &[
 
 /// The keys of `[source.weight_tow]`.
 pub const KEYS: &[Key] = &[
-    optional("scale", Kind::Constant(Dimension::LENGTH), "required for a mark in pixels", "size of a pixel at the plane of the mark; its `standard` is an error that all runs share")
+    optional(
+        "scale",
+        Kind::Constant(Dimension::LENGTH),
+        "required for a mark in pixels",
+        "size of a pixel at the plane of the mark; its `standard` is an error that all runs share",
+    )
     .within(Range::Positive),
-    optional("lens", Kind::Table(LENS), "none", "radial distortion along the rail: x = s (u − c)(1 + k (u − c)²), `centre` c in pixels, `radial` k in 1/pixel²"),
-    optional("moving_mass", Kind::Constant(Dimension::MASS), "none", "all that moves: wagon, rod, body and the water that goes with them; the hanging weight's own mass is added. With it the drag along the rail is that of the balance; without it that of the cell, and runs that are not shown to be steady are left out")
+    optional(
+        "lens",
+        Kind::Table(LENS),
+        "none",
+        "radial distortion along the rail: x = s (u − c)(1 + k (u − c)²), `centre` c in pixels, `radial` k in 1/pixel²",
+    ),
+    optional(
+        "moving_mass",
+        Kind::Constant(Dimension::MASS),
+        "none",
+        "all that moves: wagon, rod, body and the water that goes with them; the hanging weight's own mass is added. With it the drag along the rail is that of the balance; without it that of the cell, and runs that are not shown to be steady are left out",
+    )
     .within(Range::Positive),
     usual("friction", Kind::Constant(Dimension::FORCE), "0 N", "of pulleys and rail")
         .within(Range::NotNegative("friction is not")),
-    usual("window", Kind::Quantity(Dimension::LENGTH), "0.2 m", "the last part of the way, over which speed and loads are taken")
+    usual(
+        "window",
+        Kind::Quantity(Dimension::LENGTH),
+        "0.2 m",
+        "the last part of the way, over which speed and loads are taken",
+    )
     .within(Range::Positive),
     usual("tolerance", Kind::Quantity(Dimension::ONE), "2 %", "change of the speed over it that still counts as steady")
     .within(Range::Positive),
     usual("reached", Kind::Quantity(Dimension::ONE), "50 %", "part of the terminal speed that a run must have")
     .within(Range::Positive),
-    usual("tow", Kind::Table(TOW), "{ travel = \"0.8 m\", still = \"2 s\", rate = \"50 Hz\" }", "of planned runs: `travel`, time at rest before and after (`still`), frames a second (`rate`)"),
+    usual(
+        "tow",
+        Kind::Table(TOW),
+        "{ travel = \"0.8 m\", still = \"2 s\", rate = \"50 Hz\" }",
+        "of planned runs: `travel`, time at rest before and after (`still`), frames a second (`rate`)",
+    ),
 ];
 
 /// The keys of a block of a plan.
