@@ -223,6 +223,8 @@ pub struct DeclaredError {
     pub standard: f64,
     /// Degrees of freedom of that.
     pub dof: f64,
+    /// As declared, where sources that declare another value do not have the error in common.
+    pub value: Option<f64>,
     /// ∂β/∂e.
     pub sensitivity: Vec<f64>,
 }

@@ -38,8 +38,8 @@ pub(crate) struct Logs {
 pub(crate) struct Wanted<'a> {
     /// The method that they are of.
     pub method: &'a str,
-    /// Whether every log must state its method. If not, a log that states none is of this method, and it is in the first of `roles`.
-    pub is_stated: bool,
+    /// Where a log need not state what it is: its role in the list of files of a record. It is of this method, in the first of `roles`, and used as far as it goes.
+    pub assumed: Option<&'a str>,
     /// Their roles.
     pub roles: &'a [Role],
     /// What a log has, in words.
@@ -51,13 +51,13 @@ pub(crate) struct Wanted<'a> {
 impl<'a> Wanted<'a> {
     /// Logs that state what they are.
     pub(crate) const fn of(method: &'a str, roles: &'a [Role], channels: &'a str) -> Self {
-        Self { method, is_stated: true, roles, channels, lengths: LENGTHS }
+        Self { method, assumed: None, roles, channels, lengths: LENGTHS }
     }
 }
 
 /// Every log of a folder that is wanted.
 pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) -> Result<Logs, MethodError> {
-    let Wanted { method, is_stated, roles, channels, lengths } = *wanted;
+    let Wanted { method, assumed, roles, channels, lengths } = *wanted;
     if folder.is_file() {
         return Err(MethodError::input(
             folder,
@@ -67,7 +67,7 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
     let paths = paths_in(folder, method)?;
     if paths.is_empty() {
         refuse_others(folder, method, &recorded_in(folder)?)?;
-        let sidecar = if is_stated { ", each with a sidecar (.toml)" } else { "" };
+        let sidecar = if assumed.is_none() { ", each with a sidecar (.toml)" } else { "" };
         let what = format!("no runs: put one log per run there, as CSV, Parquet or MCAP with {channels}{sidecar}");
         return Err(MethodError::input(folder, what));
     }
@@ -77,19 +77,21 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
     for (path, reading) in paths.into_iter().zip(readings) {
         let mut log = imported(&path, reading, progress)?;
         let meta = &mut log.log.meta;
-        if !is_stated && (meta.method.is_empty() || meta.method == method) {
-            (meta.method, meta.role) = (method.to_owned(), roles[0]);
+        if assumed.is_some() && (meta.method.is_empty() || meta.method == method) {
+            (meta.method, meta.role, meta.status) = (method.to_owned(), roles[0], RunStatus::Complete);
         }
-        if meta.method != method {
-            let found = if meta.method.is_empty() {
-                "states no method".to_owned()
-            } else {
-                format!("is a run of {}", meta.method)
-            };
+        if meta.method.is_empty() {
             let what = format!(
-                "{found}; write method = \"{method}\", role = \"{}\" and [mounted] configuration at the head of {}, or give its folder a source of its own",
+                "states no method; write method = \"{method}\", role = \"{}\" and [mounted] configuration at the head of {}",
                 roles.first().map_or("test", |role| role.name()),
                 path.with_extension("toml").display()
+            );
+            return Err(MethodError::input(path, what));
+        }
+        if meta.method != method {
+            let what = format!(
+                "is a run of {}, and {method} is read here: give its folder a source of its own, or correct method at the head of its sidecar",
+                meta.method
             );
             return Err(MethodError::input(path, what));
         }
@@ -108,7 +110,7 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
         conditioning::condition(&mut log, method)?;
         let told = log.findings.iter().filter(|f| f.severity > Severity::Note);
         of_logs.extend(told.map(|finding| (path.clone(), finding.clone())));
-        out.files.extend(files_of(path, role.name(), &log));
+        out.files.extend(files_of(path, assumed.unwrap_or(role.name()), &log));
         out.runs.push(log);
     }
     out.findings.extend(once(of_logs));

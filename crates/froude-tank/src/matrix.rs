@@ -1,6 +1,6 @@
 //! The run matrix of a plan: every configuration in all combinations of its axes, as often as each is repeated.
 
-use froude_identify::declare::{Key, Kind, Values};
+use froude_identify::declare::{IfMissing, Key, Kind, Values};
 use froude_records::RecordError;
 use froude_records::campaign::Source;
 use froude_records::run::Role;
@@ -83,7 +83,7 @@ impl Plan {
                     let each = configurations(&values);
                     points = with_each(&points, &each, |point, own| point.configuration.clone_from(own));
                 }
-                Kind::Text => {
+                Kind::Text if name == "configuration" => {
                     for point in &mut points {
                         values.text(name).unwrap_or_default().clone_into(&mut point.configuration);
                     }
@@ -95,13 +95,11 @@ impl Plan {
                     }
                 }
                 Kind::Count(_) if name == "repeats" => repeats = values.need(name, values.count(name))?,
+                // Of two axes that exclude each other one is missing, which `check` sees to.
+                Kind::Axis(_) if matches!(key.default, IfMissing::Nothing(_)) && !values.is_stated(name) => {}
                 Kind::Axis(_) | Kind::Frequency => {
                     let put = |point: &mut Point, value: &f64| point.conditions.extend([(name, *value)]);
-                    let numbers = values.numbers(name);
-                    // Of two axes that exclude each other one is missing.
-                    if !numbers.is_empty() {
-                        points = with_each(&points, &numbers, put);
-                    }
+                    points = with_each(&points, &values.numbers(name), put);
                 }
                 Kind::Count(_) | Kind::Whole | Kind::Quantity(_) | Kind::Number => {
                     let is_count = matches!(key.kind, Kind::Count(_) | Kind::Whole);

@@ -192,7 +192,7 @@ fn a_folder_of_such_runs_is_inspected_and_no_folder_of_releases() {
     let decay = "schema = 1\nname = \"decay\"\n[[source]]\nname = \"roll\"\nkind = \"tank\"\nruns = \"runs\"\nmethod = \"decay_envelope\"\n[source.decay]\naxis = \"roll\"\ninertia = \"1 kg m^2\"\nstiffness = \"1 N m\"\n";
     std::fs::write(folder.path().join("decay.toml"), decay).unwrap();
     let text = refused(folder.path(), &["identify", "decay.toml"]);
-    assert!(text.contains("001.csv: is a run of forced_oscillation; write method = \"free_decay\""), "{text}");
+    assert!(text.contains("001.csv: is a run of forced_oscillation, and free_decay is read here"), "{text}");
 }
 
 /// One frequency: added mass and buoyancy are both in phase with the angle, but for the sine of large angles.

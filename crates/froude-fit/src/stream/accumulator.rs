@@ -48,7 +48,7 @@ impl Accumulator {
     ///
     /// # Errors
     ///
-    /// [`StreamError::Shape`], [`StreamError::Length`], and [`StreamError::NotFinite`]
+    /// [`StreamError::Refused`] of a wrong number of values, and [`StreamError::NotFinite`]
     /// with the row counted over all chunks. After an error nothing of the chunk has
     /// been taken.
     pub fn push(&mut self, regressors: &[&[f64]], responses: &[&[f64]]) -> Result<(), StreamError> {

@@ -34,7 +34,7 @@ impl ClusterAccumulator {
     ///
     /// # Errors
     ///
-    /// Those of [`Accumulator::push`], and [`StreamError::TooManyClusters`].
+    /// Those of [`Accumulator::push`], and [`StreamError::Refused`] of too many clusters.
     pub fn push(&mut self, clusters: &[u64], regressors: &[&[f64]], responses: &[&[f64]]) -> Result<(), StreamError> {
         let columns = columns_of(self.shape, regressors, responses)?;
         let rows = check_lengths(&columns)?;
@@ -73,7 +73,7 @@ impl ClusterAccumulator {
     ///
     /// # Errors
     ///
-    /// [`StreamError::TooManyClusters`].
+    /// [`StreamError::Refused`]: too many clusters.
     pub fn finish(mut self) -> Result<BTreeMap<u64, Factor>, StreamError> {
         self.close()?;
         Ok(self.factors)

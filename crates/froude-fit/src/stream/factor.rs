@@ -49,7 +49,7 @@ impl Factor {
     ///
     /// # Errors
     ///
-    /// [`StreamError::Merge`] when the shapes differ.
+    /// [`StreamError::Refused`] when the shapes differ.
     pub fn merge(&mut self, other: &Self) -> Result<(), StreamError> {
         if self.shape != other.shape {
             return Err(StreamError::Refused(format!(
@@ -150,8 +150,8 @@ impl Factor {
     ///
     /// # Errors
     ///
-    /// [`StreamError::NoSuchResponse`], [`StreamError::TooFewRows`] when no degree of
-    /// freedom is left, [`StreamError::Undetermined`] when regressors are parallel.
+    /// [`StreamError::Refused`]: no such response, no degree of freedom left, or parallel
+    /// regressors.
     pub fn solve(&self, k: usize) -> Result<Solution, StreamError> {
         self.check_response(k)?;
         let condition_number = self.check_determined()?;

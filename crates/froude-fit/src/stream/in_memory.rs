@@ -21,7 +21,7 @@ const BLOCKS_AHEAD: usize = 4;
 ///
 /// # Errors
 ///
-/// [`StreamError::Length`], and [`StreamError::NotFinite`] with the first bad entry.
+/// [`StreamError::Refused`] of columns of other lengths, and [`StreamError::NotFinite`] with the first bad entry.
 pub fn reduce_columns(regressors: &[&[f64]], responses: &[&[f64]]) -> Result<Factor, StreamError> {
     let shape = Shape { regressors: regressors.len(), responses: responses.len() };
     let columns = columns_of(shape, regressors, responses)?;

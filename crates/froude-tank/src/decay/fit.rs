@@ -164,6 +164,7 @@ pub(super) fn declared(setup: &DecaySetup, [added, linear, quadratic]: [f64; 3])
         name: name.to_owned(),
         standard: known.standard,
         dof: known.dof,
+        value: Some(known.value),
         sensitivity: by.to_vec(),
     };
     let restoring = setup.restoring.parts().into_iter().map(|(name, u, by)| of(name, u, by_stiffness.map(|d| d * by)));

@@ -25,6 +25,8 @@ use crate::inverted::inverted;
 pub const EIGHT_OVER_3_PI: f64 = 8.0 / (3.0 * PI);
 /// Third order of the decrement: γ³ a, γ² ε a², γ ε² a³, ε³ a⁴.
 const THIRD: [f64; 4] = [0.5 * PI - PI * PI * PI / 12.0, 32.0 / 27.0 - PI * PI / 3.0, -17.0 * PI / 36.0, -16.0 / 45.0];
+/// Determinants below this part of the product of their diagonal: the columns are one.
+const SAME: f64 = 1e-10;
 /// Rounds of putting the coefficients into their own corrections; each gains two orders of the damping.
 const ROUNDS: usize = 12;
 
@@ -103,7 +105,9 @@ impl Sums {
 
     /// Inverse of the products of the first `n` columns of the half cycles; `None` if the columns are linearly dependent.
     fn inverse(&self, n: usize) -> Option<Mat<f64>> {
-        inverted(&self.rows.submatrix(0, 0, n, n).to_owned())
+        let products = self.rows.submatrix(0, 0, n, n).to_owned();
+        let sizes: f64 = (0..n).map(|i| products[(i, i)]).product();
+        (products.determinant() > SAME * sizes).then(|| inverted(&products)).flatten()
     }
 
     /// The coefficients from these sums; `None` where they do not determine them.

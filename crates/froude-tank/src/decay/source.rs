@@ -60,7 +60,7 @@ fn identify(
     let setup = declared(source)?;
     progress("reading the releases");
     let wanted = Wanted {
-        is_stated: false,
+        assumed: Some(RELEASE),
         lengths: Lengths::WHOLE,
         ..Wanted::of(FREE_DECAY, &[Role::Decay], "`time [s]` and `position [m]` (or `angle [deg]`)")
     };

@@ -229,6 +229,7 @@ pub fn errors(x: c64, omega_rad_s: f64, setup: &Setup, shows: Shows) -> Vec<Decl
         name: name.to_owned(),
         standard,
         dof,
+        value: None,
         sensitivity: by.to_vec(),
     };
     let infinite = f64::INFINITY;

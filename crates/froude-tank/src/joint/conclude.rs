@@ -39,14 +39,15 @@ impl<E: Equation> Problem<'_, E> {
                 self.least_squares(&condensed, effective, false, &beta, Some(k)).map_err(|e| self.refused(e))?;
             let (there, here) = (unbounded(&moved), unbounded(&fit));
             let sensitivity = (0..p).map(|j| (there[j] - here[j]) / prior.standard).collect();
-            errors.push(DeclaredError { name, standard: prior.standard, dof: f64::INFINITY, sensitivity });
+            errors.push(DeclaredError { name, standard: prior.standard, dof: f64::INFINITY, value: None, sensitivity });
         }
         let of_priors = errors.len();
         for (input, column) in self.inputs.iter().zip(&condensed.errors) {
             let standard = input.declared.standard;
             let moved = |j: usize| column.iter().enumerate().map(|(i, e)| fit.sensitivity()[(j, i)] * e).sum::<f64>();
             let sensitivity = (0..p).map(|j| moved(j) / standard).collect();
-            errors.push(DeclaredError { name: input.name.clone(), standard, dof: input.declared.dof, sensitivity });
+            let dof = input.declared.dof;
+            errors.push(DeclaredError { name: input.name.clone(), standard, dof, value: None, sensitivity });
         }
         let declared: Vec<Part> = errors.iter().map(DeclaredError::part).collect();
         // The regression takes priors at their stated variance; here they are lines of their own.

@@ -68,7 +68,8 @@ pub(crate) fn reference_point(campaign: &Campaign) -> ReferencePoint {
 /// Declared errors by key: sources of the campaign that declare them alike have them in common.
 pub(crate) fn errors(errors: &[DeclaredError], campaign: &Campaign) -> IndexMap<String, SharedError> {
     let one = |error: &DeclaredError| {
-        let key = format!("{}/{} {:e}", campaign.key, error.name, error.standard);
+        let value = error.value.map(|value| format!(" {value:e}")).unwrap_or_default();
+        let key = format!("{}/{}{value} {:e}", campaign.key, error.name, error.standard);
         let slopes = error.sensitivity.iter().copied();
         (key, SharedError::declared([&error.name, &error.name], error.standard, error.dof, slopes))
     };
@@ -123,4 +124,24 @@ pub(crate) fn words(
         number::plain(1e3 * fit.delay_s, 4),
         loads.join(" and ")
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two springs that are known to the same 0.5 N/m are two errors; two sources with one spring have it in common.
+    #[test]
+    fn errors_of_different_values_have_keys_of_their_own() {
+        let campaign = Campaign { key: "tests".to_owned(), ..Campaign::default() };
+        let spring = |value: f64| DeclaredError {
+            name: "stiffness".to_owned(),
+            standard: 0.5,
+            dof: f64::INFINITY,
+            value: Some(value),
+            sensitivity: vec![1.0],
+        };
+        let keys = |all: &[f64]| errors(&all.iter().map(|value| spring(*value)).collect::<Vec<_>>(), &campaign).len();
+        assert_eq!((keys(&[180.0, 90.0]), keys(&[180.0, 180.0])), (2, 1));
+    }
 }
