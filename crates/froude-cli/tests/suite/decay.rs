@@ -312,7 +312,12 @@ fn releases_of_two_bodies_need_two_sources() {
     let sidecar = std::fs::read_to_string(&second).unwrap().replace("H1LT", "H2LT");
     std::fs::write(&second, sidecar).unwrap();
     let said = refusal(&["identify", text(&campaign)]);
-    assert!(said.contains("002.csv: is of \"H2LT\", and the log before it of \"H1LT\""), "{said}");
+    assert!(
+        said.contains(
+            "002.csv: is of the configuration \"H2LT\" where 001 is of \"H1LT\"; the coefficients are of one body"
+        ),
+        "{said}"
+    );
 }
 
 /// One log in milliseconds under a header in seconds took the added mass a millionfold away.
