@@ -7,6 +7,7 @@ use std::str::FromStr;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 use crate::cycles::{self, Modules};
+use crate::unreached::Names;
 
 /// Counts of one crate.
 #[derive(Default)]
@@ -21,6 +22,8 @@ struct Count {
     tests: usize,
     /// Its modules, and what they name.
     modules: Modules,
+    /// The names in it.
+    names: Names,
 }
 
 impl Count {
@@ -29,6 +32,7 @@ impl Count {
         self.tokens += more.tokens;
         self.source += more.source;
         self.tests += more.tests;
+        self.names.add(&more.names);
     }
 
     fn row(&self, name: &str) -> String {
@@ -49,6 +53,7 @@ pub fn lines(root: &Path) -> Result<(), String> {
     }
     println!("{}", total.row("total"));
     println!("files of a crate that name each other in a circle: {circles:?}");
+    println!("public items that tests alone reach: {:?}", total.names.unreached());
     Ok(())
 }
 
@@ -106,6 +111,7 @@ fn of_crate(folder: &Path) -> Result<Count, String> {
             if !module.is_empty() {
                 count.modules.insert(module, seen.paths);
             }
+            count.names.add(&seen.names);
             count.source += all;
             count.code += seen.lines.len();
             count.tokens += seen.tokens;
@@ -135,6 +141,7 @@ struct Seen {
     test_modules: Vec<String>,
     /// Paths inside of the crate.
     paths: Vec<Vec<String>>,
+    names: Names,
 }
 
 impl Seen {
@@ -150,6 +157,7 @@ impl Seen {
                 }
                 _ => {
                     cycles::paths(&trees, at, &mut self.paths);
+                    self.names.see(&trees, at);
                     self.see(&trees[at]);
                     at += 1;
                 }
@@ -234,5 +242,50 @@ mod tests {
             let circles = cycles::cycles(&of_crate(&folder).unwrap().modules);
             assert!(circles.is_empty(), "{}: {circles:?}", folder.display());
         }
+    }
+
+    /// What tests may reach alone: published bodies and settings, what they set or read in a twin or an emulated board, what holds book and schemas to
+    /// the declarations, what the validation judges by; `translation_table` is named by assembly.
+    const BY_TESTS: [&str; 22] = [
+        "ESTIMATE_1_JSON_SCHEMA",
+        "MCD",
+        "NECKED_MAMBA",
+        "SMOOTH_MAMBA",
+        "drag_report",
+        "extrapolation",
+        "force_drift_n",
+        "holds_one",
+        "inject",
+        "key_table",
+        "launch",
+        "lossless",
+        "lost_ticks",
+        "motor_side_mode_hz",
+        "polar",
+        "run_alone",
+        "run_factors",
+        "solve_in_time",
+        "translation_table",
+        "twin_mut",
+        "z_limit",
+        "z_score",
+    ];
+
+    /// Code that no verb reaches is read, built and changed for nothing.
+    #[test]
+    fn no_public_item_is_reached_by_tests_alone() {
+        let mut all = Count::default();
+        for folder in folders(&Path::new(env!("CARGO_MANIFEST_DIR")).join("..")).unwrap() {
+            all.add(&of_crate(&folder).unwrap());
+        }
+        assert_eq!(all.names.unreached(), BY_TESTS);
+    }
+
+    #[test]
+    fn an_item_is_reached_where_code_or_a_format_string_names_it() {
+        let text = "pub fn a() {} pub(crate) const fn b() {} fn c() { b() } pub const D: u8 = 1; fn e() { println!(\"{D}\") } pub use x::a; pub struct F { pub g: u8 }";
+        let mut seen = Seen::default();
+        seen.walk(TokenStream::from_str(text).unwrap_or_default());
+        assert_eq!(seen.names.unreached(), ["F", "a"]);
     }
 }

@@ -7,6 +7,7 @@
 mod cycles;
 mod firmware;
 mod lines;
+mod unreached;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
