@@ -76,15 +76,14 @@ pub struct Mapping {
     pub place: Place,
 }
 
-/// Whether a `.toml` beside a table is a sidecar (it has `[columns]` or `[constants]`) and not a campaign.
+/// Whether a `.toml` beside a table is its sidecar, and not a campaign or what is known of a recorded run. One that lacks `[columns]` is one too, so that it is
+/// not passed over.
 pub(crate) fn is_sidecar(path: &Path) -> bool {
-    let is_head = |line: &str| {
-        let line = line.trim_start();
-        // Without its last letter, so that [column] is reported as misspelt and not passed over.
-        line.starts_with("[column") || line.starts_with("[constant")
-    };
-    read::whole(path, LARGEST_BYTES, "a sidecar")
-        .is_ok_and(|bytes| String::from_utf8_lossy(&bytes).lines().any(is_head))
+    let Ok(bytes) = read::whole(path, LARGEST_BYTES, "a sidecar") else { return false };
+    let text = String::from_utf8_lossy(&bytes);
+    let has = |heads: &[&str]| text.lines().any(|line| heads.iter().any(|head| line.trim_start().starts_with(head)));
+    // Without its last letter, so that [column] is reported as misspelt.
+    has(&["[column", "[constant"]) || (has(&["[mounted", "[condition", "role "]) && !has(&["[[", "checksum"]))
 }
 
 /// Reads a sidecar.

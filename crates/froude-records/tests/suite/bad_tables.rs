@@ -288,6 +288,28 @@ fn a_campaign_of_the_same_name_is_no_sidecar() {
     assert_eq!(read.number("speed", Dimension::SPEED).unwrap(), [1000.0 / 3600.0]);
 }
 
+/// What is mounted was passed over without a word where nothing was said of the columns.
+#[test]
+fn a_sidecar_without_columns_is_not_passed_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let (table, beside) = (folder.path().join("r3.csv"), folder.path().join("r3.toml"));
+    std::fs::write(&table, "time [s],position [m]\n0,1\n").unwrap();
+    for text in [
+        "[mounted]\nconfiguration = \"other\"\n",
+        "method = \"sway\"\nrole = \"test\"\n",
+        "[conditions]\nspeed = \"1 m/s\"\n",
+    ] {
+        std::fs::write(&beside, format!("schema = 1\n{text}")).unwrap();
+        let found = read_table(&table, None).unwrap_err().to_string();
+        assert!(found.contains("r3.toml") && found.contains("write [columns] with lines like"), "{found}");
+    }
+    // A campaign whose runs have roles, and a recorded run.
+    for text in ["name = \"t\"\n[[run]]\nrole = \"test\"\n", "checksum = \"crc32:0\"\n[mounted]\nbody = \"a\"\n"] {
+        std::fs::write(&beside, format!("schema = 1\n{text}")).unwrap();
+        assert!(read_table(&table, None).unwrap().sidecar.is_none(), "{text}");
+    }
+}
+
 #[test]
 fn text_that_is_not_utf8_names_its_line() {
     let folder = tempfile::tempdir().unwrap();
