@@ -25,7 +25,6 @@
 //! | [`series`]      | mean of a correlated series                                          |
 //! | [`serial`]      | scatter of few runs whose errors are correlated in time              |
 //! | [`long_run`]    | long-run covariance of scores (HAC), automatic lag                   |
-//! | [`factored`]    | one design, many responses                                           |
 //! | [`coverage`]    | whether an interval covers as often as it says                       |
 //!
 //! All of it runs on one thread except [`stream::reduce_columns`], whose result does not
