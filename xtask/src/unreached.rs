@@ -33,6 +33,7 @@ impl Names {
             }
             TokenTree::Punct(end) if end.as_char() == ';' => self.is_use = false,
             TokenTree::Literal(text) => {
+                // What stands before the first brace is no name.
                 for part in text.to_string().split('{').skip(1) {
                     let name: String = part.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
                     *self.mentioned.entry(name).or_default() += 1;

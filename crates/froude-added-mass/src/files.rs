@@ -70,7 +70,7 @@ impl<'a> AddedMassFile<'a> {
             Some("1") => self.wamit().map(String::into_bytes),
             Some("csv") => self.csv().map(String::into_bytes),
             Some("nc") => self.netcdf(),
-            _ => Err(FileError("the name of the file ends in none of .1 (WAMIT), .nc (NetCDF), .csv".to_owned())),
+            _ => Err(FileError("the file name must end in .1 (WAMIT), .nc (NetCDF) or .csv".to_owned())),
         };
         content.map_err(|reason| {
             AddedMassError::Refused(format!("cannot write {}: {reason}; nothing was changed", path.display()))

@@ -164,9 +164,7 @@ fn what_no_format_can_hold_is_refused_and_the_old_file_stays() {
     assert!(error.ends_with("is NaN, not a finite number; nothing was changed"), "{error}");
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
     let error = good.write(&folder.path().join("hull.txt")).unwrap_err().to_string();
-    assert!(
-        error.ends_with("the name of the file ends in none of .1 (WAMIT), .nc (NetCDF), .csv; nothing was changed")
-    );
+    assert!(error.ends_with("the file name must end in .1 (WAMIT), .nc (NetCDF) or .csv; nothing was changed"));
 }
 
 proptest! {

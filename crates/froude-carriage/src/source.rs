@@ -158,12 +158,12 @@ pub(crate) fn runs_of(source: &Source, roles: &[Role], progress: &dyn Fn(&str)) 
     Ok(Some(read(paths, roles, campaign.as_deref())?))
 }
 
-/// That a method somebody named has no result.
+/// The finding that a requested method gave no result.
 pub(crate) fn not_fitted(name: &str, words: &str, why: &str) -> Finding {
     Finding::new(Severity::Warning, "not-fitted", format!("{name} ({words}): {why}"))
 }
 
-/// That there is no result at all, with all that was found on the way.
+/// The error that no method gave a result, with all findings.
 pub(crate) fn nothing_fitted(source: &Source, what: &str, findings: &[Finding]) -> MethodError {
     let why: String = findings.iter().map(|finding| format!("; {}", finding.message)).collect();
     MethodError::input(source.input.path(), format!("{what}{why}"))

@@ -122,7 +122,7 @@ impl TuningError {
         Self(format!("{name} = {value}: a positive, finite number is expected"))
     }
 
-    /// A sample of one column for each of the other.
+    /// Checks that both columns have one length.
     fn unless_paired(first: &[f64], second: &[f64]) -> Result<(), Self> {
         let (first, second) = (first.len(), second.len());
         let what = || format!("columns of {first} and {second} samples: one row per tick is expected in each");

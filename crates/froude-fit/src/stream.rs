@@ -106,7 +106,7 @@ impl Shape {
     }
 }
 
-/// Refuses what is not as many as the shape says.
+/// Checks a count against the shape.
 fn check_count(what: &str, found: usize, expected: usize) -> Result<(), StreamError> {
     if found == expected {
         return Ok(());

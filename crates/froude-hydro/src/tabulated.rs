@@ -4,7 +4,7 @@
 //! potential flow for short cylinders, 3 % above it at 5 and 9 diameters (see the tests). A panel method is not to be
 //! checked against it: for that there is [`ellipsoid`](crate::ellipsoid).
 //!
-//! **Setting.** One cylinder with flat ends in unbounded ideal fluid, moving square to its axis without turning.
+//! **Setting.** One cylinder with flat ends in unbounded ideal fluid, moving normal to its axis without turning.
 //! **Units.** SI; an added mass over ρ has m³.
 //!
 //! Not here: cylinders moving end-on, free surface, sea bed.
@@ -14,9 +14,9 @@ use core::f64::consts::PI;
 /// `(length over diameter, coefficient)` as printed, per mass of the volume `πa²b`.
 const PRINTED: [(f64, f64); 5] = [(1.2, 0.62), (2.5, 0.78), (5.0, 0.90), (9.0, 0.96), (f64::INFINITY, 1.00)];
 
-/// Added mass over ρ of a circular cylinder moving square to its axis, `C πa²b` \[m³\].
+/// Added mass over ρ of a circular cylinder moving normal to its axis, `C πa²b` \[m³\].
 ///
-/// Between rows the coefficient runs linearly in the inverse of the ratio, so that the row of the infinite cylinder has its
+/// Between rows the coefficient is interpolated linearly in the inverse ratio, so that the row of the infinite cylinder has its
 /// place. `None` below 1.2 diameters: nothing is extrapolated.
 ///
 /// # Source

@@ -20,7 +20,7 @@ const NOTHING: f64 = 1e-14;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{words}")]
 pub struct Trouble {
-    /// What sort it is of.
+    /// Its kind.
     pub kind: Kind,
     words: String,
 }
@@ -28,7 +28,7 @@ pub struct Trouble {
 /// Kind of trouble that a mesh has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Its numbers are none of a mesh.
+    /// Coordinates that are not finite, or indices of vertices that do not exist.
     Unreadable,
     /// Edges with one panel only.
     Open,
@@ -38,7 +38,7 @@ pub enum Kind {
     Crossing,
     /// Slivers: the accuracy suffers, the solution does not fail.
     Slivers,
-    /// Any other, which a repair may take away.
+    /// Any other; a repair may mend it.
     Other,
 }
 

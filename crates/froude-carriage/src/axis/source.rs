@@ -187,7 +187,7 @@ fn found(
         }
     }
     if out.is_empty() {
-        let what = "none of the models asked for can be identified from these runs";
+        let what = "none of the requested models can be identified from these runs";
         return Err(nothing_fitted(source, what, &findings));
     }
     Ok(Found { results: out, summary: Some(summary), blocks, findings, ..Found::default() })

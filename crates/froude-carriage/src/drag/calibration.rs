@@ -179,7 +179,7 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let weights = reach(&driving.iter().map(|r| r.weight_n).collect::<Vec<_>>());
     if driving.is_empty() || weights[1] <= 0.0 {
         return Err(DragError::calibration(
-            "no run in which the motor drives against a known weight; hang one over the pulley and lift it",
+            "no run has the motor lift a known weight; hang one over the pulley and log a run that lifts it",
         ));
     }
     let is_pulley_measured = driving.iter().any(|r| r.weight_n > 0.0 && r.direction < 0.0);

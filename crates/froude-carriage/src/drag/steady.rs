@@ -54,7 +54,7 @@ pub enum Rejected {
         /// What is needed, in per cent.
         needed: f64,
     },
-    /// It has no steady part, or nothing to compare that with; in words.
+    /// It has no steady window, or there is no run to compare it with.
     #[error("{0}")]
     Unusable(String),
 }

@@ -50,7 +50,7 @@ pub struct TwoMass {
 }
 
 impl TwoMass {
-    /// No force but the motor's, and none of that: for `..TwoMass::of(masses)` where friction, gear, drag or delay play no part.
+    /// All forces zero: the base of `..TwoMass::of(masses)` where friction, gear, drag or delay play no part.
     #[must_use]
     pub const fn of(masses: TwoMasses) -> Self {
         Self {

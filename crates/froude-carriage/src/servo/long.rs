@@ -193,7 +193,7 @@ impl LongServo {
     ///
     /// # Errors
     ///
-    /// [`ServoError::Length`], [`ServoError::Fit`] for a number that is none.
+    /// [`ServoError::Length`], [`ServoError::Fit`] for a value that is not finite.
     pub fn push(&mut self, position_m: &[f64], command_v: &[f64]) -> Result<(), ServoError> {
         let (found, expected) = (command_v.len(), position_m.len());
         if found != expected {

@@ -119,7 +119,7 @@ pub struct ServoReport {
     pub hac_lag_s: f64,
     /// Length of a block, s.
     pub block_s: f64,
-    /// Whether residuals are white; `None` when there are none.
+    /// Whether the residuals are white; `None` without residuals.
     pub whiteness: Option<Whiteness>,
     /// Residuals, N, row by row.
     pub residuals_n: Vec<f64>,

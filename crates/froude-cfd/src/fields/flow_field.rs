@@ -28,7 +28,7 @@ impl FlowField {
     ///
     /// # Errors
     ///
-    /// [`FoamError`]: the case has no time but its start, or a file is none of a mesh's or of a field's on it.
+    /// [`FoamError`]: the case has no solved time, or a file is not a valid mesh or field.
     pub fn read(mesh: &Path, solved: &Path) -> Result<Self, FoamError> {
         let last = times(solved)?.pop().filter(|(time, _)| *time > 0.0);
         let (time, last) = last.ok_or_else(|| {

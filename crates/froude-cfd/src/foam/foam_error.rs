@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::Path;
 
-/// A file or a folder of a case that cannot be written or read, or is none of its kind.
+/// A file or a folder of a case that cannot be written or read, or has the wrong format.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct FoamError(String);

@@ -21,7 +21,7 @@ impl FoamMesh {
     ///
     /// # Errors
     ///
-    /// [`FoamError`]: a file is missing, is none of a mesh's, or a patch has a type that cases have no conditions for.
+    /// [`FoamError`]: a file is missing or invalid, or a patch has a type that cases have no conditions for.
     pub fn read(folder: &Path) -> Result<Self, FoamError> {
         let boundary = folder.join("boundary");
         let text = input::text(&boundary).map_err(|e| FoamError::of_mesh(&boundary, e))?;

@@ -33,7 +33,7 @@ impl Sample {
 ///
 /// # Errors
 ///
-/// [`FoamError`]: a line is none of numbers, times do not grow, or forces and moments are of other times.
+/// [`FoamError`]: a line is not numeric, times do not increase, or forces and moments differ in their times.
 pub fn read(case: &Path, is_half: bool) -> Result<Vec<Sample>, FoamError> {
     let mut samples: Vec<Sample> = Vec::new();
     for folder in starts(&case.join("postProcessing/forces"))? {

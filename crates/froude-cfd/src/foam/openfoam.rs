@@ -43,7 +43,7 @@ pub enum End {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OpenFoamError {
-    /// It is not there, is another one, or does not run.
+    /// It is missing, is an unsupported version, or does not start.
     #[error("{0}")]
     Unusable(String),
     /// It was ended as asked.

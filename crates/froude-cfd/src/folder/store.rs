@@ -94,7 +94,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// [`StoreError::Refused`]: the folder holds no campaign, or its file is none.
+    /// [`StoreError::Refused`]: the folder holds no campaign, or its campaign file is invalid.
     pub fn open(root: &Path) -> Result<Self, StoreError> {
         let path = root.join(CAMPAIGN_FILE);
         let wrong = |problem: String| {

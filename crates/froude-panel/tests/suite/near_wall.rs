@@ -37,7 +37,7 @@ pub fn far_from_plane(boundary: Kind, direction: Direction, h: f64) -> f64 {
     0.5 * (1.0 + image(boundary) * part / (h * h * h))
 }
 
-/// Orders of multipoles kept by [`near_plane`]: at h = 1.05 the last is below 2e-10 of the first, and counts by its square.
+/// Orders of multipoles kept by [`near_plane`]: at h = 1.05 the last is below 2e-10 of the first, and enters squared.
 const ORDERS: usize = 64;
 
 /// Near a plane, at any distance from h = 1.05: absolute error below 1e-13.

@@ -69,7 +69,7 @@ impl Blueprint {
         let (id, unfit) = (self.id(), |problem: String| RobotError::of(self.record(), problem));
         let Some(covariance) = self.covariance() else {
             return Err(unfit(format!(
-                "{id} states no covariance and no standard uncertainty, as published tables do not: nothing can be drawn, and there is no interval; leave out --draws, or name an estimate that froude identify made"
+                "{id} states neither covariance nor standard uncertainty (published tables do not), so that nothing can be drawn; leave out --draws, or name an estimate that froude identify made"
             )));
         };
         if let Some(Number { name, .. }) = self.numbers().iter().find(|c| c.centre.is_none()) {
@@ -80,7 +80,7 @@ impl Blueprint {
         let root = root(&covariance).map_err(|j| {
             let name = &self.numbers()[j].name;
             unfit(format!(
-                "the covariance of {id} is not positive semi-definite (at {name}): it is none of an estimate"
+                "the covariance of {id} is not positive semi-definite (at {name}): no estimate has such a covariance; make the record again with froude identify"
             ))
         })?;
         let dof = self.numbers().iter().filter_map(|c| c.dof).fold(f64::INFINITY, f64::min);

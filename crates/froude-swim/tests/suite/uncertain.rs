@@ -210,5 +210,5 @@ fn draws_lie_about_the_estimate_without_bounds_as_wide_as_its_dof() {
 #[test]
 fn a_record_without_covariance_has_no_draws() {
     let told = Blueprint::of(&read_robot(&example()).unwrap()).unwrap().draws(10, 1).unwrap_err().to_string();
-    assert!(told.contains("states no covariance") && told.contains("leave out --draws"), "{told}");
+    assert!(told.contains("states neither covariance") && told.contains("leave out --draws"), "{told}");
 }

@@ -30,7 +30,7 @@ pub const KEYS: &[Key] = &[
     required(
         "x_g",
         Kind::Constant(Dimension::LENGTH),
-        "write x_g = { value = \"12 mm\", standard = \"2 mm\" }: the centre of gravity forward of the reference point, \"0 mm\" where they are one",
+        "write x_g = { value = \"12 mm\", standard = \"2 mm\" }: the centre of gravity forward of the reference point, \"0 mm\" if they coincide",
         "centre of gravity of that mass, forward of the reference point of the moment",
     ),
     optional(

@@ -35,7 +35,7 @@ const LENS: &[Key] = &[
     required("radial", Kind::Number, "write radial = -2.0e-8, in 1/pixel²", "k, 1/pixel²"),
 ];
 const TOW: &[Key] = &[
-    usual("travel", Kind::Quantity(Dimension::LENGTH), "0.8 m", "way of a run").within(Range::Positive),
+    usual("travel", Kind::Quantity(Dimension::LENGTH), "0.8 m", "travel of a run").within(Range::Positive),
     usual("still", Kind::Quantity(Dimension::TIME), "2 s", "time at rest before and after").within(Range::Positive),
     usual("rate", Kind::Quantity(Dimension::ANGULAR_SPEED), "50 Hz", "frames, and samples, a second")
         .within(Range::Positive),
@@ -72,7 +72,7 @@ pub const KEYS: &[Key] = &[
         "the last part of the way, over which speed and loads are taken",
     )
     .within(Range::Positive),
-    usual("tolerance", Kind::Quantity(Dimension::ONE), "2 %", "change of the speed over it that still counts as steady")
+    usual("tolerance", Kind::Quantity(Dimension::ONE), "2 %", "speed change over the window that still counts as steady")
     .within(Range::Positive),
     usual("reached", Kind::Quantity(Dimension::ONE), "50 %", "part of the terminal speed that a run must have")
     .within(Range::Positive),

@@ -108,7 +108,7 @@ impl Parts {
         match (0..self.count()).find(|other| is_its(*other)) {
             Some(other) => {
                 let problem = format!(
-                    "it holds part {other:06}, not part {part:06}: it was renamed or copied; delete it, and it is made again"
+                    "it holds part {other:06}, not part {part:06}: it was renamed or copied; delete it and run again"
                 );
                 Err(VerbError::input(&path, problem))
             }
