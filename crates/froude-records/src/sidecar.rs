@@ -81,9 +81,12 @@ pub struct Mapping {
 pub(crate) fn is_sidecar(path: &Path) -> bool {
     let Ok(bytes) = read::whole(path, LARGEST_BYTES, "a sidecar") else { return false };
     let text = String::from_utf8_lossy(&bytes);
-    let has = |heads: &[&str]| text.lines().any(|line| heads.iter().any(|head| line.trim_start().starts_with(head)));
+    let has = |heads: &[&str]| {
+        let mut squeezed = text.lines().map(|line| line.split_whitespace().collect::<String>());
+        squeezed.any(|line| heads.iter().any(|head| line.starts_with(head)))
+    };
     // Without its last letter, so that [column] is reported as misspelt.
-    has(&["[column", "[constant"]) || (has(&["[mounted", "[condition", "role "]) && !has(&["[[", "checksum"]))
+    has(&["[column", "[constant"]) || (has(&["[mounted", "[condition", "role="]) && !has(&["[[", "checksum"]))
 }
 
 /// Reads a sidecar.

@@ -296,7 +296,7 @@ fn a_sidecar_without_columns_is_not_passed_over() {
     std::fs::write(&table, "time [s],position [m]\n0,1\n").unwrap();
     for text in [
         "[mounted]\nconfiguration = \"other\"\n",
-        "method = \"sway\"\nrole = \"test\"\n",
+        "method = \"sway\"\nrole=\"test\"\n",
         "[conditions]\nspeed = \"1 m/s\"\n",
     ] {
         std::fs::write(&beside, format!("schema = 1\n{text}")).unwrap();
