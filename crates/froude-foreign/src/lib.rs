@@ -1,5 +1,10 @@
 //! Files of other programs as named columns. Nothing is interpreted here: names, units and numbers are those of the file.
 
+pub mod decode;
+pub mod layout;
+pub mod marks;
+pub mod split;
+
 /// A table in a file: a sheet, a group of channels, a topic, a structure.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Part {

@@ -4,7 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::error::{Place, RecordError, decimal_comma};
+use crate::file_words::{refuse_sentinel, sidecar_name};
+use crate::heading::split_header;
 use crate::known_columns::{is_text_column, known_dimension, usual_unit};
+use crate::memory;
 use crate::nearest::suggestion;
 use crate::raw_column::{
     FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, TWICE, check_dimension, check_numbers, check_texts, in_light_of,
@@ -13,7 +16,6 @@ use crate::raw_column::{
 use crate::sidecar::{Mapping, Sidecar};
 use crate::table::{Column, ColumnData, Table};
 use crate::units::{Unit, parse_unit};
-use crate::{header, memory};
 
 /// What a column of a file becomes, decided by its header alone.
 pub(crate) enum Want<'s> {
@@ -190,7 +192,7 @@ fn want(path: &Path, header: &str, place: &Place) -> Result<Want<'static>, Recor
         .map_err(|problem| RecordError::syntax(place.clone(), format!("header `{header}`: {problem}")))?;
     let Some(unit) = unit else {
         if known_dimension(name).is_some() && !may_be_text(name) {
-            return Err(missing_unit(path, name, &[], place));
+            return Err(missing_unit(path, name, place));
         }
         return Ok(Want::Text { name: name.to_owned() });
     };
@@ -208,48 +210,18 @@ fn may_be_text(name: &str) -> bool {
     is_text_column(name) || name == "repeat"
 }
 
-/// A column of numbers without a unit, or with one in round parentheses.
-fn missing_unit(path: &Path, name: &str, headers: &[String], place: &Place) -> RecordError {
-    if let Some(problem) = header::advice(path, name, headers) {
-        return RecordError::column(place.clone(), name, format!(": {problem}"));
-    }
+/// A column of numbers without a unit.
+fn missing_unit(path: &Path, name: &str, place: &Place) -> RecordError {
     let unit = usual_unit(name).unwrap_or_else(|| "unit".to_owned());
     let sidecar = sidecar_name(path);
     let problem = format!(" has no unit; write `{name} [{unit}]`, or map it with a sidecar {sidecar}");
     RecordError::column(place.clone(), name, problem)
 }
 
-/// The name that a sidecar of this table has.
-fn sidecar_name(path: &Path) -> String {
-    let sidecar = path.with_extension("toml");
-    sidecar.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
-}
-
-/// `name [unit]` as name and unit.
-pub(crate) fn split_header(header: &str) -> Result<(&str, Option<&str>), &'static str> {
-    let header = header.trim();
-    let Some((name, rest)) = header.split_once('[') else {
-        return match header {
-            "" => Err("the name is empty; write `name [unit]`"),
-            _ if header.contains(']') => Err("a bracket is not opened; write `name [unit]`"),
-            _ => Ok((header, None)),
-        };
-    };
-    let name = name.trim();
-    let unit = rest.strip_suffix(']').ok_or("the unit must end with `]`; write `name [unit]`")?;
-    if unit.contains(['[', ']']) {
-        return Err("there is more than one pair of brackets; write `name [unit]`");
-    }
-    if name.is_empty() {
-        return Err("the name is empty; write `name [unit]`");
-    }
-    Ok((name, Some(unit)))
-}
-
 impl Want<'_> {
-    /// Whether a cell may be empty where tables of several axes are read: a load, or the motion along or about an axis.
-    pub fn may_be_blank(&self) -> bool {
-        matches!(self, Self::Number { name, .. } if is_of_axis(name))
+    /// The name of a column whose cells may be empty where tables of several axes are read: a load, or the motion along or about an axis.
+    pub fn name_if_blank(&self) -> Option<&str> {
+        name_of(self).filter(|name| self.is_number() && is_of_axis(name))
     }
 
     /// What to do about an empty cell: a column that a table can do without may also be left out.
@@ -279,17 +251,9 @@ fn is_of_axis(name: &str) -> bool {
     matches!(name, "v_x" | "v_y" | "v_z" | "w_x" | "w_y" | "w_z" | "f_x" | "f_y" | "f_z" | "m_x" | "m_y" | "m_z")
 }
 
-/// A finite number in a cell; `advice` is what to do where it is empty.
-pub(crate) fn number(
-    cell: &str,
-    header: &str,
-    place: &dyn Fn() -> Place,
-    advice: &dyn Fn() -> String,
-) -> Result<f64, RecordError> {
+/// A finite number in a cell.
+pub(crate) fn number(cell: &str, header: &str, place: &dyn Fn() -> Place) -> Result<f64, RecordError> {
     let clip = || cell.chars().take(40).collect::<String>();
-    if cell.is_empty() {
-        return Err(RecordError::empty_cell(place(), header, &advice()));
-    }
     match fast_float2::parse::<f64, _>(cell) {
         Ok(x) if x.is_finite() => Ok(x),
         Ok(_) => Err(RecordError::not_finite(place(), header, &clip())),
@@ -328,7 +292,13 @@ pub(crate) fn assemble(
             .map(|(header, _)| header.clone())
             .collect(),
         blank: Vec::new(),
+        understood: None,
     };
+    for (name, raw) in header.iter().zip(&raws) {
+        if let Raw::Numbers(values) = raw {
+            refuse_sentinel(values, name, &|row| table.place_of_row(row))?;
+        }
+    }
     match sidecar {
         Some(sidecar) => {
             let mut named: BTreeMap<&str, Raw> = header.iter().map(String::as_str).zip(raws).collect();
@@ -337,7 +307,7 @@ pub(crate) fn assemble(
         }
         None => {
             for (want, raw) in wants.iter().zip(raws) {
-                table.columns.extend(column(&table, header, want, raw, header_place)?);
+                table.columns.extend(column(&table, want, raw, header_place)?);
             }
         }
     }
@@ -347,7 +317,6 @@ pub(crate) fn assemble(
 
 pub(crate) fn column(
     table: &Table,
-    headers: &[String],
     want: &Want<'_>,
     raw: Raw,
     header_place: &Place,
@@ -369,14 +338,14 @@ pub(crate) fn column(
             let cells = match raw {
                 Raw::Texts(cells) => cells,
                 Raw::Numbers(_) if !may_be_text(name) => {
-                    return Err(missing_unit(&table.path, name, headers, header_place));
+                    return Err(missing_unit(&table.path, name, header_place));
                 }
                 Raw::Numbers(values) => values.iter().map(f64::to_string).collect(),
             };
             if may_be_text(name) {
                 check_texts(&cells, name, &place)?;
             } else if cells.iter().all(|cell| fast_float2::parse::<f64, _>(cell).is_ok()) {
-                return Err(missing_unit(&table.path, name, headers, header_place));
+                return Err(missing_unit(&table.path, name, header_place));
             }
             Column { name: name.clone(), data: ColumnData::Text(cells.into()) }
         }

@@ -9,14 +9,19 @@
 use std::io::Read as _;
 use std::path::Path;
 
+use froude_foreign::split::Separator;
+
 use crate::assemble::Want;
-use crate::csv_table::{Head, Records};
+use crate::csv_table::{Head, Rows, read_csv, text};
 use crate::error::RecordError;
 use crate::fast_csv::{Layout, Lines, Memory, Reader};
+use crate::file_words::FileWords;
 use crate::parquet_table;
 use crate::raw_column::Raw;
 use crate::read;
 use crate::read::utf8;
+use crate::reading::Reading;
+use crate::records::Records;
 use crate::sidecar::Sidecar;
 use crate::table::Table;
 use crate::table_file::{Format, sidecar_of};
@@ -90,10 +95,16 @@ fn csv<E: From<RecordError>>(
     }
     // The headers are whole; a letter of a later row may be cut in two.
     let end = memchr::memrchr(b'\n', &start).map_or(start.len(), |end| end + 1);
-    let mut records = Records::new(path, utf8(path, 1, &start[..end])?, 1);
-    let head = Head::read(&mut records, sidecar)?;
-    let (at, line) = (records.at, records.line);
-    reader.go_on(start.split_off(at), line);
+    let unstated = FileWords::default();
+    let file = sidecar.map_or(&unstated, |sidecar| &sidecar.file);
+    let reading = Reading::of(path, &text(path, &start[..end], file)?, file)?;
+    let is_utf8 = std::str::from_utf8(&start[..end]).is_ok();
+    if !reading.is_plain() || !is_utf8 || *file != unstated {
+        return each(read_csv(path, sidecar)?);
+    }
+    let fitted = sidecar.map(|sidecar| sidecar.fitted(&reading.headings)).transpose()?;
+    let head = Head::of(path, &reading, fitted.as_ref(), file)?;
+    reader.go_on(start.split_off(reading.at), reading.line);
     let is_read: Vec<bool> = head.wants.iter().map(|want| !matches!(want, Want::LeftOut)).collect();
     let is_plain = head.wants.iter().zip(&is_read).all(|(want, is_read)| want.is_number() || !is_read);
     let layout = is_plain.then(|| Layout::of(&is_read));
@@ -115,18 +126,18 @@ fn chunk(
     lines: &Lines,
 ) -> Result<Table, RecordError> {
     let first = lines.first;
-    // A line that begins with `#` is refused, also where its first cell is not read.
-    let is_free = memchr::memchr(b'#', &memory.text[..lines.bytes]).is_none();
+    // A line that begins with `#` or `%` is a comment, also where its first cell is not read.
+    let is_free = memchr::memchr2(b'#', b'%', &memory.text[..lines.bytes]).is_none();
     if let Some(layout) = layout.filter(|_| is_free)
         && let Some(columns) = layout.parse(memory, lines)
     {
         let raw =
             |column: Option<&[f64]>| column.map_or(Raw::Texts(Vec::new()), |column| Raw::Numbers(column.to_vec()));
-        return head.table(columns.into_iter().map(raw).collect(), (first..first + lines.count).collect());
+        let lines = (first..first + lines.count).collect();
+        return head.table(Rows::of(columns.into_iter().map(raw).collect(), lines));
     }
     let text = utf8(path, first, &memory.text[..lines.bytes])?;
-    let (raws, lines) = head.rows(&mut Records::new(path, text, first), None)?;
-    head.table(raws, lines)
+    head.table(head.rows(&mut Records::new(path, text, first, Separator::Comma), None)?)
 }
 
 #[cfg(test)]
@@ -193,6 +204,19 @@ mod tests {
     }
 
     #[test]
+    fn comments_and_blank_lines_are_passed_over_in_every_chunk() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = written(folder.path(), "speed [m/s],f_x [N]", |i| match i {
+            50_000 => "# 1,2".to_owned(),
+            55_000 => String::new(),
+            _ => format!("{},{}", i % 10, 2 * i),
+        });
+        let (all, whole) = (together(&path).unwrap().0, read_table(&path, None).unwrap());
+        assert_eq!((all.n_rows, &all.columns, &all.line_of_row), (59_998, &whole.columns, &whole.line_of_row));
+        assert_eq!(whole.understood.unwrap(), "1 comment line passed over, 1 blank line passed over");
+    }
+
+    #[test]
     fn a_sidecar_holds_for_every_chunk() {
         let folder = tempfile::tempdir().unwrap();
         let path = written(folder.path(), "U,F,note", |i| format!("{i},{},#{i}", 2 * i));
@@ -207,7 +231,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_reported_as_of_a_table_that_is_read_whole() {
         let folder = tempfile::tempdir().unwrap();
-        for bad in ["1,", "1,x", "1", "1,2,3", "1,inf", "", "# 1,2", "1,1e99", "1,\"2"] {
+        for bad in ["1,", "1,x", "1", "1,2,3", "1,inf", "1,1e99", "1,\"2", "Mean,2"] {
             let path = written(folder.path(), "speed [m/s],f_x [N]", |i| {
                 if i == 55_000 { bad.to_owned() } else { format!("{},{:.9}", i % 10, i as f64 / 7.0) }
             });

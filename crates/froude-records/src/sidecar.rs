@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use indexmap::IndexMap;
 
 use crate::error::{Place, RecordError};
+use crate::file_words::FileWords;
+use crate::heading::Heading;
 use crate::known_columns::{is_text_column, known_dimension};
 use crate::measured::Measured;
 use crate::nearest::suggestion;
@@ -32,6 +34,8 @@ const LARGEST_BYTES: u64 = 1 << 20;
 pub struct Sidecar {
     /// The file.
     pub path: PathBuf,
+    /// How the file is written.
+    pub file: FileWords,
     /// Where the table is the log of a run: what that is.
     pub run: RunFacts,
     /// `[constants]`.
@@ -86,7 +90,7 @@ pub(crate) fn is_sidecar(path: &Path) -> bool {
         squeezed.any(|line| heads.iter().any(|head| line.starts_with(head)))
     };
     // Without its last letter, so that [column] is reported as misspelt.
-    has(&["[column", "[constant"]) || (has(&["[mounted", "[condition", "role="]) && !has(&["[[", "checksum"]))
+    has(&["[column", "[constant", "[file"]) || (has(&["[mounted", "[condition", "role="]) && !has(&["[[", "checksum"]))
 }
 
 /// Reads a sidecar.
@@ -109,8 +113,11 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     let root = Section::new(source, "", document.get_ref(), 0);
     root.schema("sidecar")?;
     root.only(
-        &[&["schema", "method", "role", "mounted", "conditions", "constants", "columns"], &declarations::KEYS[..]]
-            .concat(),
+        &[
+            &["schema", "file", "method", "role", "mounted", "conditions", "constants", "columns"],
+            &declarations::KEYS[..],
+        ]
+        .concat(),
     )?;
     if let Some(mounted) = root.section("mounted")? {
         mounted.only(&["configuration"])?;
@@ -130,15 +137,20 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     }
     let mut columns = IndexMap::new();
     let advice = "write [columns] with lines like speed_col = { name = \"speed\", unit = \"m/s\" }";
-    let section = root.as_section("columns", root.need("columns", advice)?)?;
-    for (header, _, value) in section.entries() {
-        columns.insert(header.to_owned(), mapping(&section.as_section(header, value)?, &run.declared.frame_names())?);
+    let file = FileWords::read(&root)?;
+    // Where only the file is described, its headers are what they say.
+    if file == FileWords::default() || root.get("columns").is_some() {
+        let section = root.as_section("columns", root.need("columns", advice)?)?;
+        for (header, _, value) in section.entries() {
+            columns
+                .insert(header.to_owned(), mapping(&section.as_section(header, value)?, &run.declared.frame_names())?);
+        }
     }
     of_a_run(&root, &run, &columns)?;
     if let Some(cell) = &run.declared.cell {
         bridges(&root, cell, &columns)?;
     }
-    Ok(Sidecar { path: path.to_owned(), run, constants, columns })
+    Ok(Sidecar { path: path.to_owned(), file, run, constants, columns })
 }
 
 /// What is done to the data of a run is done by the methods of runs: a table's is read as it stands.
@@ -203,10 +215,6 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
         let problem = "belongs to a dimensionless column: leave `unit` out, the scale gives it";
         return Err(RecordError::value(place, "scale", problem));
     }
-    if unit.is_none() && scale.is_none() && !is_text_column(&name) && known_dimension(&name).is_some() {
-        let problem = " has no unit; write unit = \"…\" beside its name, or scale = \"…\" for a dimensionless column";
-        return Err(RecordError::column(place, &name, problem));
-    }
     let dimension = unit.as_ref().map(|unit| unit.dimension);
     let words = Words::read(section, dimension, frames)?;
     let sensor = Sensor::read(section, dimension.filter(|_| scale.is_none()))?;
@@ -214,7 +222,46 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
     Ok(Mapping { name, unit, sign, undeclared, scale, sensor, words, place })
 }
 
+impl Mapping {
+    /// The same with the unit that the table states, where the sidecar leaves it out.
+    fn with_unit_of(&self, heading: Option<&Heading>) -> Result<Self, RecordError> {
+        let mut mapping = self.clone();
+        if self.unit.is_some() || self.scale.is_some() || is_text_column(&self.name) {
+            return Ok(mapping);
+        }
+        match heading.and_then(|heading| heading.unit.as_deref()) {
+            Some(text) => {
+                let column = format!("{} [{text}]", self.name);
+                let unit = parse_unit(text).map_err(|e| {
+                    RecordError::column(self.place.clone(), &column, format!(": {}", in_light_of(&self.name, text, e)))
+                })?;
+                check_dimension(&self.place, &column, &self.name, &unit)?;
+                mapping.unit = Some(unit_of_column(&self.name, unit));
+                Ok(mapping)
+            }
+            None if known_dimension(&self.name).is_some() => {
+                let problem =
+                    " has no unit; write unit = \"…\" beside its name, or scale = \"…\" for a dimensionless column";
+                Err(RecordError::column(self.place.clone(), &self.name, problem))
+            }
+            None => Ok(mapping),
+        }
+    }
+}
+
 impl Sidecar {
+    /// The sidecar of a table with these headings: columns may be named with or without their units, and take the units that the table states.
+    pub(crate) fn fitted(&self, headings: &[Heading]) -> Result<Self, RecordError> {
+        let of = |(written, mapping): (&String, &Mapping)| {
+            let is = |heading: &&Heading| [&heading.written, &heading.name].contains(&written);
+            let exact = headings.iter().find(|heading| heading.header() == *written);
+            let heading = exact.or_else(|| headings.iter().find(is));
+            let header = heading.map_or_else(|| written.clone(), Heading::header);
+            Ok((header, mapping.with_unit_of(heading)?))
+        };
+        Ok(Self { columns: self.columns.iter().map(of).collect::<Result<_, _>>()?, ..self.clone() })
+    }
+
     /// The mapped columns of a table, in the order of the sidecar; columns that it does not name are left out.
     ///
     /// Columns with a unit come first, then those with a scale in the order written, so that a

@@ -26,6 +26,8 @@ pub struct Table {
     pub left_out: Vec<String>,
     /// Empty cells, as column and row: read as 0, and only by [`crate::table_file::read_table_with_blanks`].
     pub blank: Vec<(String, usize)>,
+    /// How the file was understood, where it is not written as Froude writes tables.
+    pub understood: Option<String>,
 }
 
 /// One column.
@@ -69,7 +71,16 @@ impl Table {
     #[must_use]
     pub const fn of(path: PathBuf, columns: Vec<Column>, line_of_row: Vec<usize>) -> Self {
         let n_rows = line_of_row.len();
-        Self { path, columns, n_rows, line_of_row, sidecar: None, left_out: Vec::new(), blank: Vec::new() }
+        Self {
+            path,
+            columns,
+            n_rows,
+            line_of_row,
+            sidecar: None,
+            left_out: Vec::new(),
+            blank: Vec::new(),
+            understood: None,
+        }
     }
 
     /// Numbers of a column in SI, when it has the dimension asked for.

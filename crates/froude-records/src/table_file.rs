@@ -52,6 +52,9 @@ pub fn sidecar_of(path: &Path, sidecar: Option<&Path>) -> Result<Option<Sidecar>
     }
 }
 
+/// Endings of tables of text.
+const TEXT_ENDINGS: [&str; 8] = ["csv", "txt", "dat", "tsv", "out", "exp", "asc", "prn"];
+
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Format {
@@ -63,9 +66,12 @@ impl Format {
     /// By the ending of its name.
     pub(crate) fn of(path: &Path) -> Result<Self, RecordError> {
         match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
-            Some("csv") => Ok(Self::Csv),
+            Some(ending) if TEXT_ENDINGS.contains(&ending) => Ok(Self::Csv),
             Some("parquet") => Ok(Self::Parquet),
-            _ => Err(RecordError::Refused(format!("{}: tables are read from .csv and .parquet files", path.display()))),
+            _ => Err(RecordError::Refused(format!(
+                "{}: tables are read from .csv, .txt, .dat and .parquet files",
+                path.display()
+            ))),
         }
     }
 }

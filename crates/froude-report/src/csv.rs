@@ -3,7 +3,8 @@
 //! Where there are several tables, each stands below a line with its name, with a blank line before the next.
 
 use froude_records::block::{Block, Cells, LaidOut, ResultColumn, ResultTable, TableBuilder, laid_out};
-use froude_records::csv_table::{guarded, quoted};
+use froude_records::csv_table::quoted;
+use froude_records::guard::guarded;
 use froude_records::estimate::{Coefficient, Estimate, EstimateFile};
 use froude_records::outcome::Outcome;
 

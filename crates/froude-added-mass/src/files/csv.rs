@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use froude_records::csv_table::guarded;
+use froude_records::guard::guarded;
 
 use super::{AddedMassFile, FileError};
 

@@ -8,6 +8,7 @@ mod common;
 #[cfg(unix)]
 mod crash;
 mod estimates;
+mod foreign_tables;
 mod imported_logs;
 mod laws;
 mod official_reader;

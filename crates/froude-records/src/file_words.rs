@@ -1,0 +1,218 @@
+//! `[file]` of a sidecar: how the file is written, where nothing in it says so or somebody knows better.
+//!
+//! | key | what it says |
+//! | --- | --- |
+//! | `encoding` | a text's encoding: `"windows-1252"`, `"utf-16le"`, … |
+//! | `separator` | between cells: `","`, `";"`, `"tab"`, `"\|"` or `"blanks"` |
+//! | `decimal`, `thousands` | the marks in numbers: `","`, `"."`, `" "` or `"'"` |
+//! | `names`, `units` | the line of the names, and that of the units (0: none) |
+//! | `sheet`, `range` | of a spreadsheet: the sheet's name, and its cells as `"B3:H40"` |
+//! | `part` | of a file of several tables: the group, topic or variable |
+//! | `not_measured` | cells that stand for no measurement: `["NaN", "-9999"]` |
+//! | `leave_out` | rows that begin with one of these words and are no observations: `["Mean", "Std"]`; `[]` where none is |
+
+use std::path::Path;
+
+use froude_foreign::layout::Stated;
+use froude_foreign::split::Separator;
+
+use crate::error::{Place, RecordError};
+use crate::section::Section;
+use crate::section_values::one_of;
+
+/// What somebody states about a file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FileWords {
+    /// The encoding of a text.
+    pub encoding: Option<String>,
+    /// How a table of text is written.
+    pub stated: Stated,
+    /// The sheet of a spreadsheet.
+    pub sheet: Option<String>,
+    /// Its cells, as `B3:H40`.
+    pub range: Option<String>,
+    /// The group, topic or variable.
+    pub part: Option<String>,
+    /// Cells that stand for no measurement.
+    pub not_measured: Vec<String>,
+    /// First words of rows that are no observations; none where nobody said.
+    pub leave_out: Option<Vec<String>>,
+}
+
+const KEYS: [&str; 11] = [
+    "encoding",
+    "separator",
+    "decimal",
+    "thousands",
+    "names",
+    "units",
+    "sheet",
+    "range",
+    "part",
+    "not_measured",
+    "leave_out",
+];
+
+impl FileWords {
+    /// Reads `[file]`; a file of which nothing is stated where there is none.
+    pub(crate) fn read(root: &Section<'_>) -> Result<Self, RecordError> {
+        let Some(file) = root.section("file")? else { return Ok(Self::default()) };
+        file.only(&KEYS)?;
+        let text = |key| Ok::<_, RecordError>(file.text(key)?.map(str::to_owned));
+        let line = |key| Ok::<_, RecordError>(file.integer(key)?.and_then(|line| usize::try_from(line).ok()));
+        let stated = Stated {
+            separator: one_of(&file, "separator", &Separator::ALL.map(Separator::word), &Separator::ALL)?,
+            decimal: one_of(&file, "decimal", &[".", ","], &['.', ','])?,
+            thousands: one_of(&file, "thousands", &[".", ",", " ", "'"], &['.', ',', ' ', '\''])?,
+            names_line: line("names")?,
+            units_line: line("units")?,
+        };
+        file.refuse("names", stated.names_line == Some(0), "is 0; lines are counted from 1")?;
+        let is_one = stated.decimal.is_some() && stated.decimal == stated.thousands;
+        file.refuse("thousands", is_one, "is the decimal mark too; one of them is another")?;
+        Ok(Self {
+            encoding: text("encoding")?,
+            stated,
+            sheet: text("sheet")?,
+            range: text("range")?,
+            part: text("part")?,
+            not_measured: file.texts("not_measured")?,
+            leave_out: file.get("leave_out").map(|_| file.texts("leave_out")).transpose()?,
+        })
+    }
+
+    /// Whether a cell stands for no measurement; `value` is its number, where it is one.
+    #[must_use]
+    pub fn is_not_measured(&self, cell: &str, value: Option<f64>) -> bool {
+        self.not_measured
+            .iter()
+            .any(|word| word.eq_ignore_ascii_case(cell) || (value.is_some() && word.parse::<f64>().ok() == value))
+    }
+
+    /// Whether a row that begins with a cell is declared to be left out.
+    #[must_use]
+    pub fn leaves_out(&self, first: &str) -> bool {
+        self.leave_out.iter().flatten().any(|word| word.eq_ignore_ascii_case(first))
+    }
+}
+
+/// Words at the beginning of rows that sum up those above.
+const SUMMARIES: [&str; 40] = [
+    "mean",
+    "average",
+    "avg",
+    "avg.",
+    "std",
+    "stdev",
+    "std.",
+    "std dev",
+    "std. dev.",
+    "sd",
+    "sigma",
+    "variance",
+    "min",
+    "max",
+    "minimum",
+    "maximum",
+    "sum",
+    "total",
+    "median",
+    "rms",
+    "count",
+    "mittelwert",
+    "mittel",
+    "standardabweichung",
+    "stabw",
+    "summe",
+    "moyenne",
+    "écart-type",
+    "ecart-type",
+    "somme",
+    "media",
+    "promedio",
+    "desviación estándar",
+    "gjennomsnitt",
+    "snitt",
+    "middelverdi",
+    "standardavvik",
+    "平均",
+    "平均値",
+    "標準偏差",
+];
+
+/// Whether a cell at the beginning of a row says that the row sums up others.
+#[must_use]
+pub fn is_summary(cell: &str) -> bool {
+    SUMMARIES.contains(&cell.trim_end_matches(':').to_lowercase().as_str())
+}
+
+/// Numbers that programs write where there is none.
+const SENTINELS: [f64; 22] = [
+    -9999.0,
+    -999.0,
+    -99999.0,
+    -999999.0,
+    -999.25,
+    -999.9,
+    -999.99,
+    -9999.25,
+    -9999.9,
+    -9999.99,
+    9999.0,
+    99999.0,
+    999999.0,
+    9999.99,
+    1e30,
+    -1e30,
+    1e20,
+    -1e20,
+    1e35,
+    -1e34,
+    9.969_209_968_386_869e36,
+    -2_147_483_648.0,
+];
+
+/// A number so much larger than all others of its column is one of these.
+const FAR: f64 = 10.0;
+
+/// The first number of a column that stands for no measurement, by its value and its distance from all others.
+#[must_use]
+pub fn sentinel(values: &[f64]) -> Option<(usize, f64)> {
+    let is_one = |value: &f64| SENTINELS.contains(value);
+    let (row, found) = values.iter().enumerate().find(|(_, value)| value.abs() >= 999.0 && is_one(value))?;
+    let others = values.iter().filter(|value| !is_one(value)).map(|value| value.abs());
+    (found.abs() > FAR * others.fold(0.0, f64::max)).then_some((row, *found))
+}
+
+/// The name that a sidecar of this table has.
+pub(crate) fn sidecar_name(path: &Path) -> String {
+    let sidecar = path.with_extension("toml");
+    sidecar.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
+}
+
+/// What to do about a row that begins as one of sums does.
+pub(crate) fn of_summary(path: &Path, first: &str) -> String {
+    format!(
+        "the row begins with `{first}`: where it sums up others it is no observation; write in {}:\n  schema = 1\n  [file]\n  leave_out = [\"{first}\"]\nor leave_out = [] where it is one",
+        sidecar_name(path)
+    )
+}
+
+/// What to do about a number that stands for no measurement.
+pub(crate) fn of_sentinel(value: f64) -> String {
+    format!(
+        "{value} is far from all other numbers, and many programs write it where nothing was measured; if so, declare not_measured = [\"{value}\"]"
+    )
+}
+
+/// Refuses a number that stands for no measurement.
+pub(crate) fn refuse_sentinel(values: &[f64], header: &str, place: &dyn Fn(usize) -> Place) -> Result<(), RecordError> {
+    match sentinel(values) {
+        Some((row, value)) => Err(RecordError::column(
+            place(row),
+            header,
+            format!(": {}; in a sidecar, under [file]", of_sentinel(value)),
+        )),
+        None => Ok(()),
+    }
+}

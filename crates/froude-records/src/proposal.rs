@@ -1,0 +1,163 @@
+//! A sidecar that proposes what the columns of a table are, for a person to check and correct.
+
+use std::path::{Path, PathBuf};
+
+use froude_foreign::layout::is_missing;
+use froude_foreign::split::rows;
+
+use crate::csv_table::text;
+use crate::error::RecordError;
+use crate::file_words::{FileWords, is_summary, sentinel};
+use crate::foreign_names::meant_without_unit;
+use crate::heading::Heading;
+use crate::known_columns::{is_text_column, usual_unit};
+use crate::read;
+use crate::reading::Reading;
+use crate::records::Skipped;
+use crate::toml_text::{key_word, quoted};
+use crate::units::parse_unit;
+use crate::write::Prepared;
+
+/// The largest file that is looked at for a proposal.
+const LARGEST_BYTES: u64 = 2 << 30;
+
+/// As much of it as is looked at for words in the place of numbers.
+const SAMPLE_BYTES: usize = 1 << 20;
+
+/// Writes the proposal beside the table, as its `.toml`; its path.
+///
+/// # Errors
+///
+/// A file of that name that is there already, a table that cannot be looked at, a file that cannot be written.
+pub fn write_sidecar(table: &Path) -> Result<PathBuf, RecordError> {
+    let path = table.with_extension("toml");
+    if path.exists() {
+        let problem = "is there already; move it away, or correct it by hand";
+        return Err(RecordError::Refused(format!("{}: {problem}", path.display())));
+    }
+    let proposal = sidecar(table)?;
+    Prepared::new(&path, |file| std::io::Write::write_all(file, proposal.as_bytes()))?.take_place()?;
+    Ok(path)
+}
+
+/// The proposal for a table of text.
+///
+/// # Errors
+///
+/// A table that cannot be looked at.
+pub fn sidecar(table: &Path) -> Result<String, RecordError> {
+    let bytes = read::whole(table, LARGEST_BYTES, "a table")?;
+    let unstated = FileWords::default();
+    let decoded = text(table, &bytes, &unstated)?;
+    let reading = Reading::of(table, &decoded, &unstated)?;
+    let name = table.file_name().unwrap_or_default().to_string_lossy();
+    let mut out = format!(
+        "# What the columns of {name} are: a proposal. Check every line, correct it, and delete what you do not need.\n"
+    );
+    if let Some(understood) = reading.understood(Skipped::default(), 0) {
+        out += &format!("# The file was understood as: {understood}.\n");
+    }
+    out += "schema = 1\n";
+    if reading.headings.iter().any(|heading| target(heading) == Some("time")) {
+        out += "# Where this is the log of a run: which method it belongs to and what it is for there.\n# method = \"free-decay\"\n# role = \"test\"\n";
+    }
+    out += &of_file(&reading, &decoded.text);
+    out += "\n[columns]\n# name: what Froude calls it; unit: of the numbers in the file; sign = -1 where the file counts against Froude's axes\n# (x forward, y to starboard, z down; loads are those of the water on the body).\n";
+    for heading in &reading.headings {
+        out += &line(heading, &reading);
+    }
+    Ok(out)
+}
+
+/// `[file]`, where something about it has to be stated.
+fn of_file(reading: &Reading, text: &str) -> String {
+    let end = text.floor_char_boundary(SAMPLE_BYTES);
+    let rows = rows(&text[..end], reading.dialect.separator);
+    let data = || rows.iter().filter(|row| !row.is_comment && row.line >= reading.line);
+    let (mut missing, mut sums) = (Vec::<String>::new(), Vec::<String>::new());
+    for row in data() {
+        let first = row.cells.iter().find(|cell| !cell.is_empty()).map(ToString::to_string).unwrap_or_default();
+        if is_summary(&first) && !sums.contains(&first) {
+            sums.push(first);
+        }
+    }
+    let is_sum = |row: &froude_foreign::split::Row<'_>| {
+        row.cells.iter().find(|cell| !cell.is_empty()).is_some_and(|cell| is_summary(cell))
+    };
+    for at in (0..reading.headings.len()).filter(|at| reading.is_number.get(*at) == Some(&true)) {
+        let cells: Vec<_> = data().filter(|row| !is_sum(row)).filter_map(|row| row.cells.get(at)).collect();
+        let words = cells.iter().filter(|cell| !cell.is_empty() && is_missing(cell)).map(ToString::to_string);
+        let numbers: Vec<f64> =
+            cells.iter().filter_map(|cell| reading.dialect.marks.plain(cell)?.parse().ok()).collect();
+        let far = sentinel(&numbers).map(|(_, value)| value.to_string());
+        for word in words.chain(far) {
+            if !missing.contains(&word) {
+                missing.push(word);
+            }
+        }
+    }
+    let list = |words: &[String]| words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(", ");
+    let mut out = String::new();
+    if reading.undecided.is_some() {
+        out += "# Which mark a number such as 1,234 has: delete one of the two lines.\ndecimal = \",\"\nthousands = \",\"\n";
+    }
+    if !missing.is_empty() {
+        out += &format!("# Cells that stand for no measurement.\nnot_measured = [{}]\n", list(&missing));
+    }
+    if !sums.is_empty() {
+        out += &format!("# Rows that sum up others and are no observations.\nleave_out = [{}]\n", list(&sums));
+    }
+    if out.is_empty() { out } else { format!("\n[file]\n{out}") }
+}
+
+/// What Froude calls a column.
+fn target(heading: &Heading) -> Option<&'static str> {
+    heading.meant().map(|meant| meant.name)
+}
+
+/// The line of a column; a comment where something has to be filled in first.
+fn line(heading: &Heading, reading: &Reading) -> String {
+    let key = key_word(&heading.written);
+    let own = heading.name.as_str();
+    let at = reading.headings.iter().position(|other| other == heading).unwrap_or_default();
+    let is_number = reading.is_number.get(at).copied().unwrap_or(true);
+    // Of two columns that seem the same neither is renamed: somebody has to say which is which.
+    let is_alone = |name: &str| {
+        reading.headings.iter().filter(|other| target(other) == Some(name) || other.name == name).count() == 1
+    };
+    let dimension = heading.dimension();
+    let meant = heading.meant().filter(|meant| is_alone(meant.name));
+    if let Some(meant) = meant.filter(|meant| is_text_column(meant.name)) {
+        return format!("{key} = {{ name = \"{}\" }}\n", meant.name);
+    }
+    if is_text_column(own) || !is_number {
+        return format!("{key} = {{ name = {} }}\n", quoted(own));
+    }
+    match (&heading.unit, dimension, meant) {
+        (Some(unit), Some(_), Some(meant)) => {
+            let (sign, why) = if meant.sign < 0 {
+                (", sign = -1", "  # a resistance is written positive; f_x points forward")
+            } else {
+                ("", "")
+            };
+            format!("{key} = {{ name = \"{}\", unit = {}{sign} }}{why}\n", meant.name, quoted(unit))
+        }
+        (Some(unit), Some(_), None) => format!("{key} = {{ name = {}, unit = {} }}\n", quoted(own), quoted(unit)),
+        (Some(unit), None, _) => {
+            let told = parse_unit(unit).err().map_or_else(String::new, |error| error.to_string());
+            format!("# {key} = {{ name = {}, unit = \"\" }}  # {told}\n", quoted(own))
+        }
+        (None, ..) => {
+            let meant = meant_without_unit(own)
+                .or_else(|| meant_without_unit(&heading.above))
+                .filter(|(meant, _)| is_alone(meant.name));
+            let name = meant.map_or(own, |(meant, _)| meant.name);
+            let example = usual_unit(name).map_or_else(String::new, |unit| format!(", {unit} for example"));
+            let sign = if meant.is_some_and(|(meant, _)| meant.sign < 0) { ", sign = -1" } else { "" };
+            format!(
+                "# {key} = {{ name = {}, unit = \"\"{sign} }}  # state the unit{example}, and remove the # at the beginning\n",
+                quoted(name)
+            )
+        }
+    }
+}

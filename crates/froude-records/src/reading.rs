@@ -1,0 +1,213 @@
+//! How a table of text was understood before its first row is read: encoding, separators, marks, names, units.
+
+use std::path::Path;
+
+use froude_foreign::decode::Decoded;
+use froude_foreign::layout::{Layout, Seen, look};
+use froude_foreign::marks::{Marks, Undecided, Witness};
+
+use crate::error::{Place, RecordError};
+use crate::file_words::FileWords;
+use crate::guard::unguarded;
+use crate::heading::{Heading, headings, rename_sname, split_header};
+use crate::records::{Dialect, Records, Skipped};
+use crate::text::counted;
+use crate::units::parse_unit;
+
+/// As much of a file as is looked at.
+const SAMPLE_BYTES: usize = 1 << 18;
+
+/// A table of text as it was understood.
+#[derive(Debug, Clone)]
+pub(crate) struct Reading {
+    /// How it is written.
+    pub dialect: Dialect,
+    /// Its columns.
+    pub headings: Vec<Heading>,
+    /// Which of them hold numbers.
+    pub is_number: Vec<bool>,
+    /// Where their names stand.
+    pub place: Place,
+    /// Bytes and lines before the first row.
+    pub at: usize,
+    /// The line of the first row.
+    pub line: usize,
+    /// What differs from a table of Froude's own, in words.
+    pub words: Vec<String>,
+    /// Numbers that nobody can decide but a person.
+    pub undecided: Option<Undecided>,
+}
+
+impl Reading {
+    /// Understands a text by its beginning; `decoded` says in which encoding it is.
+    ///
+    /// # Errors
+    ///
+    /// A file without names of columns, and one whose names and units contradict each other.
+    pub fn of(path: &Path, decoded: &Decoded<'_>, file: &FileWords) -> Result<Self, RecordError> {
+        let text = decoded.text.as_ref();
+        if text.trim().is_empty() {
+            let problem = "the file is empty; its first line names the columns as `name [unit]`";
+            return Err(RecordError::syntax(Place::whole(path), problem));
+        }
+        if file.stated == FileWords::default().stated && is_own(text) {
+            return Self::own(path, decoded);
+        }
+        let seen = look(sample(text), &file.stated, &|unit| parse_unit(unit).is_ok());
+        let layout = &seen.layout;
+        if layout.heads.is_empty() {
+            let problem = "there are numbers where the columns should be named; write a line of headers above them, as `speed [m/s],f_x [N]`";
+            return Err(RecordError::syntax(Place::line(path, layout.data_line.max(1)), problem));
+        }
+        let place = Place::line(path, layout.names_line);
+        let mut headings = headings(&layout.heads, &layout.is_number)
+            .map_err(|problem| RecordError::syntax(place.clone(), problem))?;
+        // Columns without a name and without a cell, as spreadsheets add them.
+        while headings.last().is_some_and(|last| last.written.is_empty()) {
+            headings.pop();
+        }
+        let sname = rename_sname(&mut headings);
+        let (marks, undecided) = match seen.marks.clone() {
+            Ok(marks) => (marks, None),
+            Err(undecided) => (Marks::default(), Some(undecided)),
+        };
+        let line = layout.data_line;
+        let at = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
+        let words = words(decoded, &seen, marks, &sname);
+        let is_number = layout.is_number.clone();
+        let dialect = Dialect { separator: seen.separator, marks };
+        Ok(Self { dialect, headings, is_number, place, at, line, words, undecided })
+    }
+
+    /// A table as Froude writes it: its first line are its headers.
+    fn own(path: &Path, decoded: &Decoded<'_>) -> Result<Self, RecordError> {
+        let text = decoded.text.as_ref();
+        let dialect = Dialect::own();
+        let mut records = Records::new(path, text, 1, dialect.separator);
+        let mut cells = Vec::new();
+        records.next(&mut cells)?;
+        let mut headings: Vec<Heading> = cells.iter().map(|cell| Heading::own(unguarded(cell.trim()))).collect();
+        let sname = rename_sname(&mut headings);
+        let place = Place::line(path, 1);
+        let words = of_encoding(decoded).into_iter().chain(renamed(&sname)).collect();
+        let is_number = headings.iter().map(|heading| heading.unit.is_some()).collect();
+        Ok(Self { dialect, headings, is_number, place, at: records.at, line: records.line, words, undecided: None })
+    }
+
+    /// Whether its rows are those of Froude's own tables: numbers with a point between commas.
+    pub fn is_plain(&self) -> bool {
+        self.dialect == Dialect::own() && self.undecided.is_none()
+    }
+
+    /// What was understood, in one sentence; `None` where there is nothing to say.
+    pub fn understood(&self, skipped: Skipped, left_out: usize) -> Option<String> {
+        let mut words = self.words.clone();
+        let counts = [
+            (skipped.comments, "comment line passed over", "comment lines passed over"),
+            (skipped.blank, "blank line passed over", "blank lines passed over"),
+            (left_out, "row left out as declared", "rows left out as declared"),
+        ];
+        words.extend(counts.into_iter().filter(|(n, ..)| *n > 0).map(|(n, one, many)| counted(n, one, many)));
+        (!words.is_empty()).then(|| words.join(", "))
+    }
+}
+
+/// Whether the first line is one of headers between commas of which at least one is `name [unit]`.
+fn is_own(text: &str) -> bool {
+    let first = text.lines().next().unwrap_or_default();
+    let has_unit = |cell: &str| {
+        !cell.contains([';', '\t', '|'])
+            && matches!(split_header(cell.trim().trim_matches('"')), Ok((_, Some(unit))) if parse_unit(unit).is_ok())
+    };
+    !first.trim_start().starts_with(['#', '%']) && first.split(',').any(has_unit)
+}
+
+/// The whole lines at the beginning of a text.
+fn sample(text: &str) -> &str {
+    if text.len() <= SAMPLE_BYTES {
+        return text;
+    }
+    let end = memchr::memrchr(b'\n', &text.as_bytes()[..SAMPLE_BYTES]).map_or(text.len(), |end| end + 1);
+    &text[..end]
+}
+
+/// The encoding, where it is not UTF-8.
+fn of_encoding(decoded: &Decoded<'_>) -> Option<String> {
+    let guess = if decoded.is_guess { " (by its letters)" } else { "" };
+    (decoded.encoding != "UTF-8").then(|| format!("text in {}{guess}", decoded.encoding))
+}
+
+fn words(decoded: &Decoded<'_>, seen: &Seen, marks: Marks, sname: &[(String, &'static str)]) -> Vec<String> {
+    let Layout { units_line, titles, names_line, .. } = &seen.layout;
+    let mut words: Vec<String> = of_encoding(decoded).into_iter().collect();
+    let dialect = Dialect::own();
+    if seen.separator != dialect.separator {
+        words.push(format!("cells separated by {}", seen.separator.words()));
+    }
+    if marks.decimal == ',' {
+        words.push("decimal comma".to_owned());
+    }
+    if let Some(mark) = marks.thousands {
+        let name = match mark {
+            '.' => "points",
+            ',' => "commas",
+            '\'' => "apostrophes",
+            _ => "blanks",
+        };
+        words.push(format!("{name} between thousands"));
+    }
+    if *titles > 0 {
+        words.push(counted(*titles, "line above the names passed over", "lines above the names passed over"));
+    }
+    if *names_line > 1 {
+        words.push(format!("names in line {names_line}"));
+    }
+    if let Some(line) = units_line {
+        words.push(format!("units in line {line}"));
+    }
+    words.extend(renamed(sname));
+    words
+}
+
+/// What was renamed, in words.
+fn renamed(sname: &[(String, &'static str)]) -> Option<String> {
+    let (letters, names): (Vec<&str>, Vec<&str>) = sname.iter().map(|(letter, name)| (letter.as_str(), *name)).unzip();
+    (!letters.is_empty()).then(|| format!("{} by SNAME as {}", letters.join(", "), names.join(", ")))
+}
+
+/// What nobody can decide, with both lines to write.
+pub(crate) fn undecided(path: &Path, found: &Undecided, sidecar: &str) -> RecordError {
+    let write = |line: &str| format!("\n  schema = 1\n  [file]\n  {line}");
+    let (at, problem) = match found {
+        Undecided::Either(Witness { cell, line }) => {
+            let mark = if cell.contains(',') { ',' } else { '.' };
+            let [fraction, whole] = [cell.replace(mark, "."), cell.replace(mark, "")];
+            (
+                line,
+                format!(
+                    "`{cell}` can be {fraction} or {whole}, and nothing else in the file decides; write in {sidecar}, for {fraction}:{}\nor for {whole}:{}",
+                    write(&format!("decimal = \"{mark}\"")),
+                    write(&format!("thousands = \"{mark}\"")),
+                ),
+            )
+        }
+        Undecided::Both(point, comma) => (
+            &comma.line,
+            format!(
+                "`{}` has a decimal comma and `{}` in line {} a decimal point; export the file with one of them, or write in {sidecar} which marks it has:{}",
+                comma.cell,
+                point.cell,
+                point.line,
+                write("decimal = \",\"\n  thousands = \".\""),
+            ),
+        ),
+        Undecided::Thousands(one, other) => (
+            &other.line,
+            format!(
+                "`{}` and `{}` in line {} have two marks of thousands; export the file with one of them",
+                other.cell, one.cell, one.line
+            ),
+        ),
+    };
+    RecordError::syntax(Place::line(path, *at), problem)
+}

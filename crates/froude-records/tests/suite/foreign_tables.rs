@@ -1,0 +1,218 @@
+//! Tables as laboratories, instruments and spreadsheets write them: read as they stand, or asked about; never read wrongly.
+
+use std::path::Path;
+
+use froude_records::csv_table::{read_csv, read_csv_with_blanks};
+use froude_records::proposal;
+use froude_records::sidecar::parse_sidecar;
+use froude_records::table::{ColumnData, Table};
+use froude_records::table_file::read_table;
+
+/// A table of bytes through a sidecar of text.
+fn read(bytes: &[u8], sidecar: &str) -> Result<Table, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.csv");
+    std::fs::write(&path, bytes).unwrap();
+    let sidecar = (!sidecar.is_empty()).then(|| parse_sidecar(Path::new("t.toml"), sidecar).unwrap());
+    read_csv(&path, sidecar.as_ref()).map_err(|e| e.to_string().replace(&format!("{}/", folder.path().display()), ""))
+}
+
+fn si(table: &Table, name: &str) -> Vec<f64> {
+    match &table.column(name).unwrap().data {
+        ColumnData::Number { si, .. } => si.clone(),
+        ColumnData::Text(_) => panic!("{name} is text"),
+    }
+}
+
+/// Two columns, speed in m/s and f_x in N, of 0.5, 1.25 and -2, -12.5.
+fn is_the_table(table: &Table) -> bool {
+    si(table, "speed") == [0.5, 1.25] && si(table, "f_x") == [-2.0, -12.5]
+}
+
+#[test]
+fn one_table_in_any_encoding_separator_and_mark() {
+    let german = "speed [m/s];f_x [N]\r\n0,5;-2\r\n1,25;-12,5\r\n";
+    let utf16 = |text: &str, mark: &[u8], big: bool| -> Vec<u8> {
+        let unit = |u: u16| if big { u.to_be_bytes() } else { u.to_le_bytes() };
+        mark.iter().copied().chain(text.encode_utf16().flat_map(unit)).collect()
+    };
+    let plain = "speed [m/s],f_x [N]\n0.5,-2\n1.25,-12.5\n";
+    let cases: [(Vec<u8>, &str); 17] = [
+        (plain.into(), ""),
+        (german.into(), "cells separated by semicolons, decimal comma"),
+        (format!("\u{feff}{german}").into(), "cells separated by semicolons, decimal comma"),
+        (utf16(german, b"\xff\xfe", false), "text in UTF-16LE, cells separated by semicolons, decimal comma"),
+        (utf16(german, b"\xfe\xff", true), "text in UTF-16BE, cells separated by semicolons, decimal comma"),
+        (utf16(plain, b"", false), "text in UTF-16LE (by its letters)"),
+        ("speed [m/s]\tf_x [N]\n0,5\t-2\n1,25\t-12,5\n".into(), "cells separated by tabs, decimal comma"),
+        ("speed [m/s]|f_x [N]\n0.5|-2\n1.25|-12.5\n".into(), "cells separated by bars"),
+        ("# towed\n# twice\nspeed [m/s],f_x [N]\n0.5,-2\n1.25,-12.5\n".into(), "names in line 3"),
+        ("% speed [m/s],f_x [N]\n0.5,-2\n1.25,-12.5\n".into(), ""),
+        ("speed [m/s],f_x [N]\n\n0.5,-2\n\n1.25,-12.5\n\n\n".into(), "2 blank lines passed over"),
+        ("speed [m/s];f_x [N];;\n0,5;-2;;\n1,25;-12,5;;\n;;;\n".into(), "cells separated by semicolons, decimal comma"),
+        (
+            "Drift tests\nDate;2026-11-30\n\nspeed;f_x\nm/s;N\n0,5;-2\n1,25;-12,5\n".into(),
+            "cells separated by semicolons, decimal comma, 2 lines above the names passed over, names in line 4, units in line 5",
+        ),
+        ("speed;f_x\n[m/s];[N]\n0.5;-2.0\n1.25;-12.5\n".into(), "cells separated by semicolons, units in line 2"),
+        ("speed,f_x\n(m/s),(N)\n0.5,-2\n1.25,-12.5\n".into(), "units in line 2"),
+        (
+            "  speed     f_x\n  (m/s)     (N)\n  0.50E+00 -0.20D+01\n  1.25E+00 -1.25D+01\n".into(),
+            "cells separated by blanks, units in line 2",
+        ),
+        (
+            "\"speed [m/s]\";\"f_x [N]\"\n\"0,5\";\"-2\"\n\"1,25\";\"−12,5\"\n".into(),
+            "cells separated by semicolons, decimal comma",
+        ),
+    ];
+    for (bytes, said) in cases {
+        let shown = String::from_utf8_lossy(&bytes).into_owned();
+        let table = read(&bytes, "").unwrap_or_else(|e| panic!("{shown}\n{e}"));
+        assert!(is_the_table(&table), "{shown}");
+        assert_eq!(table.understood.unwrap_or_default(), said, "{shown}");
+    }
+}
+
+#[test]
+fn letters_of_old_encodings_are_read() {
+    let text = "Résistance (gf);Température (°C);speed [m/s]\n-1,5;18,2;1\n-2,5;18,3;2\n";
+    let latin: Vec<u8> = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
+    let sidecar = "schema = 1\n[columns]\n\"Résistance (gf)\" = { name = \"f_x\", sign = -1 }\n\"Température\" = { name = \"temperature\" }\n\"speed [m/s]\" = { name = \"speed\" }\n";
+    let table = read(&latin, sidecar).unwrap();
+    assert!((si(&table, "f_x")[0] - 1.5 * 9.80665e-3).abs() < 1e-15);
+    assert!((si(&table, "temperature")[1] - 291.45).abs() < 1e-12);
+    assert_eq!(
+        table.understood.unwrap(),
+        "text in windows-1252 (by its letters), cells separated by semicolons, decimal comma"
+    );
+    let japanese = "schema = 1\n[file]\nencoding = \"shift_jis\"\n[columns]\n\"速度\" = { name = \"speed\" }\n\"抵抗\" = { name = \"f_x\", sign = -1 }\n";
+    let bytes = b"\x91\xac\x93x,\x92\xef\x8dR\nm/s,N\n0.5,2\n1.25,12.5\n";
+    assert!(is_the_table(&read(bytes, japanese).unwrap()));
+}
+
+#[test]
+fn what_can_be_read_in_two_ways_is_asked_with_both_lines() {
+    let text = "speed [m/s];f_x [N]\n1,234;-2\n2,500;-3\n";
+    assert_eq!(
+        read(text.as_bytes(), "").unwrap_err(),
+        "t.csv:2: `1,234` can be 1.234 or 1234, and nothing else in the file decides; write in t.toml, for 1.234:\n  schema = 1\n  [file]\n  decimal = \",\"\nor for 1234:\n  schema = 1\n  [file]\n  thousands = \",\""
+    );
+    let first = |line: &str| si(&read(text.as_bytes(), &format!("schema = 1\n[file]\n{line}\n")).unwrap(), "speed")[0];
+    assert_eq!((first("decimal = \",\""), first("thousands = \",\"")), (1.234, 1234.0));
+    let both = read(b"speed [m/s];f_x [N]\n0,5;-2.5\n1;-3\n", "").unwrap_err();
+    assert!(both.contains("`0,5` has a decimal comma and `-2.5` in line 2 a decimal point"), "{both}");
+    let late = format!("speed [m/s];f_x [N]\n{}0.5;1\n", "0,5;1\n".repeat(60_000));
+    let late = read(late.as_bytes(), "").unwrap_err();
+    assert!(late.starts_with("t.csv:60002: column `speed [m/s]`: `0.5` is not a number"), "{late}");
+}
+
+#[test]
+fn sums_and_numbers_that_were_not_measured_are_named_and_asked() {
+    let sums = b"run,speed [m/s],f_x [N]\n1,0.5,-2\n2,1.25,-12.5\nMean,0.9,-7\nStd,0.5,5\n";
+    let said = read(sums, "").unwrap_err();
+    assert!(
+        said.starts_with("t.csv:4: the row begins with `Mean`: where it sums up others it is no observation; write in t.toml:\n  schema = 1\n  [file]\n  leave_out = [\"Mean\"]\nor leave_out = [] where it is one\n1 more thing keeps this table from being read:\n  - line 5: the row begins with `Std`"),
+        "{said}"
+    );
+    let table = read(sums, "schema = 1\n[file]\nleave_out = [\"mean\", \"std\"]\n").unwrap();
+    assert!(is_the_table(&table));
+    assert_eq!(table.understood.unwrap(), "2 rows left out as declared");
+    for word in ["Mittelwert", "Average", "Écart-type", "標準偏差", "Max:"] {
+        let text = format!("Lauf;speed [m/s]\n1;0,5\n{word};1,5\n");
+        assert!(read(text.as_bytes(), "").is_err(), "{word}");
+    }
+    for (number, written) in [("-9999", "-9999"), ("-999.25", "-999.25"), ("1e30", "1E+30"), ("9999", "9999.0")] {
+        let text = format!("speed [m/s],f_x [N]\n0.5,-2\n1,{written}\n1.25,-12.5\n");
+        let said = read(text.as_bytes(), "").unwrap_err();
+        assert!(said.starts_with("t.csv:3: column `f_x [N]`: ") && said.contains("not_measured = ["), "{said}");
+        let sidecar =
+            parse_sidecar(Path::new("t.toml"), &format!("schema = 1\n[file]\nnot_measured = [\"{number}\"]\n"))
+                .unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        std::fs::write(&path, &text).unwrap();
+        let table = read_csv_with_blanks(&path, Some(&sidecar)).unwrap();
+        assert_eq!(table.blank, [("f_x".to_owned(), 1)]);
+    }
+    // A counter that reaches 9999 is one.
+    let count: String = (9990..10_010).map(|i| format!("{i},1\n")).collect();
+    assert!(read(format!("time [ms],f_x [N]\n{count}").as_bytes(), "").is_ok());
+}
+
+#[test]
+fn letters_of_sname_are_read_where_they_measure_what_they_name() {
+    let table = read(b"u [m/s],v [m/s],r [rad/s],X [N],Y [N],N [N m]\n1,0.1,0,-10,-6,-2\n", "").unwrap();
+    let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+    assert_eq!(names, ["v_x", "v_y", "w_z", "f_x", "f_y", "m_z"]);
+    assert_eq!(table.understood.unwrap(), "u, v, r, X, Y, N by SNAME as v_x, v_y, w_z, f_x, f_y, m_z");
+    let table = read(b"v_x [m/s],p [Pa],X [m],f_x [N]\n1,100,5,-10\n", "").unwrap();
+    assert_eq!(table.columns[1].name, "p");
+    assert_eq!(table.columns[2].name, "X");
+    assert_eq!(table.understood, None);
+}
+
+#[test]
+fn all_obstacles_are_named_at_once() {
+    let text = "Lauf;Geschwindigkeit;Widerstand;Winkel\n-;m/s;N;°\n1;0,5;2;0\n2;1,25;12,5;NaN\n3;1,5;-9999;4\nMittelwert;0,9;7;1\n";
+    let said = read(text.as_bytes(), "").unwrap_err();
+    assert_eq!(
+        said.lines().collect::<Vec<_>>(),
+        [
+            "t.csv:1: column `Geschwindigkeit [m/s]` would not be used; is it speed?",
+            "5 more things keep this table from being read (cells separated by semicolons, decimal comma, units in line 2):",
+            "  - column `Widerstand [N]`: would not be used; is it f_x?",
+            "  - column `Winkel [°]`: would not be used; is it angle?",
+            "  - line 6: the row begins with `Mittelwert`; where it sums up others, declare it in leave_out",
+            "  - line 5: column `Widerstand [N]`: -9999 is far from all other numbers, and many programs write it where nothing was measured; if so, declare not_measured = [\"-9999\"]",
+            "  - line 4: `NaN` is not a number; where it means not measured, declare it in not_measured",
+            "froude inspect t.csv --write-sidecar writes t.toml, which proposes names, units and signs for you to check and correct",
+        ]
+    );
+}
+
+#[test]
+fn a_proposed_sidecar_reads_the_table_that_it_was_made_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drift.csv");
+    let text = "Lauf;Geschwindigkeit;Driftwinkel;Résistance;Seitenkraft;Bemerkung\n-;m/s;°;gf;gf;\n1;0,5;-12;204,1;10;gut\n2;1,25;6;NaN;-20;\nMittelwert;0,9;0;1;1;\n";
+    let latin: Vec<u8> = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
+    std::fs::write(&path, latin).unwrap();
+    assert_eq!(proposal::write_sidecar(&path).unwrap(), folder.path().join("drift.toml"));
+    let sidecar = std::fs::read_to_string(folder.path().join("drift.toml")).unwrap();
+    for line in [
+        "not_measured = [\"NaN\"]",
+        "leave_out = [\"Mittelwert\"]",
+        "Lauf = { name = \"run\" }",
+        "Geschwindigkeit = { name = \"speed\", unit = \"m/s\" }",
+        "\"Résistance\" = { name = \"f_x\", unit = \"gf\", sign = -1 }  # a resistance is written positive; f_x points forward",
+        "Bemerkung = { name = \"Bemerkung\" }",
+    ] {
+        assert!(sidecar.lines().any(|own| own == line), "{line}\n{sidecar}");
+    }
+    let table = froude_records::table_file::read_table_with_blanks(&path, None).unwrap();
+    assert!((si(&table, "f_x")[0] + 2.0015).abs() < 1e-3);
+    assert_eq!((table.n_rows, table.blank.len()), (2, 1));
+    let again = proposal::write_sidecar(&path).unwrap_err().to_string();
+    assert!(again.contains("drift.toml: is there already"), "{again}");
+}
+
+#[test]
+fn what_is_no_table_is_named() {
+    let said = |bytes: &[u8]| read(bytes, "").unwrap_err();
+    assert_eq!(said(b"\x89PNG\r\n\x1a\n\x00\x00"), "t.csv: the file is a PNG image, and no text");
+    assert_eq!(said(b"PK\x03\x04\x14\x00"), "t.csv: the file is a zip archive or an office document, and no text");
+    assert_eq!(
+        said(b"1,2\n3,4\n"),
+        "t.csv:1: there are numbers where the columns should be named; write a line of headers above them, as `speed [m/s],f_x [N]`"
+    );
+}
+
+#[test]
+fn endings_of_text_are_read_alike() {
+    let folder = tempfile::tempdir().unwrap();
+    for ending in ["csv", "txt", "dat", "tsv", "out", "exp", "TXT"] {
+        let path = folder.path().join(format!("t.{ending}"));
+        std::fs::write(&path, "speed [m/s]\tf_x [N]\n0,5\t-2\n1,25\t-12,5\n").unwrap();
+        assert!(is_the_table(&read_table(&path, None).unwrap()), "{ending}");
+    }
+}
