@@ -103,7 +103,8 @@ pub fn rows(text: &str, separator: Separator) -> Vec<Row<'_>> {
         let breaks = taken.bytes().filter(|b| *b == b'\n').count();
         let last_line = line + breaks.saturating_sub(1);
         let found = Row { line, last_line, cells, is_comment: marked.is_some() };
-        if !found.is_blank() {
+        // Cells that are empty between quotes are meant.
+        if !found.is_blank() || start.starts_with('"') {
             rows.push(found);
         }
         line += breaks;

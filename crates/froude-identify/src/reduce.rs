@@ -69,7 +69,7 @@ pub fn reduce_table(
     table: &Table,
     mut files: Vec<ReadFile>,
 ) -> Result<Observations, IdentifyError> {
-    let mut findings = Vec::new();
+    let mut findings: Vec<Finding> = table.foreign().into_iter().collect();
     let data = observed(table, campaign, source, &mut findings)?;
     let n_read = data.rows;
     let mut keep = kept_rows(&data, source)?;

@@ -21,7 +21,7 @@ use crate::raw_column::Raw;
 use crate::read;
 use crate::read::utf8;
 use crate::reading::Reading;
-use crate::records::Records;
+use crate::records::{Records, Skipped};
 use crate::sidecar::Sidecar;
 use crate::table::Table;
 use crate::table_file::{Format, sidecar_of};
@@ -109,10 +109,12 @@ fn csv<E: From<RecordError>>(
     let is_plain = head.wants.iter().zip(&is_read).all(|(want, is_read)| want.is_number() || !is_read);
     let layout = is_plain.then(|| Layout::of(&is_read));
     let mut memory = Memory::default();
+    let understood = reading.understood(Skipped::default(), 0);
     let mut has_rows = false;
     while let Some(lines) = reader.next(&mut memory.text)? {
         has_rows = true;
-        each(chunk(path, &head, layout.as_ref(), &mut memory, &lines)?)?;
+        let table = chunk(path, &head, layout.as_ref(), &mut memory, &lines)?;
+        each(Table { understood: understood.clone(), ..table })?;
     }
     if has_rows { Ok(()) } else { Err(RecordError::NoRows { path: path.to_owned() }.into()) }
 }

@@ -241,7 +241,8 @@ impl<'a, 's> Head<'a, 's> {
         if self.file.leaves_out(first) {
             return Ok(true);
         }
-        if self.file.leave_out.is_some() || !is_summary(first) {
+        let has_numbers = self.wants.iter().any(Want::is_number);
+        if self.file.leave_out.is_some() || !has_numbers || !is_summary(first) {
             return Ok(false);
         }
         Err(RecordError::syntax(Place::line(self.path, line), of_summary(self.path, first)))

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::error::{Place, RecordError};
+use crate::finding::{Finding, Severity};
 use crate::nearest::suggestion;
 use crate::plausible;
 use crate::raw_column::TEXT_FOR_NUMBERS;
@@ -81,6 +82,16 @@ impl Table {
             blank: Vec::new(),
             understood: None,
         }
+    }
+
+    /// How the file was understood, as a finding; none of a table in Froude's own form.
+    #[must_use]
+    pub fn foreign(&self) -> Option<Finding> {
+        let name = self.path.file_name().unwrap_or_default().to_string_lossy();
+        let told = |words: &String| {
+            Finding::new(Severity::Note, "foreign-table", format!("{name} was understood as: {words}"))
+        };
+        self.understood.as_ref().map(told)
     }
 
     /// Numbers of a column in SI, when it has the dimension asked for.
