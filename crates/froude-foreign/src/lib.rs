@@ -1,4 +1,21 @@
 //! Files of other programs as named columns. Nothing is interpreted here: names, units and numbers are those of the file.
+//!
+//! | files | module | read by |
+//! |---|---|---|
+//! | `.xlsx`, `.xls`, `.ods` | [`sheet`] | the crate calamine; `.ods` and the checks before it by this crate |
+//!
+//! Nothing is repaired: what cannot be read is named with its place and with what to do. Files of more than 2 GiB and tables of more
+//! than 50 million cells are rejected, and no file makes a reader panic or allocate what its size does not justify.
+//!
+//! Not covered: writing, and what a column means.
+
+mod guard;
+pub mod sheet;
+
+/// Largest file that is read, and the most that a compressed file may unpack to, bytes.
+pub const MAX_BYTES: u64 = 2 << 30;
+/// Most cells that a table may have.
+pub const MAX_CELLS: usize = 50_000_000;
 
 /// A table in a file: a sheet, a group of channels, a topic, a structure.
 #[derive(Debug, Clone, PartialEq, Default)]
