@@ -1,4 +1,5 @@
 //! Damaged and hostile files: no reader panics, and none takes memory that the size of its file does not justify.
+#![allow(clippy::unwrap_used, reason = "a test")]
 #![allow(unsafe_code, reason = "counts what is allocated")]
 
 mod python;

@@ -1,4 +1,5 @@
 //! Workbooks as openpyxl, XlsxWriter, xlwt and odfpy write them.
+#![allow(clippy::unwrap_used, reason = "a test")]
 
 mod python;
 
