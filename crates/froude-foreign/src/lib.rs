@@ -4,13 +4,16 @@
 //! |---|---|---|
 //! | `.xlsx`, `.xls`, `.ods` | [`sheet`] | the crate calamine; `.ods` and the checks before it by this crate |
 //! | `.mat` of MATLAB 5 to 7.2 and Octave | [`mat5`] | this crate |
+//! | `.mat` of MATLAB 7.3, HDF5 | [`hdf5`] | the crate hdf5-pure |
 //!
 //! Nothing is repaired: what cannot be read is named with its place and with what to do. Files of more than 2 GiB and tables of more
 //! than 50 million cells are rejected, and no file makes a reader panic or allocate what its size does not justify.
 //!
 //! Not covered: writing, and what a column means.
 
+mod compound;
 mod guard;
+pub mod hdf5;
 pub mod mat5;
 pub mod sheet;
 mod variables;

@@ -2,6 +2,9 @@
 
 use crate::{Cells, Column, Contents, ForeignError, LeftOut, Part};
 
+/// Most variables that an error names.
+const MAX_REASONS: usize = 5;
+
 /// What a variable, a field or a dataset holds.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Value {
@@ -30,17 +33,17 @@ pub(crate) enum Value {
 ///
 /// # Errors
 ///
-/// If none of them can be read; the error names all.
+/// If none of them can be read; the error names the first of them.
 pub(crate) fn contents(variables: Vec<(String, Value)>) -> Result<Contents, ForeignError> {
     let mut contents = Contents::default();
     collect("", variables, &mut contents);
     if contents.parts.is_empty() {
-        let reasons = contents.left_out.iter().map(|out| format!("{:?} {}", out.name, out.reason));
-        let reasons: Vec<String> = reasons.collect();
-        return Err(ForeignError(if reasons.is_empty() {
-            "has no variable".to_owned()
-        } else {
-            format!("has nothing that is read: {}", reasons.join("; "))
+        let first = contents.left_out.iter().take(MAX_REASONS).map(|out| format!("{:?} {}", out.name, out.reason));
+        let reasons = first.collect::<Vec<_>>().join("; ");
+        return Err(ForeignError(match contents.left_out.len() {
+            0 => "is empty: it has no variable or dataset".to_owned(),
+            n if n > MAX_REASONS => format!("has nothing that is read: {reasons}; and {} more", n - MAX_REASONS),
+            _ => format!("has nothing that is read: {reasons}"),
         }));
     }
     Ok(contents)

@@ -9,8 +9,8 @@ use std::io::{Cursor, Read, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-use froude_foreign::ForeignError;
 use froude_foreign::sheet::Workbook;
+use froude_foreign::{ForeignError, hdf5, mat5};
 use python::python;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -142,4 +142,10 @@ fn mutated_files_neither_panic_nor_fill_the_memory() {
         attack(&format!("{name}, inside"), &written(folder, name), inside, read_workbook);
     }
     attack("t.xls", &written(folder, "t.xls"), plain, read_workbook);
+    for name in ["t.mat", "packed.mat"] {
+        attack(name, &written(folder, name), plain, |bytes| mat5::read(bytes).map(drop));
+    }
+    for name in ["old.h5", "new.h5", "matlab.h5"] {
+        attack(name, &written(folder, name), plain, |bytes| hdf5::read(bytes.to_vec()).map(drop));
+    }
 }
