@@ -24,7 +24,7 @@ use crate::reading::Reading;
 use crate::records::{Records, Skipped};
 use crate::sidecar::Sidecar;
 use crate::table::Table;
-use crate::table_file::{Format, sidecar_of};
+use crate::table_file::{Format, read_table, sidecar_of};
 
 /// Bytes of CSV read at a time: some 10,000 rows, whose columns stay in the caches.
 const CHUNK_BYTES: usize = 1 << 20;
@@ -41,8 +41,9 @@ pub fn for_each_chunk<E: From<RecordError>>(
 ) -> Result<(), E> {
     let mapping = sidecar_of(path, sidecar)?;
     match Format::of(path)? {
-        Format::Csv => csv(path, mapping.as_ref(), each),
+        Format::Text => csv(path, mapping.as_ref(), each),
         Format::Parquet => parquet_table::for_each_chunk(path, mapping.as_ref(), each),
+        Format::Sheet | Format::Mat | Format::Hdf5 => each(read_table(path, sidecar)?),
     }
 }
 
@@ -62,8 +63,10 @@ pub fn has_more_rows(path: &Path, limit: usize) -> bool {
 fn rows(path: &Path, most: usize) -> Option<usize> {
     // What is no file can be read but once.
     match Format::of(path).ok().filter(|_| path.is_file())? {
-        Format::Csv => n_lines(path, most).ok(),
+        Format::Text => n_lines(path, most).ok(),
         Format::Parquet => parquet_table::n_rows(path).ok(),
+        // They are read whole.
+        Format::Sheet | Format::Mat | Format::Hdf5 => None,
     }
 }
 

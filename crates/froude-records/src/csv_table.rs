@@ -23,7 +23,7 @@ use crate::obstacles;
 use crate::raw_column::Raw;
 use crate::read;
 use crate::reading::{Reading, undecided};
-use crate::records::Records;
+use crate::records::{NextRow, Records};
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
 use crate::text::counted;
@@ -98,8 +98,7 @@ fn parse(
     let head = Head::of(path, reading, columns.as_ref(), file)?;
     let mut records = Records::new(path, &text[reading.at..], reading.line, reading.dialect.separator);
     let rows = head.rows(&mut records, blank)?;
-    let left_out = rows.left_out;
-    let understood = reading.understood(records.skipped, left_out);
+    let understood = reading.understood(records.skipped, rows.left_out());
     let table = head.table(rows)?;
     Ok(Table { understood, sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..table })
 }
@@ -119,7 +118,6 @@ pub(crate) struct Head<'a, 's> {
 pub(crate) struct Rows {
     raws: Vec<Raw>,
     lines: Vec<usize>,
-    /// Rows that were left out as declared.
     left_out: usize,
 }
 
@@ -127,6 +125,11 @@ impl Rows {
     /// Numbers, and the lines on which they stand.
     pub fn of(raws: Vec<Raw>, lines: Vec<usize>) -> Self {
         Self { raws, lines, left_out: 0 }
+    }
+
+    /// Rows that were left out as declared.
+    pub fn left_out(&self) -> usize {
+        self.left_out
     }
 }
 
@@ -153,7 +156,7 @@ impl<'a, 's> Head<'a, 's> {
     /// All further rows; empty cells that may be empty are 0 and listed, where there is a place for them.
     pub(crate) fn rows(
         &self,
-        records: &mut Records<'_, '_>,
+        records: &mut dyn NextRow<'_>,
         mut blank: Option<&mut Blanks>,
     ) -> Result<Rows, RecordError> {
         let path = self.path;
@@ -178,7 +181,7 @@ impl<'a, 's> Head<'a, 's> {
             if cells.len() != self.header.len() {
                 let (found, expected) = (counted(cells.len(), "cell", "cells"), self.header.len());
                 let problem = format!("the row has {found}, the header has {expected}");
-                return Err(RecordError::syntax(Place::line(path, line), problem));
+                return Err(RecordError::syntax(Place::in_table(path, line), problem));
             }
             for (j, (cell, raw)) in cells.iter().zip(&mut raws).enumerate() {
                 match raw {
@@ -195,7 +198,7 @@ impl<'a, 's> Head<'a, 's> {
                         room.number(values, value.unwrap_or(0.0))?;
                     }
                     Raw::Texts(_) if is_left_out[j] => {}
-                    Raw::Texts(texts) => room.text(texts, unguarded(cell), &|| Place::line(path, line))?,
+                    Raw::Texts(texts) => room.text(texts, unguarded(cell), &|| Place::in_table(path, line))?,
                 }
             }
             memory::push(&mut lines, line).map_err(|e| RecordError::memory(path, e))?;
@@ -209,7 +212,7 @@ impl<'a, 's> Head<'a, 's> {
         if cell.is_empty() || (has_words && self.file.is_not_measured(cell, None)) {
             return Ok(None);
         }
-        let place = || Place::line(self.path, line);
+        let place = || Place::in_table(self.path, line);
         let is_plain = self.marks == Marks::default() && !cell.contains(['d', 'D', '−']);
         let value = if is_plain {
             number(cell, &self.header[j], &place)?
@@ -223,7 +226,7 @@ impl<'a, 's> Head<'a, 's> {
     /// The error for a cell without a number in a column that needs one.
     fn empty(&self, j: usize, cell: &str, line: usize) -> RecordError {
         let advice = self.wants[j].advice(self.path, self.sidecar);
-        let place = Place::line(self.path, line);
+        let place = Place::in_table(self.path, line);
         if cell.is_empty() {
             RecordError::empty_cell(place, &self.header[j], &advice)
         } else {
@@ -245,7 +248,7 @@ impl<'a, 's> Head<'a, 's> {
         if self.file.leave_out.is_some() || !has_numbers || !is_summary(first) {
             return Ok(false);
         }
-        Err(RecordError::syntax(Place::line(self.path, line), of_summary(self.path, first)))
+        Err(RecordError::syntax(Place::in_table(self.path, line), of_summary(self.path, first)))
     }
 
     /// The table of some rows.

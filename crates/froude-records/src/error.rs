@@ -35,6 +35,9 @@ pub enum Position {
     Byte(u64),
 }
 
+/// Endings of files that are no text, and have rows.
+const WITHOUT_LINES: [&str; 11] = ["parquet", "xlsx", "xlsm", "xls", "ods", "mat", "h5", "hdf5", "tdms", "ulg", "mcap"];
+
 impl Place {
     /// The file as a whole.
     #[must_use]
@@ -58,6 +61,14 @@ impl Place {
     #[must_use]
     pub fn byte(path: &Path, byte: u64) -> Self {
         Self { path: path.to_owned(), position: Position::Byte(byte) }
+    }
+
+    /// A row of a table, counted from 1: a line where the file is text.
+    #[must_use]
+    pub fn in_table(path: &Path, number: usize) -> Self {
+        let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        let has_rows = ending.is_some_and(|ending| WITHOUT_LINES.contains(&ending.as_str()));
+        if has_rows { Self::row(path, number) } else { Self::line(path, number) }
     }
 
     /// A row, counted from 1.

@@ -38,6 +38,16 @@ impl Heading {
         meant(&self.name, dimension).or_else(|| meant(&self.above, dimension))
     }
 
+    /// A name with the unit that its file states; empty where it states none, so that the name may hold it.
+    pub fn stated(name: &str, unit: &str) -> Self {
+        let unit = bare(unit);
+        if unit.is_empty() {
+            return Self::own(name);
+        }
+        let (name, unit) = (name.to_owned(), Some(unit.to_owned()));
+        Self { written: name.clone(), above: String::new(), name, unit, is_foreign: true }
+    }
+
     /// A header in Froude's own form.
     pub fn own(written: &str) -> Self {
         let (name, unit) = split_header(written).unwrap_or((written, None));

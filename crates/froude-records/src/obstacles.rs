@@ -10,7 +10,7 @@ use froude_foreign::marks::Undecided;
 use froude_foreign::split::{Row, rows};
 use indexmap::IndexMap;
 
-use crate::error::RecordError;
+use crate::error::{Place, Position, RecordError};
 use crate::file_words::{FileWords, is_summary, of_sentinel, sentinel};
 use crate::foreign_names::meant_without_unit;
 use crate::heading::{Heading, passed_over};
@@ -36,10 +36,22 @@ fn remedy(path: &Path) -> String {
     )
 }
 
-/// The first error of a table, and what else is wrong with it.
+/// The first error of a table of text, and what else is wrong with it.
 pub(crate) fn all(
     path: &Path,
     text: &str,
+    reading: &Reading,
+    sidecar: Option<&Sidecar>,
+    first: RecordError,
+) -> RecordError {
+    let end = text.floor_char_boundary(SAMPLE_BYTES);
+    of(path, &rows(&text[..end], reading.dialect.separator), reading, sidecar, first)
+}
+
+/// The same of a table with these rows.
+pub(crate) fn of(
+    path: &Path,
+    rows: &[Row<'_>],
     reading: &Reading,
     sidecar: Option<&Sidecar>,
     first: RecordError,
@@ -49,14 +61,16 @@ pub(crate) fn all(
     }
     let told = first.to_string();
     let is_told = |obstacle: &Obstacle| match obstacle.line {
-        Some(line) => told.starts_with(&format!("{}:{line}:", path.display())),
+        Some(line) => told.starts_with(&format!("{}:", Place::in_table(path, line))),
         None => obstacle.column.as_ref().is_some_and(|column| told.contains(&format!("`{column}`"))),
     };
-    let more: Vec<String> = list(reading, text, sidecar)
+    let is_text = matches!(Place::in_table(path, 1).position, Position::Line(_));
+    let more: Vec<String> = list(reading, rows, sidecar)
         .iter()
         .filter(|obstacle| !is_told(obstacle))
         .map(|obstacle| match obstacle.line {
-            Some(line) => format!("\n  - line {line}: {}", obstacle.text),
+            Some(line) if is_text => format!("\n  - line {line}: {}", obstacle.text),
+            Some(row) => format!("\n  - row {row}: {}", obstacle.text),
             None => format!("\n  - {}", obstacle.text),
         })
         .collect();
@@ -83,9 +97,7 @@ struct Obstacle {
 }
 
 /// All that is wrong.
-fn list(reading: &Reading, text: &str, sidecar: Option<&Sidecar>) -> Vec<Obstacle> {
-    let end = text.floor_char_boundary(SAMPLE_BYTES);
-    let rows = rows(&text[..end], reading.dialect.separator);
+fn list(reading: &Reading, rows: &[Row<'_>], sidecar: Option<&Sidecar>) -> Vec<Obstacle> {
     let data: Vec<&Row<'_>> = rows.iter().filter(|row| !row.is_comment && row.line >= reading.line).collect();
     let is_mapped = sidecar.is_some_and(|sidecar| !sidecar.columns.is_empty());
     let unstated = FileWords::default();

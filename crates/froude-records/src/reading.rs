@@ -10,7 +10,7 @@ use crate::error::{Place, RecordError};
 use crate::file_words::FileWords;
 use crate::guard::unguarded;
 use crate::heading::{Heading, headings, rename_sname, split_header};
-use crate::records::{Dialect, Records, Skipped};
+use crate::records::{Dialect, NextRow as _, Records, Skipped};
 use crate::text::counted;
 use crate::units::parse_unit;
 
@@ -54,12 +54,23 @@ impl Reading {
             return Self::own(path, decoded);
         }
         let seen = look(sample(text), &file.stated, &|unit| parse_unit(unit).is_ok());
+        let reading = Self::seen(path, &seen, of_encoding(decoded).into_iter().collect())?;
+        let at = text.split_inclusive('\n').take(reading.line - 1).map(str::len).sum();
+        Ok(Self { at, ..reading })
+    }
+
+    /// A table whose layout was looked at; `words` say how its cells were found.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::of`].
+    pub fn seen(path: &Path, seen: &Seen, words: Vec<String>) -> Result<Self, RecordError> {
         let layout = &seen.layout;
         if layout.heads.is_empty() {
             let problem = "there are numbers where the columns should be named; write a line of headers above them, as `speed [m/s],f_x [N]`";
-            return Err(RecordError::syntax(Place::line(path, layout.data_line.max(1)), problem));
+            return Err(RecordError::syntax(Place::in_table(path, layout.data_line.max(1)), problem));
         }
-        let place = Place::line(path, layout.names_line);
+        let place = Place::in_table(path, layout.names_line);
         let mut headings = headings(&layout.heads, &layout.is_number)
             .map_err(|problem| RecordError::syntax(place.clone(), problem))?;
         // Columns without a name and without a cell, as spreadsheets add them.
@@ -71,12 +82,10 @@ impl Reading {
             Ok(marks) => (marks, None),
             Err(undecided) => (Marks::default(), Some(undecided)),
         };
-        let line = layout.data_line;
-        let at = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
-        let words = words(decoded, &seen, marks, &sname);
-        let is_number = layout.is_number.clone();
+        let words = told(words, seen, marks, &sname);
         let dialect = Dialect { separator: seen.separator, marks };
-        Ok(Self { dialect, headings, is_number, place, at, line, words, undecided })
+        let is_number = layout.is_number.clone();
+        Ok(Self { dialect, headings, is_number, place, at: 0, line: layout.data_line, words, undecided })
     }
 
     /// A table as Froude writes it: its first line are its headers.
@@ -137,9 +146,9 @@ fn of_encoding(decoded: &Decoded<'_>) -> Option<String> {
     (decoded.encoding != "UTF-8").then(|| format!("text in {}{guess}", decoded.encoding))
 }
 
-fn words(decoded: &Decoded<'_>, seen: &Seen, marks: Marks, sname: &[(String, &'static str)]) -> Vec<String> {
+/// Adds how the cells of a table are to be read.
+fn told(mut words: Vec<String>, seen: &Seen, marks: Marks, sname: &[(String, &'static str)]) -> Vec<String> {
     let Layout { units_line, titles, names_line, .. } = &seen.layout;
-    let mut words: Vec<String> = of_encoding(decoded).into_iter().collect();
     let dialect = Dialect::own();
     if seen.separator != dialect.separator {
         words.push(format!("cells separated by {}", seen.separator.words()));

@@ -39,6 +39,12 @@ pub(crate) struct Skipped {
     pub blank: usize,
 }
 
+/// Rows, one after the other.
+pub(crate) trait NextRow<'a> {
+    /// The next row's cells and its line, or row; `None` at the end. Blank rows and comments are passed over.
+    fn next(&mut self, cells: &mut Vec<Cow<'a, str>>) -> Result<Option<usize>, RecordError>;
+}
+
 /// The rows of a text.
 pub(crate) struct Records<'p, 'a> {
     pub(crate) path: &'p Path,
@@ -53,18 +59,8 @@ pub(crate) struct Records<'p, 'a> {
     pending: usize,
 }
 
-impl<'p, 'a> Records<'p, 'a> {
-    /// The rows of a text that begins on a line.
-    pub(crate) fn new(path: &'p Path, text: &'a str, line: usize, separator: Separator) -> Self {
-        Self { path, text, separator, at: 0, line, skipped: Skipped::default(), pending: 0 }
-    }
-
-    fn refuse<T>(&self, line: usize, problem: &str) -> Result<T, RecordError> {
-        Err(RecordError::syntax(Place::line(self.path, line), problem))
-    }
-
-    /// The next row's cells and line; `None` at the end. Blank rows and comments are passed over.
-    pub(crate) fn next(&mut self, cells: &mut Vec<Cow<'a, str>>) -> Result<Option<usize>, RecordError> {
+impl<'a> NextRow<'a> for Records<'_, 'a> {
+    fn next(&mut self, cells: &mut Vec<Cow<'a, str>>) -> Result<Option<usize>, RecordError> {
         while self.at < self.text.len() {
             let (line, rest) = (self.line, &self.text[self.at..]);
             let end = memchr::memchr(b'\n', rest.as_bytes()).unwrap_or(rest.len());
@@ -83,6 +79,17 @@ impl<'p, 'a> Records<'p, 'a> {
             return Ok(Some(line));
         }
         Ok(None)
+    }
+}
+
+impl<'p, 'a> Records<'p, 'a> {
+    /// The rows of a text that begins on a line.
+    pub(crate) fn new(path: &'p Path, text: &'a str, line: usize, separator: Separator) -> Self {
+        Self { path, text, separator, at: 0, line, skipped: Skipped::default(), pending: 0 }
+    }
+
+    fn refuse<T>(&self, line: usize, problem: &str) -> Result<T, RecordError> {
+        Err(RecordError::syntax(Place::line(self.path, line), problem))
     }
 
     /// Cells up to the end of the row; `at` stands behind its line break.

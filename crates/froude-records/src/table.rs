@@ -136,12 +136,10 @@ impl Table {
         self.columns.iter().find(|c| c.name == name).ok_or_else(unknown)
     }
 
-    /// Place of a row (from 0) in its file, for messages: a line of a CSV, a row of a Parquet file.
+    /// Place of a row (from 0) in its file, for messages: a line of a text, a row of any other file.
     #[must_use]
     pub fn place_of_row(&self, row: usize) -> Place {
-        let number = self.line_of_row.get(row).copied().unwrap_or(row + 1);
-        let has_lines = !self.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"));
-        if has_lines { Place::line(&self.path, number) } else { Place::row(&self.path, number) }
+        Place::in_table(&self.path, self.line_of_row.get(row).copied().unwrap_or(row + 1))
     }
 
     /// What no cell alone is wrong in: values that no tank has, links that contradict the configuration.

@@ -59,6 +59,7 @@ pub(super) fn table_of<'a>(like: &Table, rows: impl IntoIterator<Item = &'a Rc<R
         line_of_row: rows.keys().copied().collect(),
         sidecar: like.sidecar.clone(),
         left_out: like.left_out.clone(),
+        understood: like.understood.clone(),
         blank: Vec::new(),
     }
 }

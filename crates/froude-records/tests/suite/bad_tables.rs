@@ -100,8 +100,8 @@ fn ragged_rows_no_rows_and_no_file_are_distinguished() {
     refused("\n\n", "tank.csv: the file is empty; its first line names the columns as `name [unit]`");
     let found = read_table(Path::new("no/such/tank.csv"), None).unwrap_err().to_string();
     assert_eq!(found, "cannot read no/such/tank.csv: there is no such file or folder");
-    let found = read_table(Path::new("tank.xlsx"), None).unwrap_err().to_string();
-    assert_eq!(found, "tank.xlsx: tables are read from .csv, .txt, .dat and .parquet files");
+    let found = read_table(Path::new("tank.docx"), None).unwrap_err().to_string();
+    assert!(found.starts_with("tank.docx: tables are read from text (.csv, .txt,"), "{found}");
 }
 
 #[test]

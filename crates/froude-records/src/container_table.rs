@@ -1,0 +1,103 @@
+//! Tables in files of named columns: a group of a TDMS file, a structure of a MAT file, a topic of a log.
+
+use std::path::Path;
+
+use froude_foreign::{Cells, Contents, Part};
+
+use crate::assemble::{Room, Want, assemble, plan};
+use crate::csv_table::Blanks;
+use crate::error::{Place, RecordError};
+use crate::file_words::{FileWords, sidecar_name};
+use crate::heading::{Heading, rename_sname};
+use crate::raw_column::Raw;
+use crate::sidecar::Sidecar;
+use crate::table::Table;
+use crate::text::counted;
+
+/// The table that is meant of a file's contents; numbers that are not there are an error without a place for them.
+pub(crate) fn table(
+    path: &Path,
+    contents: Contents,
+    sidecar: Option<&Sidecar>,
+    mut blank: Option<&mut Blanks>,
+) -> Result<Table, RecordError> {
+    let unstated = FileWords::default();
+    let file = sidecar.map_or(&unstated, |sidecar| &sidecar.file);
+    let several = contents.parts.len() > 1;
+    let mut words: Vec<String> =
+        contents.left_out.iter().map(|left| format!("{} left out: {}", left.name, left.reason)).collect();
+    let part = chosen(path, contents.parts, file)?;
+    if several {
+        words.insert(0, format!("part {:?}", part.name));
+    }
+    let mut headings: Vec<Heading> =
+        part.columns.iter().map(|column| Heading::stated(&column.name, &column.unit)).collect();
+    let sname = rename_sname(&mut headings);
+    words.extend(sname.iter().map(|(letter, name)| format!("{letter} by SNAME as {name}")));
+    let place = Place::whole(path);
+    let header: Vec<String> = headings.iter().map(Heading::header).collect();
+    let fitted = sidecar.map(|sidecar| sidecar.fitted(&headings)).transpose()?;
+    let columns = fitted.as_ref().filter(|sidecar| !sidecar.columns.is_empty());
+    let wants = plan(path, &header, columns, &place)?;
+    let n_rows = part.columns.first().map_or(0, |column| column.cells.len());
+    let mut room = Room::new(path);
+    let mut raws = Vec::new();
+    for (column, (want, header)) in part.columns.into_iter().zip(wants.iter().zip(&header)) {
+        raws.push(match column.cells {
+            Cells::Texts(texts) => Raw::Texts(texts),
+            Cells::Numbers(_) if matches!(want, Want::LeftOut) => Raw::Texts(Vec::new()),
+            Cells::Numbers(mut numbers) => {
+                room.take((numbers.len() * size_of::<f64>()) as u64)?;
+                for (row, value) in numbers.iter_mut().enumerate() {
+                    if !value.is_nan() && !file.is_not_measured("", Some(*value)) {
+                        continue;
+                    }
+                    match (want.name_if_blank(), &mut blank) {
+                        (Some(name), Some(blank)) => blank.push((name.to_owned(), row)),
+                        _ => {
+                            let advice = want.advice(path, sidecar);
+                            return Err(RecordError::empty_cell(Place::in_table(path, row + 1), header, &advice));
+                        }
+                    }
+                    *value = 0.0;
+                }
+                Raw::Numbers(numbers)
+            }
+        });
+    }
+    let table = assemble(path, &header, &wants, raws, columns, &place, (1..=n_rows).collect())?;
+    let understood = (!words.is_empty()).then(|| words.join(", "));
+    Ok(Table { understood, sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..table })
+}
+
+/// The part that is declared, or the only one.
+fn chosen(path: &Path, mut parts: Vec<Part>, file: &FileWords) -> Result<Part, RecordError> {
+    let all: Vec<String> = parts
+        .iter()
+        .take(20)
+        .map(|part| {
+            let rows = part.columns.first().map_or(0, |column| column.cells.len());
+            let columns = counted(part.columns.len(), "column", "columns");
+            format!("{:?} ({columns}, {})", part.name, counted(rows, "row", "rows"))
+        })
+        .collect();
+    let at = match &file.part {
+        Some(name) => parts.iter().position(|part| part.name == *name),
+        None => Some(0).filter(|_| parts.len() == 1),
+    };
+    if let Some(at) = at {
+        return Ok(parts.swap_remove(at));
+    }
+    let problem = match (&file.part, parts.first()) {
+        (_, None) => "the file holds no table: columns of numbers of one length".to_owned(),
+        (Some(name), _) => format!("there is no part {name:?}; its parts are {}", all.join(", ")),
+        (None, Some(first)) => format!(
+            "the file holds {} tables: {}; write in {} which one is meant:\n  schema = 1\n  [file]\n  part = {:?}",
+            parts.len(),
+            all.join(", "),
+            sidecar_name(path),
+            first.name
+        ),
+    };
+    Err(RecordError::syntax(Place::whole(path), problem))
+}
