@@ -1,12 +1,13 @@
 //! Tables by the ending of their file: CSV or Parquet.
 
+use std::fs::File;
 use std::path::Path;
 
 use crate::error::RecordError;
 use crate::sidecar::Sidecar;
 use crate::table::Table;
 use crate::write::Prepared;
-use crate::{csv_table, parquet_table, read, sidecar};
+use crate::{csv_table, parquet_table, parquet_write, read, sidecar};
 
 /// Reads a table, `.csv` or `.parquet`, through `sidecar` or the `.toml` of the same name beside it.
 ///
@@ -14,27 +15,28 @@ use crate::{csv_table, parquet_table, read, sidecar};
 ///
 /// See [`RecordError`]: every message names file, line and column.
 pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordError> {
-    read(path, sidecar, csv_table::read_csv)
+    read(path, sidecar, csv_table::read_csv, parquet_table::parse_parquet)
 }
 
-/// As [`read_table`]; in CSV a load, and a motion along or about an axis, may have empty cells, which [`Table::blank`] lists.
+/// As [`read_table`]; a load, and a motion along or about an axis, may have empty cells, which [`Table::blank`] lists.
 ///
 /// # Errors
 ///
 /// As [`read_table`].
 pub fn read_table_with_blanks(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordError> {
-    read(path, sidecar, csv_table::read_csv_with_blanks)
+    read(path, sidecar, csv_table::read_csv_with_blanks, parquet_table::parse_parquet_with_blanks)
 }
 
 fn read(
     path: &Path,
     sidecar: Option<&Path>,
     read_csv: fn(&Path, Option<&Sidecar>) -> Result<Table, RecordError>,
+    read_parquet: fn(&Path, File, Option<&Sidecar>) -> Result<Table, RecordError>,
 ) -> Result<Table, RecordError> {
     let mapping = sidecar_of(path, sidecar)?;
     match Format::of(path)? {
         Format::Csv => read_csv(path, mapping.as_ref()),
-        Format::Parquet => parquet_table::parse_parquet(path, read::open(path)?, mapping.as_ref()),
+        Format::Parquet => read_parquet(path, read::open(path)?, mapping.as_ref()),
     }
 }
 
@@ -78,6 +80,6 @@ impl Format {
 pub fn prepare_table(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
     match Format::of(path)? {
         Format::Csv => csv_table::prepare_csv(table, path),
-        Format::Parquet => parquet_table::prepare_parquet(table, path),
+        Format::Parquet => parquet_write::prepare_parquet(table, path),
     }
 }
