@@ -1,12 +1,14 @@
 //! Project tasks: one command runs what the pipeline runs, its parts run alone.
 //!
 //! `cargo xtask test` is the whole of `.ci/run`: format, lints, tests, documentation, the firmware in its emulator, the demo and the
-//! short validation. The firmware needs a cross linker and an emulator, the tests need strace; they are installed when they are absent.
+//! short validation. The firmware needs a cross linker and an emulator, the tests need strace and a Python with the
+//! packages of `oracles.txt`; they are installed when they are absent.
 //! What takes longer or needs more programs has its own task, which installs what it needs.
 
 mod cycles;
 mod firmware;
 mod lines;
+mod oracles;
 mod unreached;
 
 use std::path::{Path, PathBuf};
@@ -40,6 +42,8 @@ enum Task {
     },
     /// Benches against numpy, scipy, polars, Capytaine and HAMS in the same run (installs them below bench/peers).
     Bench,
+    /// Install the programs of others that tests compare with, into target/oracles.
+    Oracles,
     /// Licences and advisories of the dependencies (needs cargo-deny; installs it).
     Deny,
     /// The carriage's firmware: images built, drivers and emulated board tested (installs compiler, linker and emulator).
@@ -65,6 +69,7 @@ fn main() -> ExitCode {
             .and_then(|()| run(&root, "sh", &["bench/peers/added_mass/run.sh"]))
             .and_then(|()| run(&root, "sh", &["bench/peers/swim/run.sh"]))
             .and_then(|()| run(&root, "sh", &["bench/peers/swim3d/run.sh"])),
+        Task::Oracles => oracles::need_python(&root),
         Task::Deny => deny(&root),
         Task::Firmware { full } => firmware::firmware(&root, full),
         Task::Book => book(&root),
@@ -97,6 +102,7 @@ fn test(root: &Path) -> Result<(), String> {
     cargo(root, "fmt --all --check")?;
     cargo(root, "clippy --workspace --all-targets --locked -- -D warnings")?;
     need_packages(root)?;
+    oracles::need_python(root)?;
     cargo(root, "test --workspace --locked")?;
     run_env(root, "cargo", &["doc", "--workspace", "--no-deps", "--locked"], "RUSTDOCFLAGS", "-D warnings")?;
     firmware::firmware(root, false)?;
