@@ -1,5 +1,10 @@
 //! Files of other programs as named columns. Nothing is interpreted here: names, units and numbers are those of the file.
 
+pub mod mcap;
+
+/// Most cells that a table may have.
+pub const MAX_CELLS: usize = 50_000_000;
+
 /// A table in a file: a sheet, a group of channels, a topic, a structure.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Part {
@@ -33,3 +38,12 @@ pub enum Cells {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct ForeignError(pub String);
+
+/// What was read of a log, and what of it was not.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Contents {
+    /// Its topics or groups.
+    pub parts: Vec<Part>,
+    /// What was passed over or is missing, and which clock the times are of; each a sentence for the user.
+    pub notes: Vec<String>,
+}
