@@ -1,6 +1,8 @@
 //! Files of other programs as named columns. Nothing is interpreted here: names, units and numbers are those of the file.
 
 pub mod mcap;
+pub mod tdms;
+pub mod ulog;
 
 /// Most cells that a table may have.
 pub const MAX_CELLS: usize = 50_000_000;

@@ -16,6 +16,9 @@ pub(super) const MAX_ARRAY: usize = 16;
 /// Definitions in definitions; ROS has some five at most.
 const MAX_DEPTH: usize = 32;
 
+/// Most parts of a message, those that are passed over included.
+const MAX_PARTS: usize = 100_000;
+
 /// A type of number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Number {
@@ -89,7 +92,7 @@ impl Message {
     /// What is not understood, with its line.
     pub fn parse(name: &str, text: &str) -> Result<Self, String> {
         let definitions = definitions(name, text)?;
-        let mut compiler = Compiler { definitions: &definitions, columns: Vec::new(), skipped: Vec::new() };
+        let mut compiler = Compiler { definitions: &definitions, columns: Vec::new(), skipped: Vec::new(), n_parts: 0 };
         let root = compiler.named(&short(name), "", true, 0)?;
         if compiler.columns.len() > MAX_COLUMNS {
             return Err(format!("it has {} numbers; at most {MAX_COLUMNS} are read", compiler.columns.len()));
@@ -199,6 +202,7 @@ struct Compiler<'a> {
     definitions: &'a BTreeMap<String, Vec<Field>>,
     columns: Vec<String>,
     skipped: Vec<String>,
+    n_parts: usize,
 }
 
 impl Compiler<'_> {
@@ -243,6 +247,10 @@ impl Compiler<'_> {
     }
 
     fn one(&mut self, kind: &str, package: &str, path: &str, is_kept: bool, depth: usize) -> Result<Node, String> {
+        self.n_parts += 1;
+        if self.n_parts > MAX_PARTS {
+            return Err(format!("it has more than {MAX_PARTS} parts"));
+        }
         if let Some(number) = Number::of(kind) {
             let column = is_kept.then(|| {
                 self.columns.push(path.to_owned());
@@ -473,6 +481,9 @@ uint64 b
         }
         let bomb = "A[16] a\n===\nMSG: p/A\nB[16] b\n===\nMSG: p/B\nC[16] c\n===\nMSG: p/C\nfloat64[16] x";
         assert!(Message::parse("p/msg/T", bomb).is_err());
+        let level = |i: usize| format!("===\nMSG: p/L{i}\n{}", format!("L{}[] a\n", i + 1).repeat(16));
+        let deep = format!("L0[] a\n{}===\nMSG: p/L20\nint8 x", (0..20).map(level).collect::<String>());
+        assert_eq!(Message::parse("p/msg/T", &deep).unwrap_err(), "it has more than 100000 parts");
     }
 
     #[test]
