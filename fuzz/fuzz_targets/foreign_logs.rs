@@ -1,10 +1,10 @@
 //! Logs of other programs (MCAP, TDMS, ULog): no panic, and every column of a part has one length.
 #![no_main]
 
-use froude_foreign::{Cells, Contents, ForeignError, mcap, tdms, ulog};
+use froude_foreign::{Cells, LogContents, ForeignError, mcap, tdms, ulog};
 use libfuzzer_sys::fuzz_target;
 
-fn check(read: Result<Contents, ForeignError>) {
+fn check(read: Result<LogContents, ForeignError>) {
     let Ok(contents) = read else { return };
     assert!(!contents.parts.is_empty());
     for part in &contents.parts {

@@ -24,7 +24,7 @@ use mcap::McapError;
 use mcap::records::op;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use crate::{Cells, Column, Contents, ForeignError, MAX_CELLS, Part};
+use crate::{Cells, Column, ForeignError, LogContents, MAX_CELLS, Part};
 
 /// Largest chunk: as many times its file, and at most so many bytes.
 const TIMES: u64 = 200;
@@ -40,7 +40,7 @@ const OTHER_CLOCK_NS: i128 = 86_400 * NS_PER_S;
 /// # Errors
 ///
 /// A file that is no MCAP, is damaged, or has no topic that can be read; a message that does not fit its definition.
-pub fn read(input: &mut dyn Read, bytes: u64) -> Result<Contents, ForeignError> {
+pub fn read(input: &mut dyn Read, bytes: u64) -> Result<LogContents, ForeignError> {
     let mut log = Log::default();
     let mut notes = Vec::new();
     let limit = bytes.saturating_mul(TIMES).clamp(1 << 20, MAX_CHUNK);
@@ -190,7 +190,7 @@ impl Log {
         }))
     }
 
-    fn finish(self, mut notes: Vec<String>) -> Result<Contents, ForeignError> {
+    fn finish(self, mut notes: Vec<String>) -> Result<LogContents, ForeignError> {
         if self.topics.is_empty() {
             notes.insert(0, "the file has no topics".to_owned());
         }
@@ -207,7 +207,7 @@ impl Log {
         if parts.is_empty() {
             return Err(ForeignError(format!("no topic of this MCAP file can be read: {}", notes.join("; "))));
         }
-        Ok(Contents { parts, notes })
+        Ok(LogContents { parts, notes })
     }
 }
 

@@ -18,7 +18,7 @@ mod segment;
 
 use std::collections::BTreeMap;
 
-use crate::{Cells, Column, Contents, ForeignError, MAX_CELLS, Part};
+use crate::{Cells, Column, ForeignError, LogContents, MAX_CELLS, Part};
 use bytes::{Stamp, Value};
 use data::{Raw, Values};
 use segment::Layout;
@@ -30,7 +30,7 @@ type Properties = BTreeMap<String, Value>;
 /// # Errors
 ///
 /// What is no TDMS, contradicts the format, or holds no channel that can be read; each with its place.
-pub fn read(bytes: &[u8]) -> Result<Contents, ForeignError> {
+pub fn read(bytes: &[u8]) -> Result<LogContents, ForeignError> {
     let layout = Layout::read(bytes).map_err(ForeignError)?;
     let mut values = Values::new(MAX_CELLS);
     for segment in &layout.segments {
@@ -69,7 +69,7 @@ pub fn read(bytes: &[u8]) -> Result<Contents, ForeignError> {
     if let Some(start) = start.or(first_stamp) {
         notes.push(format!("times count from {:.6} s after 1970-01-01 00:00 UTC", start.unix_s()));
     }
-    Ok(Contents { parts, notes })
+    Ok(LogContents { parts, notes })
 }
 
 /// `/'group'/'channel'` as names; an apostrophe in a name is doubled.

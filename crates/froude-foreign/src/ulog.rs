@@ -11,7 +11,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use crate::{Cells, Column, Contents, ForeignError, MAX_CELLS, Part};
+use crate::{Cells, Column, ForeignError, LogContents, MAX_CELLS, Part};
 
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
 const HEADER: usize = 16;
@@ -31,7 +31,7 @@ const MAX_NAMED: usize = 10;
 /// # Errors
 ///
 /// What is no ULog, contradicts the format, or holds no topic; each with its byte.
-pub fn read(bytes: &[u8]) -> Result<Contents, ForeignError> {
+pub fn read(bytes: &[u8]) -> Result<LogContents, ForeignError> {
     let refuse = |what: &str| Err(ForeignError(what.to_owned()));
     if bytes.starts_with(b"ULogEnc") {
         return refuse("the log is encrypted; decrypt it with the tool `decrypt_ulog.py` of PX4 first");
@@ -310,7 +310,7 @@ impl Log {
         (i128::from(time_us) - i128::from(self.start_us)) as f64 / 1e6
     }
 
-    fn finish(mut self) -> Result<Contents, ForeignError> {
+    fn finish(mut self) -> Result<LogContents, ForeignError> {
         let mut notes = std::mem::take(&mut self.notes);
         if !self.dropouts.is_empty() {
             let total: u64 = self.dropouts.iter().map(|(ms, _)| u64::from(*ms)).sum();
@@ -350,7 +350,7 @@ impl Log {
             "times count from the start of the log, {:.6} s after the vehicle's",
             self.start_us as f64 / 1e6
         ));
-        Ok(Contents { parts, notes })
+        Ok(LogContents { parts, notes })
     }
 }
 

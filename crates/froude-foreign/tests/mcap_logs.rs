@@ -5,17 +5,17 @@ mod python;
 
 use std::path::Path;
 
-use froude_foreign::{Cells, Contents, ForeignError, Part, mcap};
+use froude_foreign::{Cells, ForeignError, LogContents, Part, mcap};
 
-fn read(path: &Path) -> Result<Contents, ForeignError> {
+fn read(path: &Path) -> Result<LogContents, ForeignError> {
     of_bytes(&std::fs::read(path).unwrap())
 }
 
-fn of_bytes(bytes: &[u8]) -> Result<Contents, ForeignError> {
+fn of_bytes(bytes: &[u8]) -> Result<LogContents, ForeignError> {
     mcap::read(&mut &bytes[..], bytes.len() as u64)
 }
 
-fn part<'a>(contents: &'a Contents, name: &str) -> &'a Part {
+fn part<'a>(contents: &'a LogContents, name: &str) -> &'a Part {
     contents.parts.iter().find(|part| part.name == name).unwrap()
 }
 

@@ -3,7 +3,7 @@
 
 mod python;
 
-use froude_foreign::{Cells, Column, Contents, Part, tdms};
+use froude_foreign::{Cells, Column, LogContents, Part, tdms};
 use serde_json::Value;
 
 /// Writes every file of npTDMS' own tests, and beside each what npTDMS reads in it.
@@ -69,7 +69,7 @@ for contents in seen:
 print(count)
 "#;
 
-fn channel<'a>(contents: &'a Contents, path: &str) -> Option<&'a Column> {
+fn channel<'a>(contents: &'a LogContents, path: &str) -> Option<&'a Column> {
     let names: Vec<&str> = path.trim_matches(['/', '\'']).split("'/'").collect();
     let [group, channel] = names.as_slice() else { panic!("{path}") };
     let own = format!("{group}/{channel}");

@@ -5,7 +5,7 @@ mod python;
 
 use std::path::Path;
 
-use froude_foreign::{Cells, Column, Contents, Part, ulog};
+use froude_foreign::{Cells, Column, LogContents, Part, ulog};
 use serde_json::Value;
 
 /// Writes logs with arrays, formats in formats, two instances, padding, dropouts and appended data, and what pyulog reads.
@@ -52,7 +52,7 @@ for name, contents in [
     open(name + ".ulg", "wb").write(contents)
 "#;
 
-fn read(folder: &Path, name: &str) -> Result<Contents, String> {
+fn read(folder: &Path, name: &str) -> Result<LogContents, String> {
     ulog::read(&std::fs::read(folder.join(format!("{name}.ulg"))).unwrap()).map_err(|error| error.to_string())
 }
 

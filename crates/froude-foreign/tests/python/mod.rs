@@ -1,5 +1,6 @@
 //! Programs of others as oracles: scripts run by the Python of `target/oracles`.
 #![allow(dead_code, reason = "each test file uses what it needs")]
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "part of a test")]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
