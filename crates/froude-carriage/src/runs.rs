@@ -22,6 +22,7 @@ use crate::drag::run as drag;
 
 pub mod inspect;
 pub mod set;
+mod topics;
 pub mod whole;
 
 use set::{Member, doubles, is_put_aside, strangers, summed_up};

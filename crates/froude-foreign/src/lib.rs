@@ -5,6 +5,9 @@
 //! | `.xlsx`, `.xls`, `.ods` | [`sheet`] | the crate calamine; `.ods` and the checks before it by this crate |
 //! | `.mat` of MATLAB 5 to 7.2 and Octave | [`mat5`] | this crate |
 //! | `.mat` of MATLAB 7.3, HDF5 | [`hdf5`] | the crate hdf5-pure |
+//! | `.mcap` with ROS 2 or JSON messages | [`mod@mcap`] | records by the crate mcap; messages by this crate |
+//! | `.tdms` of LabVIEW, DAQmx, DIAdem | [`tdms`] | this crate |
+//! | `.ulg` of PX4 | [`ulog`] | this crate |
 //!
 //! Nothing is repaired: what cannot be read is named with its place and with what to do. Files of more than 2 GiB and tables of more
 //! than 50 million cells are rejected, and no file makes a reader panic or allocate what its size does not justify.
@@ -15,7 +18,10 @@ mod compound;
 mod guard;
 pub mod hdf5;
 pub mod mat5;
+pub mod mcap;
 pub mod sheet;
+pub mod tdms;
+pub mod ulog;
 mod variables;
 
 /// Largest file that is read, and the most that a compressed file may unpack to, bytes.
@@ -81,6 +87,8 @@ pub struct Contents {
     pub parts: Vec<Part>,
     /// What is in the file and in no table: to be named to the user.
     pub left_out: Vec<LeftOut>,
+    /// What else was passed over or is missing, and which clock times are of; each a sentence.
+    pub notes: Vec<String>,
 }
 
 /// A variable or dataset that is in no table.

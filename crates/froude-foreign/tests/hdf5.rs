@@ -1,5 +1,5 @@
 //! HDF5 files of h5py, pandas, PyTables and MATLAB.
-#![allow(clippy::unwrap_used, reason = "a test")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
 
 mod python;
 

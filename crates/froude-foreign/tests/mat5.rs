@@ -1,5 +1,5 @@
 //! MAT files of level 5: of SciPy, and of MATLAB and Octave, which SciPy has as test data.
-#![allow(clippy::unwrap_used, reason = "a test")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
 
 mod python;
 

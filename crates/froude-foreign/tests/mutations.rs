@@ -137,15 +137,17 @@ fn mutated_files_neither_panic_nor_fill_the_memory() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     python(folder, include_str!("seeds.py"));
-    for name in ["t.xlsx", "t.ods"] {
+    for name in ["t.xlsx", "small.xlsx", "t.ods"] {
         attack(name, &written(folder, name), plain, read_workbook);
         attack(&format!("{name}, inside"), &written(folder, name), inside, read_workbook);
     }
-    attack("t.xls", &written(folder, "t.xls"), plain, read_workbook);
-    for name in ["t.mat", "packed.mat"] {
+    for name in ["t.xls", "small.xls"] {
+        attack(name, &written(folder, name), plain, read_workbook);
+    }
+    for name in ["t.mat", "packed.mat", "small-packed.mat"] {
         attack(name, &written(folder, name), plain, |bytes| mat5::read(bytes).map(drop));
     }
-    for name in ["old.h5", "new.h5", "matlab.h5"] {
+    for name in ["old.h5", "new.h5", "small.h5", "matlab.h5"] {
         attack(name, &written(folder, name), plain, |bytes| hdf5::read(bytes.to_vec()).map(drop));
     }
 }

@@ -43,7 +43,7 @@ pub fn for_each_chunk<E: From<RecordError>>(
     match Format::of(path)? {
         Format::Text => csv(path, mapping.as_ref(), each),
         Format::Parquet => parquet_table::for_each_chunk(path, mapping.as_ref(), each),
-        Format::Sheet | Format::Mat | Format::Hdf5 => each(read_table(path, sidecar)?),
+        Format::Sheet | Format::Columns => each(read_table(path, sidecar)?),
     }
 }
 
@@ -66,7 +66,7 @@ fn rows(path: &Path, most: usize) -> Option<usize> {
         Format::Text => n_lines(path, most).ok(),
         Format::Parquet => parquet_table::n_rows(path).ok(),
         // They are read whole.
-        Format::Sheet | Format::Mat | Format::Hdf5 => None,
+        Format::Sheet | Format::Columns => None,
     }
 }
 

@@ -26,6 +26,7 @@ pub(crate) fn table(
     let several = contents.parts.len() > 1;
     let mut words: Vec<String> =
         contents.left_out.iter().map(|left| format!("{} left out: {}", left.name, left.reason)).collect();
+    words.extend(contents.notes.iter().cloned());
     let part = chosen(path, contents.parts, file)?;
     if several {
         words.insert(0, format!("part {:?}", part.name));

@@ -42,18 +42,16 @@ pub(crate) type Blanks = Vec<(String, usize)>;
 ///
 /// See [`RecordError`].
 pub fn read_csv(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    parse_bytes(path, &read::whole(path, LARGEST_BYTES, "a table")?, sidecar, None)
+    read_text(path, sidecar, None)
 }
 
-/// The same with empty cells of loads and of motions along axes, which [`Table::blank`] lists.
-///
-/// # Errors
-///
-/// See [`RecordError`].
-pub fn read_csv_with_blanks(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    let mut blank = Vec::new();
-    let table = parse_bytes(path, &read::whole(path, LARGEST_BYTES, "a table")?, sidecar, Some(&mut blank))?;
-    Ok(Table { blank, ..table })
+/// The same; empty cells of loads and of motions along axes are listed in `blank`, where there is a place for them.
+pub(crate) fn read_text(
+    path: &Path,
+    sidecar: Option<&Sidecar>,
+    blank: Option<&mut Blanks>,
+) -> Result<Table, RecordError> {
+    parse_bytes(path, &read::whole(path, LARGEST_BYTES, "a table")?, sidecar, blank)
 }
 
 /// The same from text; `path` is for messages.

@@ -106,6 +106,18 @@ pub enum RecordError {
         /// What the system says.
         reason: String,
     },
+    /// A log of another program where a recorded run is expected.
+    #[error(
+        "{}: an MCAP log of another program (topics {topics}); expected a run that `froude run` recorded. `froude inspect {}` lists its \
+         topics and their fields; write the topic that you need as CSV, with its times, and name that file",
+        path.display(), path.display()
+    )]
+    ForeignLog {
+        /// The file.
+        path: PathBuf,
+        /// Its first topics.
+        topics: String,
+    },
     /// A file that another file names does not exist.
     #[error("{place}: `{key}` names {}, which does not exist", path.display())]
     MissingFile {

@@ -15,6 +15,7 @@
 //! | list of results (JSON) | [`manifest`]                            |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod arrow_schema;
 mod assemble;
 pub mod block;
 pub mod body;
@@ -53,8 +54,12 @@ mod obstacles;
 pub mod outcome;
 pub mod output;
 pub mod page;
+mod parquet_cells;
+mod parquet_columns;
 mod parquet_sums;
 pub mod parquet_table;
+mod parquet_types;
+mod parquet_write;
 pub mod plausible;
 mod prior_record;
 pub mod proposal;

@@ -1,35 +1,34 @@
 //! Tables as Parquet: the same headers as in CSV are the names of the columns.
 //!
-//! Read are flat columns of numbers (float, double, integers) and of UTF-8 text,
-//! uncompressed or with snappy or zstd. A null is an empty cell. A file that is cut
+//! Read are flat columns, uncompressed or with snappy or zstd: numbers of every type, truth values, dates and times in the units of
+//! their types, UTF-8 text and categories; lists and structures are refused by name. A null is an empty cell. A file that is cut
 //! off has no footer and is refused as a whole.
 //!
 //! Checksums of pages are verified where a file has them. They leave out the pages' headers and the footer with names, types and
 //! counts; what we write ourselves has a checksum of each column as it is read, and nothing outside it.
 
+use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::Arc;
 
-use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
+use parquet::basic::Type as Physical;
 use parquet::column::page::{Page, PageMetadata, PageReader};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
-use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType};
+use parquet::column::reader::{ColumnReader, get_column_reader};
 use parquet::errors::ParquetError;
-use parquet::file::metadata::{ColumnChunkMetaData, KeyValue, ParquetMetaData, RowGroupMetaData};
-use parquet::file::properties::WriterProperties;
+use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, RowGroupMetaData};
 use parquet::file::reader::{ChunkReader, FileReader as _, Length as _, SerializedFileReader};
-use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::Type;
 
 use crate::assemble::{CHUNK_ROWS, Room, Want, assemble, plan};
 use crate::error::{Place, RecordError};
+use crate::heading::Heading;
+use crate::parquet_cells::{Blanks, Cells, describe};
+use crate::parquet_columns::{FileColumn, check_packing};
 use crate::parquet_sums::{self, Sum};
+use crate::parquet_types::CellType;
 use crate::raw_column::Raw;
 use crate::read;
 use crate::sidecar::Sidecar;
-use crate::table::{ColumnData, Table};
-use crate::write::Prepared;
+use crate::table::Table;
 
 /// Most rows that are read into memory.
 const MOST_ROWS: i64 = 50_000_000;
@@ -57,7 +56,25 @@ pub fn parse_parquet<R: ChunkReader + 'static>(
     source: R,
     sidecar: Option<&Sidecar>,
 ) -> Result<Table, RecordError> {
-    caught(path, || read_whole(path, source, sidecar))
+    caught(path, || read_whole(path, source, sidecar, &mut None))
+}
+
+/// The same with empty cells of loads and of motions along axes, which [`Table::blank`] lists.
+///
+/// # Errors
+///
+/// As [`parse_parquet`].
+pub fn parse_parquet_with_blanks<R: ChunkReader + 'static>(
+    path: &Path,
+    source: R,
+    sidecar: Option<&Sidecar>,
+) -> Result<Table, RecordError> {
+    let mut blanks = Some(Vec::new());
+    let table = caught(path, || read_whole(path, source, sidecar, &mut blanks))?;
+    let mut blank = blanks.unwrap_or_default();
+    // Row by row, as in CSV; a column is read at a time.
+    blank.sort_by_key(|(_, row)| *row);
+    Ok(Table { blank, ..table })
 }
 
 /// A damaged file can make the decoder panic: that is a damaged file, not our end.
@@ -71,23 +88,26 @@ fn read_whole<R: ChunkReader + 'static>(
     path: &Path,
     source: R,
     sidecar: Option<&Sidecar>,
+    blanks: &mut Blanks,
 ) -> Result<Table, RecordError> {
     let length = source.len();
     if length > LARGEST_FILE {
         return Err(RecordError::too_large(path, length, LARGEST_FILE, "a Parquet table"));
     }
-    let opened = Opened::new(path, source, sidecar)?;
+    let reader = reader(path, source)?;
+    let fitted = fitted(&reader, sidecar)?;
+    let opened = Opened::new(path, reader, length, fitted.as_ref())?;
     check_memory(path, opened.reader.metadata())?;
     // Nothing is unpacked for cells that would not be kept: a kilobyte can stand for as many rows as a footer cares to count.
     let rows = u64::try_from(opened.reader.metadata().file_metadata().num_rows()).unwrap_or(0);
     Room::new(path).take(opened.bytes_a_row().saturating_mul(rows))?;
     let mut room = Room::new(path);
     let mut sums = opened.sums();
-    let mut raws = opened.empty()?;
+    let mut raws = opened.empty();
     let mut first_row = 1;
     for g in 0..opened.reader.num_row_groups() {
         let mut group = opened.group(g)?;
-        first_row += opened.take(&mut group, usize::MAX, first_row, &mut raws, &mut room)?;
+        first_row += opened.take(&mut group, usize::MAX, first_row, &mut raws, blanks, &mut room)?;
     }
     opened.add(&mut sums, &raws);
     opened.check_sums(sums)?;
@@ -109,7 +129,9 @@ pub(crate) fn for_each_chunk<E: From<RecordError>>(
 ) -> Result<(), E> {
     let file = read::open(path)?;
     let length = file.len();
-    let opened = caught(path, || Opened::new(path, file, sidecar))?;
+    let reader = caught(path, || reader(path, file))?;
+    let fitted = fitted(&reader, sidecar)?;
+    let opened = caught(path, || Opened::new(path, reader, length, fitted.as_ref()))?;
     let rows = u64::try_from(opened.reader.metadata().file_metadata().num_rows()).unwrap_or(0);
     let most = Room::MOST_BYTES.max(length.saturating_mul(MOST_UNPACKED));
     Room::of(path, most).take(opened.bytes_a_row().saturating_mul(rows))?;
@@ -118,8 +140,8 @@ pub(crate) fn for_each_chunk<E: From<RecordError>>(
     for g in 0..opened.reader.num_row_groups() {
         let mut group = caught(path, || opened.group(g))?;
         while group.taken < group.rows {
-            let (mut raws, mut room) = (opened.empty()?, Room::new(path));
-            let n = caught(path, || opened.take(&mut group, CHUNK_ROWS, first_row, &mut raws, &mut room))?;
+            let (mut raws, mut room) = (opened.empty(), Room::new(path));
+            let n = caught(path, || opened.take(&mut group, CHUNK_ROWS, first_row, &mut raws, &mut None, &mut room))?;
             opened.add(&mut sums, &raws);
             each(opened.table(raws, (first_row..first_row + n).collect())?)?;
             first_row += n;
@@ -130,7 +152,17 @@ pub(crate) fn for_each_chunk<E: From<RecordError>>(
 }
 
 fn reader<R: ChunkReader + 'static>(path: &Path, source: R) -> Result<SerializedFileReader<R>, RecordError> {
-    SerializedFileReader::new(source).map_err(|e| RecordError::Damaged { path: path.to_owned(), reason: in_words(&e) })
+    SerializedFileReader::new(source).map_err(|e| RecordError::Damaged { path: path.to_owned(), reason: describe(&e) })
+}
+
+/// The sidecar fitted to the columns of a file.
+fn fitted<R: ChunkReader + 'static>(
+    reader: &SerializedFileReader<R>,
+    sidecar: Option<&Sidecar>,
+) -> Result<Option<Sidecar>, RecordError> {
+    let columns = FileColumn::all(reader.metadata().file_metadata(), sidecar.is_some());
+    let headings: Vec<Heading> = columns.iter().map(|column| Heading::own(&column.header)).collect();
+    sidecar.map(|sidecar| sidecar.fitted(&headings)).transpose()
 }
 
 /// A Parquet file whose footer was read and believed.
@@ -139,46 +171,53 @@ struct Opened<'a, R: ChunkReader + 'static> {
     sidecar: Option<&'a Sidecar>,
     reader: SerializedFileReader<R>,
     header: Vec<String>,
+    columns: Vec<FileColumn>,
+    /// What the cells of each column are.
+    kinds: Vec<CellType>,
     wants: Vec<Want<'a>>,
+    /// The first timestamp, ns since 1970.
+    origin_ns: Cell<Option<i128>>,
 }
 
 impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
-    fn new(path: &'a Path, source: R, sidecar: Option<&'a Sidecar>) -> Result<Self, RecordError> {
-        let length = source.len();
-        let reader = reader(path, source)?;
+    fn new(
+        path: &'a Path,
+        reader: SerializedFileReader<R>,
+        length: u64,
+        sidecar: Option<&'a Sidecar>,
+    ) -> Result<Self, RecordError> {
+        let sidecar = sidecar.filter(|sidecar| !sidecar.columns.is_empty());
         check_sizes(path, reader.metadata(), length)?;
-        let fields = reader.metadata().file_metadata().schema().get_fields();
-        let header: Vec<String> = fields.iter().map(|f| f.name().trim().to_owned()).collect();
-        let wants = plan(path, &header, sidecar, &Place::whole(path))?;
-        let opened = Self { path, sidecar, reader, header, wants };
-        opened.empty()?;
-        if opened.header.is_empty() {
+        let columns = FileColumn::all(reader.metadata().file_metadata(), sidecar.is_some());
+        if columns.is_empty() {
             return Err(RecordError::NoRows { path: path.to_owned() });
         }
-        Ok(opened)
-    }
-
-    fn fields(&self) -> &[Arc<Type>] {
-        self.reader.metadata().file_metadata().schema().get_fields()
+        let header: Vec<String> = columns.iter().map(|column| column.header.clone()).collect();
+        let mut wants = plan(path, &header, sidecar, &Place::whole(path))?;
+        for (want, _) in wants.iter_mut().zip(&columns).filter(|(_, column)| column.is_index()) {
+            if matches!(want, Want::Text { .. }) {
+                *want = Want::LeftOut;
+            }
+        }
+        let kinds = columns.iter().zip(&wants).map(|(column, want)| match want {
+            Want::LeftOut => Ok(CellType::Text),
+            want => column.checked(path, want),
+        });
+        let kinds = kinds.collect::<Result<_, _>>()?;
+        check_packing(path, reader.metadata())?;
+        Ok(Self { path, sidecar, reader, header, columns, kinds, wants, origin_ns: Cell::new(None) })
     }
 
     /// Its columns without cells.
-    fn empty(&self) -> Result<Vec<Raw>, RecordError> {
-        let of = |(field, name): (&Arc<Type>, &String)| {
-            let problem = " holds neither numbers nor text; expected numbers or text";
-            raw_of(field).ok_or_else(|| RecordError::column(Place::whole(self.path), name, problem))
-        };
-        self.fields().iter().zip(&self.header).map(of).collect()
+    fn empty(&self) -> Vec<Raw> {
+        self.columns.iter().map(FileColumn::raw).collect()
     }
 
     /// Bytes of the cells of a row that are kept.
     fn bytes_a_row(&self) -> u64 {
-        let of = |field: &Arc<Type>| match raw_of(field) {
-            Some(Raw::Numbers(_)) => size_of::<f64>() as u64,
-            _ => size_of::<String>() as u64,
-        };
-        let kept = self.wants.iter().zip(self.fields()).filter(|(want, _)| !matches!(want, Want::LeftOut));
-        kept.map(|(_, field)| of(field)).sum()
+        let of = |kind: &CellType| if kind.is_text() { size_of::<String>() } else { size_of::<f64>() } as u64;
+        let kept = self.wants.iter().zip(&self.kinds).filter(|(want, _)| !matches!(want, Want::LeftOut));
+        kept.map(|(_, kind)| of(kind)).sum()
     }
 
     /// A row group from its first row on.
@@ -189,9 +228,15 @@ impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
             if matches!(want, Want::LeftOut) {
                 return Ok(None);
             }
+            let j = self.columns[j].leaf;
             let pages = group.get_column_page_reader(j).map_err(|e| self.damaged(&e))?;
             let left = u64::try_from(group.metadata().column(j).uncompressed_size()).unwrap_or(0);
-            Ok(Some(get_column_reader(descriptions.column(j), Box::new(Checked { pages, left }))))
+            let description = descriptions.column(j);
+            let width = match description.physical_type() {
+                Physical::FIXED_LEN_BYTE_ARRAY => usize::try_from(description.type_length()).unwrap_or(1).max(1),
+                _ => 4,
+            };
+            Ok(Some(get_column_reader(description, Box::new(Checked { pages, left, width }))))
         };
         let columns = self.wants.iter().enumerate().map(of).collect::<Result<_, _>>()?;
         Ok(Group { columns, rows: usize::try_from(group.metadata().num_rows()).unwrap_or(0), taken: 0 })
@@ -204,26 +249,33 @@ impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
         most: usize,
         first_row: usize,
         raws: &mut [Raw],
+        blanks: &mut Blanks,
         room: &mut Room<'_>,
     ) -> Result<usize, RecordError> {
         let n_rows = most.min(group.rows - group.taken);
         for (j, (column, want)) in group.columns.iter_mut().zip(&self.wants).enumerate() {
             let Some(column) = column else { continue };
-            let is_unsigned = matches!(
-                self.fields()[j].get_basic_info().logical_type_ref(),
-                Some(LogicalType::Integer(integer)) if !integer.is_signed
-            );
             let advice = || want.advice(self.path, self.sidecar);
-            let header = &self.header[j];
-            let cells = Cells { path: self.path, column: header, advice: &advice, first_row, n_rows };
-            cells.read(column, is_unsigned, &mut raws[j], room)?;
+            let may_be_blank = want.name_if_blank();
+            let cells = Cells {
+                path: self.path,
+                column: &self.header[j],
+                kind: self.kinds[j],
+                time_unit: self.columns[j].time_unit,
+                origin_ns: &self.origin_ns,
+                may_be_blank,
+                advice: &advice,
+                first_row,
+                n_rows,
+            };
+            cells.read(column, &mut raws[j], blanks, room)?;
         }
         group.taken += n_rows;
         Ok(n_rows)
     }
 
     fn damaged(&self, error: &ParquetError) -> RecordError {
-        RecordError::Damaged { path: self.path.to_owned(), reason: in_words(error) }
+        RecordError::Damaged { path: self.path.to_owned(), reason: describe(error) }
     }
 
     fn table(&self, raws: Vec<Raw>, rows: Vec<usize>) -> Result<Table, RecordError> {
@@ -279,6 +331,8 @@ struct Checked {
     pages: Box<dyn PageReader>,
     /// Bytes that the footer still promises.
     left: u64,
+    /// Least bytes of an entry of a dictionary: numbers and lengths of texts take four.
+    width: usize,
 }
 
 impl PageReader for Checked {
@@ -291,9 +345,8 @@ impl PageReader for Checked {
                 .checked_sub(bytes)
                 .ok_or_else(|| ParquetError::General("its pages unpack to more than its footer says".to_owned()))?;
         }
-        // Numbers and lengths of texts take four bytes at least.
         if let Some(Page::DictionaryPage { buf, num_values, .. }) = &page
-            && *num_values as usize > buf.len() / 4
+            && *num_values as usize > buf.len() / self.width
         {
             return Err(ParquetError::General(format!(
                 "a dictionary of {} bytes claims {num_values} entries",
@@ -324,103 +377,6 @@ impl Iterator for Checked {
     }
 }
 
-/// Some rows of one column.
-struct Cells<'a> {
-    path: &'a Path,
-    column: &'a str,
-    /// What to do about an empty cell.
-    advice: &'a dyn Fn() -> String,
-    first_row: usize,
-    n_rows: usize,
-}
-
-impl Cells<'_> {
-    fn place(&self, row: usize) -> Place {
-        Place::row(self.path, self.first_row + row)
-    }
-
-    fn damaged(&self, reason: String) -> RecordError {
-        RecordError::Damaged { path: self.path.to_owned(), reason }
-    }
-
-    fn read(
-        &self,
-        column: &mut ColumnReader,
-        is_unsigned: bool,
-        raw: &mut Raw,
-        room: &mut Room<'_>,
-    ) -> Result<(), RecordError> {
-        match (column, raw) {
-            (ColumnReader::DoubleColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, room, |x| *x),
-            (ColumnReader::FloatColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, room, |x| f64::from(*x)),
-            (ColumnReader::Int32ColumnReader(c), Raw::Numbers(out)) if is_unsigned => {
-                self.numbers(c, out, room, |x| f64::from(x.cast_unsigned()))
-            }
-            (ColumnReader::Int32ColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, room, |x| f64::from(*x)),
-            (ColumnReader::Int64ColumnReader(c), Raw::Numbers(out)) if is_unsigned => {
-                self.numbers(c, out, room, |x| x.cast_unsigned() as f64)
-            }
-            (ColumnReader::Int64ColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, room, |x| *x as f64),
-            (ColumnReader::ByteArrayColumnReader(c), Raw::Texts(out)) => self.each(c, |row, cell| {
-                let text = std::str::from_utf8(cell.map_or(&[], ByteArray::data)).map_err(|_| {
-                    RecordError::syntax(self.place(row), format!("column `{}`: the text is not UTF-8", self.column))
-                })?;
-                room.text(out, text, &|| self.place(row))
-            }),
-            _ => Err(self.damaged(format!("column {} is of another type than its schema says", self.column))),
-        }
-    }
-
-    fn numbers<T: DataType>(
-        &self,
-        column: &mut ColumnReaderImpl<T>,
-        out: &mut Vec<f64>,
-        room: &mut Room<'_>,
-        number: impl Fn(&T::T) -> f64,
-    ) -> Result<(), RecordError> {
-        self.each(column, |row, cell| {
-            let Some(cell) = cell else {
-                return Err(RecordError::empty_cell(self.place(row), self.column, &(self.advice)()));
-            };
-            let value = number(cell);
-            if !value.is_finite() {
-                return Err(RecordError::not_finite(self.place(row), self.column, &value.to_string()));
-            }
-            room.number(out, value)
-        })
-    }
-
-    /// Every cell of these rows, `None` for a null, with its row from 0.
-    fn each<T: DataType>(
-        &self,
-        column: &mut ColumnReaderImpl<T>,
-        mut see: impl FnMut(usize, Option<&T::T>) -> Result<(), RecordError>,
-    ) -> Result<(), RecordError> {
-        const BATCH: usize = 4096;
-        let mut row = 0;
-        let (mut levels, mut values) = (Vec::new(), Vec::new());
-        while row < self.n_rows {
-            levels.clear();
-            values.clear();
-            let most = BATCH.min(self.n_rows - row);
-            let (n, _, _) = column
-                .read_records(most, Some(&mut levels), None, &mut values)
-                .map_err(|e| self.damaged(in_words(&e)))?;
-            if n == 0 {
-                return Err(self.damaged(format!("column {} ends before row {}", self.column, self.first_row + row)));
-            }
-            // A required column has no levels: every cell has a value.
-            let mut given = values.iter();
-            for k in 0..n {
-                let cell = if levels.get(k).is_none_or(|level| *level > 0) { given.next() } else { None };
-                see(row + k, cell)?;
-            }
-            row += n;
-        }
-        Ok(())
-    }
-}
-
 /// Sizes that the footer claims, checked against the file, before anything is allocated for them.
 fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(), RecordError> {
     let rows = metadata.file_metadata().num_rows();
@@ -444,7 +400,8 @@ fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(
                 return beyond();
             }
             let is_number = chunk.column_type() != Physical::BYTE_ARRAY;
-            let most = group.num_rows().saturating_mul(BYTES_A_ROW).saturating_add(BYTES_BESIDE);
+            let width = i64::from(chunk.column_descr().type_length().max(0));
+            let most = group.num_rows().saturating_mul(BYTES_A_ROW + width).saturating_add(BYTES_BESIDE);
             let (bytes, numbers) = (chunk.uncompressed_size(), group.num_rows());
             if is_number && bytes > most {
                 return damaged(format!("its footer gives {bytes} bytes to {numbers} numbers"));
@@ -469,86 +426,5 @@ fn check_memory(path: &Path, metadata: &ParquetMetaData) -> Result<(), RecordErr
     if bytes > LARGEST_BYTES {
         return Err(RecordError::too_large(path, bytes, LARGEST_BYTES, "the pages of a table, unpacked"));
     }
-    Ok(())
-}
-
-/// The reader's words, without its names of variants and types.
-fn in_words(error: &ParquetError) -> String {
-    match error {
-        ParquetError::General(text) | ParquetError::EOF(text) | ParquetError::NYI(text) => text.clone(),
-        other => other.to_string(),
-    }
-}
-
-/// Empty cells of the kind that a column's type asks for; `None` for other types.
-fn raw_of(field: &Type) -> Option<Raw> {
-    if !field.is_primitive()
-        || field.get_basic_info().has_repetition() && field.get_basic_info().repetition() == Repetition::REPEATED
-    {
-        return None;
-    }
-    match field.get_physical_type() {
-        Physical::DOUBLE | Physical::FLOAT => Some(Raw::Numbers(Vec::new())),
-        Physical::INT32 | Physical::INT64 => match field.get_basic_info().logical_type_ref() {
-            None | Some(LogicalType::Integer { .. }) => Some(Raw::Numbers(Vec::new())),
-            _ => None,
-        },
-        Physical::BYTE_ARRAY => Some(Raw::Texts(Vec::new())),
-        _ => None,
-    }
-}
-
-/// A table as Parquet (zstd), written but not yet moved into place; numbers as doubles in the units of their columns.
-pub(crate) fn prepare_parquet(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
-    Prepared::new(path, |file| {
-        write_columns(table, file).map_err(|e| match e {
-            ParquetError::External(inner) => match inner.downcast::<std::io::Error>() {
-                Ok(io) => *io,
-                Err(other) => std::io::Error::other(other),
-            },
-            other => std::io::Error::other(other),
-        })
-    })
-}
-
-fn write_columns(table: &Table, file: impl std::io::Write + Send) -> Result<(), ParquetError> {
-    let mut fields = Vec::new();
-    for column in &table.columns {
-        let header = column.header();
-        let field = match &column.data {
-            ColumnData::Number { .. } => Type::primitive_type_builder(&header, Physical::DOUBLE),
-            ColumnData::Text(_) => {
-                Type::primitive_type_builder(&header, Physical::BYTE_ARRAY).with_logical_type(Some(LogicalType::String))
-            }
-        };
-        fields.push(Arc::new(field.with_repetition(Repetition::REQUIRED).build()?));
-    }
-    let schema = Arc::new(Type::group_type_builder("table").with_fields(fields).build()?);
-    let properties = WriterProperties::builder().set_compression(Compression::ZSTD(ZstdLevel::default())).build();
-    let mut writer = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
-    let mut group = writer.next_row_group()?;
-    let mut sums = Vec::with_capacity(table.columns.len());
-    for column in &table.columns {
-        let Some(mut target) = group.next_column()? else { break };
-        let cells = match &column.data {
-            ColumnData::Number { unit, si, .. } => {
-                let values: Vec<f64> = si.iter().map(|si| unit.from_si(*si)).collect();
-                target.typed::<DoubleType>().write_batch(&values, None, None)?;
-                Raw::Numbers(values)
-            }
-            ColumnData::Text(cells) => {
-                let values: Vec<ByteArray> = cells.iter().map(|cell| ByteArray::from(cell.as_str())).collect();
-                target.typed::<ByteArrayType>().write_batch(&values, None, None)?;
-                Raw::Texts(cells.iter().cloned().collect())
-            }
-        };
-        target.close()?;
-        let mut sum = Sum::new(column.header().trim());
-        sum.add(&cells);
-        sums.push(sum.finish());
-    }
-    group.close()?;
-    writer.append_key_value_metadata(KeyValue::new(parquet_sums::KEY.to_owned(), sums.join(" ")));
-    writer.close()?;
     Ok(())
 }

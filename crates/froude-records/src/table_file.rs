@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use froude_foreign::{ForeignError, hdf5, mat5};
+use froude_foreign::{Contents, ForeignError, hdf5, mat5, tdms, ulog};
 
 use crate::csv_table::Blanks;
 use crate::error::{Place, RecordError};
 use crate::sidecar::Sidecar;
 use crate::table::Table;
 use crate::write::Prepared;
-use crate::{container_table, csv_table, parquet_table, read, sheet_table, sidecar};
+use crate::{container_table, csv_table, parquet_table, parquet_write, read, sheet_table, sidecar};
 
 /// Reads a table, `.csv` or `.parquet`, through `sidecar` or the `.toml` of the same name beside it.
 ///
@@ -20,7 +20,7 @@ pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordEr
     read(path, sidecar, None)
 }
 
-/// As [`read_table`]; in CSV a load, and a motion along or about an axis, may have empty cells, which [`Table::blank`] lists.
+/// As [`read_table`]; a load, and a motion along or about an axis, may have empty cells, which [`Table::blank`] lists.
 ///
 /// # Errors
 ///
@@ -35,35 +35,42 @@ fn read(path: &Path, sidecar: Option<&Path>, blank: Option<&mut Blanks>) -> Resu
     let mapping = sidecar_of(path, sidecar)?;
     let mapping = mapping.as_ref();
     match Format::of(path)? {
-        Format::Text => match blank {
-            None => csv_table::read_csv(path, mapping),
+        Format::Text => csv_table::read_text(path, mapping, blank),
+        Format::Parquet => match blank {
+            None => parquet_table::parse_parquet(path, read::open(path)?, mapping),
             Some(blank) => {
-                let mut table = csv_table::read_csv_with_blanks(path, mapping)?;
+                let mut table = parquet_table::parse_parquet_with_blanks(path, read::open(path)?, mapping)?;
                 blank.append(&mut table.blank);
                 Ok(table)
             }
         },
-        Format::Parquet => parquet_table::parse_parquet(path, read::open(path)?, mapping),
         Format::Sheet => sheet_table::read_sheet(path, mapping, blank),
-        Format::Mat => {
-            let bytes = read::whole(path, LARGEST_BYTES, "a MAT file")?;
-            let found = if mat5::is_mat5(&bytes) { mat5::read(&bytes) } else { hdf5::read(bytes) };
-            container_table::table(path, found.map_err(|e| foreign(path, &e))?, mapping, blank)
-        }
-        Format::Hdf5 => {
-            let bytes = read::whole(path, LARGEST_BYTES, "an HDF5 file")?;
-            container_table::table(path, hdf5::read(bytes).map_err(|e| foreign(path, &e))?, mapping, blank)
-        }
+        Format::Columns => container_table::table(path, contents(path)?, mapping, blank),
     }
 }
 
-/// What a reader of other programs' files says, with the file.
-fn foreign(path: &Path, error: &ForeignError) -> RecordError {
-    RecordError::syntax(Place::whole(path), format!("the file {error}"))
+/// The tables of a file of named columns.
+///
+/// # Errors
+///
+/// Another ending, and whatever the reader of the format finds.
+pub fn contents(path: &Path) -> Result<Contents, RecordError> {
+    let refuse = |error: ForeignError| RecordError::syntax(Place::whole(path), format!("the file {error}"));
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if ending == "mcap" {
+        let mut file = read::open(path)?;
+        let bytes = file.metadata().map_or(0, |data| data.len());
+        return froude_foreign::mcap::read(&mut file, bytes).map_err(refuse);
+    }
+    let bytes = read::whole(path, froude_foreign::MAX_BYTES, "a file of named columns")?;
+    match ending.as_str() {
+        "mat" if mat5::is_mat5(&bytes) => mat5::read(&bytes),
+        "tdms" => tdms::read(&bytes),
+        "ulg" => ulog::read(&bytes),
+        _ => hdf5::read(bytes),
+    }
+    .map_err(refuse)
 }
-
-/// The largest file of named columns.
-const LARGEST_BYTES: u64 = froude_foreign::MAX_BYTES;
 
 /// The sidecar of a table: the one given, or the `.toml` of the same name beside it.
 ///
@@ -89,9 +96,8 @@ pub(crate) enum Format {
     Text,
     Parquet,
     Sheet,
-    /// Of MATLAB, old or new.
-    Mat,
-    Hdf5,
+    /// MAT, HDF5, TDMS, ULog, MCAP.
+    Columns,
 }
 
 impl Format {
@@ -101,10 +107,9 @@ impl Format {
             Some(ending) if TEXT_ENDINGS.contains(&ending) => Ok(Self::Text),
             Some("parquet") => Ok(Self::Parquet),
             Some("xlsx" | "xlsm" | "xls" | "ods") => Ok(Self::Sheet),
-            Some("mat") => Ok(Self::Mat),
-            Some("h5" | "hdf5") => Ok(Self::Hdf5),
+            Some("mat" | "h5" | "hdf5" | "tdms" | "ulg" | "mcap") => Ok(Self::Columns),
             _ => Err(RecordError::Refused(format!(
-                "{}: tables are read from text (.csv, .txt, .dat, .tsv, .out), .parquet, spreadsheets (.xlsx, .xls, .ods), .mat and .h5 files",
+                "{}: tables are read from text (.csv, .txt, .dat, .tsv, .out), .parquet, spreadsheets (.xlsx, .xls, .ods), .mat, .h5, .tdms, .ulg and .mcap files",
                 path.display()
             ))),
         }
@@ -119,8 +124,8 @@ impl Format {
 pub fn prepare_table(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
     match Format::of(path)? {
         Format::Text => csv_table::prepare_csv(table, path),
-        Format::Parquet => parquet_table::prepare_parquet(table, path),
-        Format::Sheet | Format::Mat | Format::Hdf5 => {
+        Format::Parquet => parquet_write::prepare_parquet(table, path),
+        Format::Sheet | Format::Columns => {
             Err(RecordError::Refused(format!("{}: tables are written as .csv and .parquet files", path.display())))
         }
     }

@@ -17,6 +17,7 @@ use froude_rig::carriage::{CarriageCampaign, Directions, RigKind};
 use indexmap::IndexMap;
 
 use super::set::{Member, doubles, is_put_aside, strangers, summed_up};
+use super::topics;
 use super::whole::Complete;
 use super::{gone, put_aside};
 
@@ -242,7 +243,10 @@ fn stated(meta: &RunMeta) -> String {
 ///
 /// A log that cannot be read.
 pub fn run(path: &Path) -> Result<Inspection, MethodError> {
-    let log = read_run(path)?;
+    let log = match read_run(path) {
+        Err(RecordError::ForeignLog { .. }) => return topics::inspect(path),
+        read => read?,
+    };
     let meta = &log.meta;
     let mut facts: Vec<(String, String)> = Vec::new();
     let mut fact = |name: &str, value: String| facts.push((name.to_owned(), value));

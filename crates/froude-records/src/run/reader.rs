@@ -63,6 +63,10 @@ pub struct RunReader<R> {
     /// Place in `topics` by channel of the file.
     topic_of_channel: Vec<Option<usize>>,
     events_channel: Option<u16>,
+    /// Topics that Froude does not record.
+    others: Vec<String>,
+    /// Whether anything in the file says that Froude recorded it.
+    is_own: bool,
     channels: Vec<(String, String)>,
     unpacked: Vec<u8>,
     allowance: Allowance,
@@ -154,6 +158,8 @@ impl<R: Read + Seek> RunReader<R> {
             topics: Vec::new(),
             topic_of_channel: Vec::new(),
             events_channel: None,
+            others: Vec::new(),
+            is_own: false,
             channels: Vec::new(),
             unpacked: Vec::new(),
             rows: Rows::default(),
@@ -165,6 +171,7 @@ impl<R: Read + Seek> RunReader<R> {
             reader.found = Some(reader.walk.fingerprint().map_err(failed)?);
         }
         reader.find_channels()?;
+        reader.check_own()?;
         Ok(reader)
     }
 
@@ -310,6 +317,7 @@ impl<R: Read + Seek> RunReader<R> {
         if ![RECORD_NAME, END_RECORD_NAME].contains(&name) {
             return Ok(());
         }
+        self.is_own = true;
         let own = match of_record(&self.path, &entries) {
             Ok(own) => own,
             Err(error @ RecordError::NewerSchema { .. }) => return Err(error),

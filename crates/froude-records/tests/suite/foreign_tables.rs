@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use froude_records::csv_table::{read_csv, read_csv_with_blanks};
+use froude_records::csv_table::read_csv;
 use froude_records::proposal;
 use froude_records::sidecar::parse_sidecar;
 use froude_records::table::{ColumnData, Table};
-use froude_records::table_file::read_table;
+use froude_records::table_file::{read_table, read_table_with_blanks};
 
 /// A table of bytes through a sidecar of text.
 fn read(bytes: &[u8], sidecar: &str) -> Result<Table, String> {
@@ -125,13 +125,12 @@ fn sums_and_numbers_that_were_not_measured_are_named_and_asked() {
         let text = format!("speed [m/s],f_x [N]\n0.5,-2\n1,{written}\n1.25,-12.5\n");
         let said = read(text.as_bytes(), "").unwrap_err();
         assert!(said.starts_with("t.csv:3: column `f_x [N]`: ") && said.contains("not_measured = ["), "{said}");
-        let sidecar =
-            parse_sidecar(Path::new("t.toml"), &format!("schema = 1\n[file]\nnot_measured = [\"{number}\"]\n"))
-                .unwrap();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.csv");
         std::fs::write(&path, &text).unwrap();
-        let table = read_csv_with_blanks(&path, Some(&sidecar)).unwrap();
+        let sidecar = format!("schema = 1\n[file]\nnot_measured = [\"{number}\"]\n");
+        std::fs::write(folder.path().join("t.toml"), sidecar).unwrap();
+        let table = read_table_with_blanks(&path, None).unwrap();
         assert_eq!(table.blank, [("f_x".to_owned(), 1)]);
     }
     // A counter that reaches 9999 is one.
@@ -189,7 +188,7 @@ fn a_proposed_sidecar_reads_the_table_that_it_was_made_for() {
     ] {
         assert!(sidecar.lines().any(|own| own == line), "{line}\n{sidecar}");
     }
-    let table = froude_records::table_file::read_table_with_blanks(&path, None).unwrap();
+    let table = read_table_with_blanks(&path, None).unwrap();
     assert!((si(&table, "f_x")[0] + 2.0015).abs() < 1e-3);
     assert_eq!((table.n_rows, table.blank.len()), (2, 1));
     let again = proposal::write_sidecar(&path).unwrap_err().to_string();

@@ -13,5 +13,6 @@ mod imported_logs;
 mod laws;
 mod official_reader;
 mod parquet_tables;
+mod parquet_types;
 mod runs;
 mod writing;

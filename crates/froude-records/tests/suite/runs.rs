@@ -573,3 +573,30 @@ fn logs_that_were_exchanged_are_reported_once_each_and_by_what_they_are() {
         );
     }
 }
+
+/// Topics of another program have rates of their own: joined by sequence number most of them would be lost.
+#[test]
+fn a_log_of_another_program_is_refused_by_name() {
+    use std::collections::BTreeMap;
+    let folder = tempfile::tempdir().unwrap();
+    for (encoding, text) in [("json", &b"{\"x\": 1}"[..]), ("cdr", &[0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f])] {
+        let path = folder.path().join(format!("{encoding}.mcap"));
+        let mut writer = mcap::Writer::new(std::fs::File::create(&path).unwrap()).unwrap();
+        let schema = writer.add_schema("lab_msgs/msg/X", "ros2msg", b"float64 x").unwrap();
+        for topic in ["/imu", "/thruster"] {
+            let id = writer.add_channel(schema, topic, encoding, &BTreeMap::new()).unwrap();
+            let header = mcap::records::MessageHeader { channel_id: id, sequence: 0, log_time: 1, publish_time: 1 };
+            writer.write_to_known_channel(&header, text).unwrap();
+        }
+        writer.finish().unwrap();
+        assert_eq!(
+            read_run(&path).unwrap_err().to_string(),
+            format!(
+                "{}: an MCAP log of another program (topics /imu, /thruster); expected a run that `froude run` recorded. `froude inspect \
+                 {}` lists its topics and their fields; write the topic that you need as CSV, with its times, and name that file",
+                path.display(),
+                path.display()
+            )
+        );
+    }
+}

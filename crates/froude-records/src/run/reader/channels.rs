@@ -10,6 +10,9 @@ use crate::run::allowance::Allowance;
 use crate::run::file::{FileChannel, Step, Summary, records, schema, unpack};
 use crate::run::layout::{Decoder, PREFIX_KEY, text};
 
+/// Most topics that a refusal names.
+const MAX_NAMED: usize = 8;
+
 impl<R: Read + Seek> RunReader<R> {
     /// Schemas and channels: from the summary of a whole file, else from the beginning up to the first chunk with any.
     pub(super) fn find_channels(&mut self) -> Result<(), RecordError> {
@@ -27,7 +30,7 @@ impl<R: Read + Seek> RunReader<R> {
             }
         }
         self.walk.rewind().map_err(|e| self.failed(&e))?;
-        while self.topics.is_empty() {
+        while self.topics.is_empty() && self.others.is_empty() {
             let Step::Record { opcode, offset } = self.walk.next().map_err(|e| self.failed(&e))? else { break };
             let body = std::mem::take(&mut self.walk.body);
             match opcode {
@@ -48,6 +51,16 @@ impl<R: Read + Seek> RunReader<R> {
         self.allowance = Allowance::of(self.walk.length());
         self.index_topics();
         Ok(())
+    }
+
+    /// Refuses a log of another program: its topics have rates of their own, and nobody declared what it is of.
+    pub(super) fn check_own(&self) -> Result<(), RecordError> {
+        if self.is_own || self.others.is_empty() {
+            return Ok(());
+        }
+        let ellipsis = if self.others.len() == MAX_NAMED { ", …" } else { "" };
+        let topics = format!("{}{ellipsis}", self.others.join(", "));
+        Err(RecordError::ForeignLog { path: self.path.clone(), topics })
     }
 
     pub(super) fn index_topics(&mut self) {
@@ -71,8 +84,13 @@ impl<R: Read + Seek> RunReader<R> {
                 }
             }
             op::CHANNEL => {
-                if let Some(channel) = FileChannel::parse(body).filter(|channel| channel.encoding == "cdr") {
+                let Some(channel) = FileChannel::parse(body) else { return };
+                self.is_own |= channel.metadata.contains_key(PREFIX_KEY);
+                if channel.encoding == "cdr" {
                     self.declare_channel(&channel);
+                }
+                if self.others.len() < MAX_NAMED && !self.others.iter().any(|topic| topic == channel.topic) {
+                    self.others.push(channel.topic.to_owned());
                 }
             }
             _ => {}

@@ -1,0 +1,51 @@
+//! What is in an MCAP log that another program recorded: its topics, and what of it is read. No role, no campaign: nobody declared any.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use froude_foreign::{Cells, Column, Part, mcap};
+use froude_identify::inspect::Inspection;
+use froude_identify::method::MethodError;
+use froude_records::finding::{Finding, Severity};
+use froude_records::text::counted;
+
+/// Its topics, each with messages, rate and fields; what is not read is a note.
+///
+/// # Errors
+///
+/// A file that cannot be read.
+pub(super) fn inspect(path: &Path) -> Result<Inspection, MethodError> {
+    let refuse = |what: String| MethodError::input(path, what);
+    let file = File::open(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+    let bytes = file.metadata().map_err(|e| refuse(format!("cannot be read: {e}")))?.len();
+    let contents = mcap::read(&mut BufReader::new(file), bytes).map_err(|e| refuse(e.to_string()))?;
+    let mut facts = vec![(
+        "log".to_owned(),
+        format!("of another program, with {} that can be read", counted(contents.parts.len(), "topic", "topics")),
+    )];
+    facts.extend(contents.parts.iter().map(|part| (part.name.clone(), described(part))));
+    let next = "write the topic that you need as CSV, with its times; a sidecar beside it states what the columns are";
+    facts.push(("next".to_owned(), next.to_owned()));
+    let findings = contents.notes.into_iter().map(|note| Finding::new(Severity::Note, "log-topic", note)).collect();
+    Ok(Inspection::new("topics", facts, findings))
+}
+
+/// `251 messages at 50.0 Hz, 5.000 s: gyro.x, gyro.y`.
+fn described(part: &Part) -> String {
+    let times = part.columns.iter().find_map(|column| match column {
+        Column { name, cells: Cells::Numbers(times), .. } if name == "time" => Some(times.as_slice()),
+        _ => None,
+    });
+    let times = times.unwrap_or_default();
+    let duration = match times {
+        [first, .., last] if last > first => {
+            let span = last - first;
+            format!(" at {:.1} Hz, {span:.3} s", (times.len() - 1) as f64 / span)
+        }
+        _ => String::new(),
+    };
+    let fields: Vec<&str> =
+        part.columns.iter().map(|column| column.name.as_str()).filter(|name| *name != "time").collect();
+    format!("{}{duration}: {}", counted(times.len(), "message", "messages"), fields.join(", "))
+}
