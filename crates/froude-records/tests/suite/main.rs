@@ -13,4 +13,5 @@ mod laws;
 mod official_reader;
 mod parquet_tables;
 mod runs;
+mod unit_spellings;
 mod writing;
