@@ -6,11 +6,12 @@
 //! proves that it is linear in its coefficients, and finds the unit of each of them.
 //!
 //! **Names.** A constant given by name, `pi`, a column of the table, else an alias
-//! (`u v w p q r` for `v_x v_y v_z w_x w_y w_z`); every other name is a coefficient,
-//! unless it is the name of a load or of a column that the table could have had.
-//! A column of the table that is called like an alias or like the letter of a load
-//! (`X Y Z K M N`) comes before it.
-//! **Grammar.** `+ - * / ^`, parentheses, `abs sqrt sin cos tan exp ln sign`.
+//! (`u v w p q r` for `v_x v_y v_z w_x w_y w_z`, `rho nu` for the water's density and
+//! kinematic viscosity), else `Re` or `Fr`; every other name is a coefficient, unless
+//! it is the name of a load or of a column that the table could have had (`phi theta
+//! psi` among them). A column of the table that is called like an alias or like the
+//! letter of a load (`X Y Z K M N`) comes before it.
+//! **Grammar.** `+ - * / ^`, parentheses, `abs sqrt sin cos tan exp ln sign CF_ITTC57`.
 //! `-v^2` is `-(v^2)`, `a/b*c` is `(a/b)*c`; `a^b^c` is refused as ambiguous.
 //! **Units.** SI dimensions; a coefficient has the load's unit over its regressor's.
 //! An angle is a pure number.
@@ -25,6 +26,7 @@ mod limits;
 mod names;
 mod part;
 mod program;
+mod similarity;
 #[cfg(test)]
 mod tests;
 mod token;
@@ -36,7 +38,7 @@ use unit::Unit;
 pub use crate::formula::limits::{COEFFICIENT_LIMIT, DEPTH_LIMIT, LENGTH_LIMIT};
 pub use crate::formula::unit::Dim;
 pub use error::FormulaError;
-pub use names::{aliased, channel_of_alias, load_column};
+pub use names::{Constant, aliased, channel_of_alias, load_column};
 
 /// A law for one load, linear in its coefficients.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,6 +51,8 @@ pub struct Formula {
     pub coefficients: Vec<(String, Dim)>,
     /// Channels that it reads, by column name, in order of first appearance.
     pub channels: Vec<String>,
+    /// The known numbers that it reads.
+    pub constants: Vec<Constant>,
     /// Whether one of the coefficients is an offset: its regressor reads no channel.
     pub offset: bool,
     /// A program per coefficient.
@@ -86,11 +90,12 @@ impl Formula {
         text: &str,
         channels: &dyn Fn(&str) -> Option<Dim>,
         load_dim: Dim,
-        constants: &[(String, f64, Dim)],
+        constants: &[Constant],
     ) -> Result<Self, FormulaError> {
         let tokens = token::tokens(text)?;
         let (expression, names) = grammar::expression(&tokens)?;
-        let names::Resolved { values, columns, coefficients } = names::resolve(&names, channels, constants)?;
+        let known = names::Known { channels, constants };
+        let names::Resolved { values, columns, coefficients, constants } = names::resolve(&names, &known)?;
         let affine = expression.value(&values)?;
 
         if affine.parts.is_empty() {
@@ -108,6 +113,7 @@ impl Formula {
             text: text.to_owned(),
             coefficients: Vec::new(),
             channels: columns,
+            constants,
             offset: false,
             programs: Vec::new(),
         };

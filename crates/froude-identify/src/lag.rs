@@ -13,7 +13,6 @@ use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
 use crate::dataset::{Dataset, labels};
-use crate::law::ForceLaw;
 use crate::regression::{ModelFit, Settings, regress};
 
 /// Chance of reporting a lag that is not there, over all loads of a law.
@@ -43,7 +42,7 @@ pub fn of_load(campaign: &Campaign, model: &ModelFit, data: &Dataset, load: &str
     let mut texts: IndexMap<String, String> = model.law.texts.clone();
     let text = texts.get_mut(load)?;
     *text = format!("{text} - {COEFFICIENT}*{SLOPE}");
-    let law = ForceLaw::formulas(&model.law.name, &texts, &data).ok()?;
+    let law = model.law.rewritten(&model.law.name, &texts, &data).ok()?;
     let settings =
         Settings { scatter: &model.scatter, ..Settings::new(&model.law.name, SourceKind::Tank, &campaign.identify) };
     let wide = regress(&law, &data, settings).ok()?;

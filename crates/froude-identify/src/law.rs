@@ -15,7 +15,7 @@ use indexmap::IndexMap;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::formula::unit::Dim;
-use crate::formula::{Formula, channel_of_alias, load_column};
+use crate::formula::{Constant, Formula, channel_of_alias, load_column};
 
 /// Reference speed of the linear coefficients of f1 and of the power law, m/s.
 pub const REFERENCE_SPEED_M_S: f64 = 1.0;
@@ -97,7 +97,48 @@ impl ForceLaw {
     ///
     /// What is wrong with a formula, with the model's name and the load.
     pub fn formulas(name: &str, texts: &IndexMap<String, String>, data: &Dataset) -> Result<Self, IdentifyError> {
-        Self::reading(name, texts, data, &|name| data.dimension(name))
+        Self::with_constants(name, texts, data, &[])
+    }
+
+    /// The same with known numbers by name, in SI.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::formulas`].
+    pub fn with_constants(
+        name: &str,
+        texts: &IndexMap<String, String>,
+        data: &Dataset,
+        constants: &[Constant],
+    ) -> Result<Self, IdentifyError> {
+        Self::reading(name, texts, data, &|name| data.dimension(name), constants)
+    }
+
+    /// Other formulas under the constants of this law.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::formulas`].
+    pub fn rewritten(
+        &self,
+        name: &str,
+        texts: &IndexMap<String, String>,
+        data: &Dataset,
+    ) -> Result<Self, IdentifyError> {
+        Self::with_constants(name, texts, data, &self.constants())
+    }
+
+    /// The known numbers that its formulas read, in SI.
+    #[must_use]
+    pub fn constants(&self) -> Vec<Constant> {
+        let Kind::Formulas(formulas) = &self.kind else { return Vec::new() };
+        let mut out: Vec<Constant> = Vec::new();
+        for constant in formulas.iter().flat_map(|formula| &formula.constants) {
+            if !out.contains(constant) {
+                out.push(constant.clone());
+            }
+        }
+        out
     }
 
     /// The same over the channels that `channel` knows.
@@ -106,6 +147,7 @@ impl ForceLaw {
         texts: &IndexMap<String, String>,
         data: &Dataset,
         channel: &dyn Fn(&str) -> Option<Dimension>,
+        constants: &[Constant],
     ) -> Result<Self, IdentifyError> {
         let mut formulas = Vec::new();
         let mut coefficients: IndexMap<String, Dimension> = IndexMap::new();
@@ -113,7 +155,7 @@ impl ForceLaw {
             let target = response_of(data, response);
             let wanted = data.dimension(target).ok_or_else(|| IdentifyError::no_such_channel(name, target, data))?;
             let channel = |n: &str| channel(n).map(exponents);
-            let formula = Formula::parse(target, text, &channel, exponents(wanted), &[])
+            let formula = Formula::parse(target, text, &channel, exponents(wanted), constants)
                 .map_err(|source| IdentifyError::Refused(format!("model {name:?}, {response}: {source}")))?;
             for (coefficient, dimension) in &formula.coefficients {
                 let dimension = dimension_of(*dimension);
@@ -128,13 +170,15 @@ impl ForceLaw {
             }
             formulas.push(formula);
         }
+        let read = formulas.iter().flat_map(|formula| &formula.channels).filter_map(|name| channel(name));
+        let beside: Vec<Dimension> = read.collect();
         Ok(Self {
             name: name.to_owned(),
             kind: Kind::Formulas(formulas),
             responses: texts.keys().map(|r| response_of(data, r).to_owned()).collect(),
             coefficients: coefficients
                 .iter()
-                .map(|(name, d)| CoefficientSpec { name: name.clone(), unit: d.to_string() })
+                .map(|(name, d)| CoefficientSpec { name: name.clone(), unit: d.written_beside(&beside) })
                 .collect(),
             texts: texts.clone(),
         })
@@ -244,7 +288,13 @@ impl ForceLaw {
             !inputs.contains_key(name) && channel_of_alias(name).is_some_and(|column| inputs.contains_key(column))
         };
         let channel = |name: &str| stated(name).or_else(|| data.dimension(name).filter(|_| !is_other(name)));
-        Self::reading(&estimate.law.name, texts, data, &channel)
+        let is_other = |name: &String| inputs.contains_key(name) || estimate.coefficients.contains_key(name);
+        let stated = estimate.law.constants.iter().filter(|(name, _)| !is_other(name));
+        let constants = stated.filter_map(|(name, m)| {
+            let unit = parse_unit(&m.unit).ok()?;
+            Some((name.clone(), unit.to_si(m.value), exponents(unit.dimension)))
+        });
+        Self::reading(&estimate.law.name, texts, data, &channel, &constants.collect::<Vec<_>>())
     }
 
     /// Derivatives of every response by every coefficient: rows stacked response by response,
@@ -417,11 +467,11 @@ impl ForceLaw {
 }
 
 /// A dimension as the formula room writes it: exponents of m, kg, s, K and A.
-fn exponents(d: Dimension) -> Dim {
+pub(crate) fn exponents(d: Dimension) -> Dim {
     [d.m, d.kg, d.s, d.k, d.a]
 }
 
-fn dimension_of([m, kg, s, k, a]: Dim) -> Dimension {
+pub(crate) fn dimension_of([m, kg, s, k, a]: Dim) -> Dimension {
     Dimension { m, kg, s, k, a }
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 use froude_records::campaign::Campaign;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::text::in_a_file_name;
-use froude_records::units::{Dimension, Unit, parse_unit};
+use froude_records::units::{Dimension, Unit, parse_unit, question};
 
 use crate::answer::Answer;
 use crate::error::IdentifyError;
@@ -46,7 +46,7 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, IdentifyEr
     for (name, channel) in &data.channels {
         let unit = match name.as_str() {
             "angle" => parse_unit("deg").unwrap_or_else(|_| Unit::si(channel.dimension)),
-            _ => Unit::si(channel.dimension),
+            _ => unit_of(name, channel.dimension),
         };
         // Zeros are subtracted: beside the corrected loads they would be subtracted again.
         if !name.starts_with("zero_") && !columns.iter().any(|c| &c.name == name) {
@@ -97,6 +97,15 @@ fn file_name(source: &str) -> String {
     // The source of a bare table is named after its file.
     let stem = source.trim_end_matches(".csv").trim_end_matches(".parquet");
     format!("observations-{}.csv", in_a_file_name(stem))
+}
+
+/// The SI unit of a column, in words that its own name does not make ambiguous.
+fn unit_of(name: &str, dimension: Dimension) -> Unit {
+    let si = Unit::si(dimension);
+    match question(name, &si) {
+        Some(_) => parse_unit("rad/s").unwrap_or(si),
+        None => si,
+    }
 }
 
 fn number(name: &str, si: &[f64], unit: Unit) -> Column {

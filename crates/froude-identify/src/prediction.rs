@@ -108,7 +108,7 @@ pub fn predicted(job: &Job) -> Result<Prediction, IdentifyError> {
 /// A law that reads what the rows lack.
 pub fn of_rows(all: &[&Estimate], estimates: &[&Estimate], data: Dataset) -> Result<Prediction, IdentifyError> {
     let of = |estimate: &&Estimate| {
-        of_estimate(estimate, &beside(all.iter().copied(), estimate), &with_density(&data, estimate))
+        of_estimate(estimate, &beside(all.iter().copied(), estimate), &in_water(&data, estimate))
     };
     let mut findings: Vec<Finding> = estimates.iter().filter_map(|estimate| without_bands(estimate)).collect();
     findings.extend(estimates.iter().filter_map(|estimate| load_at_rest(estimate, &data)));
@@ -180,7 +180,7 @@ fn load_at_rest(estimate: &Estimate, data: &Dataset) -> Option<Finding> {
     if data.rows == 0 {
         return None;
     }
-    let mut at_rest = with_density(data, estimate).subset(&[0]);
+    let mut at_rest = in_water(data, estimate).subset(&[0]);
     let names: Vec<(String, Dimension)> =
         at_rest.channels.iter().map(|(name, c)| (name.clone(), c.dimension)).collect();
     for (name, dimension) in names.into_iter().filter(|(name, _)| name != "density") {
@@ -222,11 +222,14 @@ fn chosen<'a>(all: &'a [Estimate], laws: &[String]) -> Result<Vec<&'a Estimate>,
     Ok(out)
 }
 
-/// A table that states no density is in the water that the coefficients refer to.
-fn with_density(data: &Dataset, estimate: &Estimate) -> Dataset {
+/// A table that states no density, and no viscosity, is in the water that the coefficients refer to.
+fn in_water(data: &Dataset, estimate: &Estimate) -> Dataset {
     let mut data = data.clone();
-    if let (None, Some(density)) = (data.values("density"), estimate.density()) {
-        data.put("density", vec![density.value; data.rows], Dimension::DENSITY);
+    for (name, dimension) in [("density", Dimension::DENSITY), ("kinematic_viscosity", Dimension::KINEMATIC_VISCOSITY)]
+    {
+        if let (None, Some(stated)) = (data.values(name), estimate.refers_to.get(name)) {
+            data.put(name, vec![stated.value; data.rows], dimension);
+        }
     }
     data
 }

@@ -12,7 +12,7 @@ use indexmap::IndexMap;
 
 use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
-use crate::law::{Kind, REFERENCE_SPEED_M_S, geometry_of};
+use crate::law::{Kind, REFERENCE_SPEED_M_S, dimension_of, geometry_of};
 use crate::regression::{ModelFit, Scatter};
 use crate::seam::reduced::{self, Choice, Reduced};
 use crate::selection::Recommendation;
@@ -30,6 +30,12 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         let value = d.iter().sum::<f64>() / d.len() as f64;
         refers_to.insert("density".to_owned(), Measured::of(value, "kg/m^3"));
     }
+    if let Some(nu) =
+        data.values("kinematic_viscosity").filter(|_| model.law.channels().contains(&"kinematic_viscosity"))
+    {
+        let value = nu.iter().sum::<f64>() / nu.len() as f64;
+        refers_to.insert("kinematic_viscosity".to_owned(), Measured::of(value, "m^2/s"));
+    }
     match &model.law.kind {
         Kind::Drag { body, .. } => {
             constants.insert("v_ref".to_owned(), Measured::of(REFERENCE_SPEED_M_S, "m/s"));
@@ -38,7 +44,13 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         Kind::PowerLaw { .. } => {
             constants.insert("U_ref".to_owned(), Measured::of(REFERENCE_SPEED_M_S, "m/s"));
         }
-        Kind::Formulas(_) => {}
+        Kind::Formulas(_) => constants.extend(
+            model
+                .law
+                .constants()
+                .into_iter()
+                .map(|(name, value, dim)| (name, Measured::of(value, dimension_of(dim).to_string()))),
+        ),
     }
     constants.extend(stated.constants.clone());
     refers_to.extend(stated.refers_to.clone());

@@ -1,6 +1,7 @@
 //! One source from its table to its estimates: reduce, lint, and the laws that its channels allow.
 
 pub(crate) mod asked;
+mod constants;
 pub(crate) mod handed;
 pub(crate) mod models;
 

@@ -16,7 +16,7 @@ use crate::error::{Place, RecordError};
 use crate::estimate::ErrorKind;
 use crate::given_option::GivenOption;
 use crate::section::Section;
-use crate::units::{Dimension, Unit};
+use crate::units::{Dimension, Quantity, Unit};
 
 pub use crate::body_axis::BodyAxis;
 pub use crate::keep::{Comparison, Keep, KeepClause, KeepValue};
@@ -38,6 +38,8 @@ pub struct Campaign {
     pub body: Option<BodySpec>,
     /// The tank.
     pub tank: Option<Tank>,
+    /// Known numbers that formulas name (`[constants]`).
+    pub constants: IndexMap<String, Quantity>,
     /// Where observations and records come from.
     pub sources: Vec<Source>,
     /// How to fit.

@@ -29,7 +29,7 @@ use crate::prior_record;
 use crate::read;
 use crate::section::{Section, Value, found};
 use crate::section_values::{Asks, MOST_RUNS, OF_RUNS, at_most, configurations, plan_of, product};
-use crate::units::{Dimension, Unit};
+use crate::units::{Dimension, Quantity, Unit};
 
 /// Where the numbers of a source can lie.
 pub const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
@@ -67,6 +67,7 @@ pub fn parse_campaign(path: &Path, text: &str) -> Result<Campaign, RecordError> 
         fluid: root.section("fluid")?.map(|s| fluid(&s)).transpose()?.unwrap_or_default(),
         body: root.section("body")?.map(|s| body(&s)).transpose()?,
         tank: root.section("tank")?.map(|s| tank(&s)).transpose()?,
+        constants: root.section("constants")?.map(|s| constants(&s)).transpose()?.unwrap_or_default(),
         sources: (root.sections("source")?.iter().enumerate())
             .map(|(index, s)| read_source(s, &document, index))
             .collect::<Result<_, _>>()?,
@@ -130,6 +131,10 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
         depth_m: values.number("depth"),
         submergence_m: values.number("submergence"),
     })
+}
+
+fn constants(s: &Section<'_>) -> Result<IndexMap<String, Quantity>, RecordError> {
+    s.entries().map(|(name, _, value)| Ok((name.to_owned(), s.as_quantity(name, value)?))).collect()
 }
 
 /// What belongs to the rows of a table, and would be passed over elsewhere.

@@ -19,6 +19,7 @@ pub const ROOT: &[Key] = &[
     optional("fluid", Kind::Table(FLUID), "from columns of the table", "the water"),
     optional("body", Kind::Table(BODY), "not declared", "the body: lengths, areas, volumes"),
     optional("tank", Kind::Table(TANK), "unbounded water", "the tank"),
+    optional("constants", Kind::Named(&[], &Kind::Any), "none", "known numbers that formulas name, each with its unit"),
     optional("source", Kind::List(&Kind::Table(SOURCE)), "none", "where observations and records come from"),
     optional("identify", Kind::Table(IDENTIFY), "its defaults", "how to fit, for all sources"),
     optional("simulate", Kind::Table(SIMULATE), "nothing is simulated", "how to simulate observations"),

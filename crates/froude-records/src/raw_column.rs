@@ -2,7 +2,7 @@
 
 use crate::error::{Place, RecordError, briefly};
 use crate::known_columns::{expected, known_dimension, usual_unit};
-use crate::units::{Unit, UnitError, is_plausible};
+use crate::units::{Unit, UnitError, is_plausible, question};
 
 /// The cells of one column as the format gives them.
 pub(crate) enum Raw {
@@ -23,13 +23,16 @@ pub(crate) fn unit_of_column(name: &str, unit: Unit) -> Unit {
     if name.starts_with("std_") { Unit { offset: 0.0, ..unit } } else { unit }
 }
 
-/// A known name with another dimension is an error.
+/// A known name with another dimension is an error, and so is a unit that is read in two ways under this name.
 pub(crate) fn check_dimension(place: &Place, header: &str, name: &str, unit: &Unit) -> Result<(), RecordError> {
     match expected(name) {
         Some((dimension, words)) if dimension != unit.dimension => {
             Err(RecordError::wrong_dimension(place.clone(), header, &words, &unit.dimension.describe()))
         }
-        _ => Ok(()),
+        _ => match question(name, unit) {
+            Some(question) => Err(RecordError::column(place.clone(), header, format!(": {question}"))),
+            None => Ok(()),
+        },
     }
 }
 

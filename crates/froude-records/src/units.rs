@@ -4,45 +4,57 @@
 //! into a factor to SI and a [`Dimension`], so that a length where a speed
 //! belongs is found before any number is used.
 //!
-//! **Grammar.** A unit is a product of symbols, joined by a space, `*` or `·`,
-//! with whole exponents (`m^2`, `m2`, `m²`, `s^-1`), divided by one symbol or by
-//! a product in parentheses: `kg/(m s)`. `kg/m s` is refused because it is read
-//! in two ways; `m/s/s` is not. A quantity is a number and a unit.
+//! **Grammar.** A unit is a product of symbols, joined by a space, `*`, `·`, or a
+//! point or hyphen that touches both (`N.m`, `N-m`), with whole exponents (`m^2`,
+//! `m2`, `m²`, `s^-1`, `s-1`), divided by one symbol or by a product in parentheses:
+//! `kg/(m s)`. `kg/m s` and `m/s^-1` are refused because they are read in two ways;
+//! `m/s/s` is not. Brackets about a unit are left out. A quantity is a number and a unit.
 //!
 //! **Angles** are pure numbers (rad = 1), as in the SI: `rad/s`, `Hz` and `1/s`
-//! have one dimension, and `1 rpm` is 2π/60 of it while `1 Hz` is 1.
+//! have one dimension, and `1 rpm` is 2π/60 of it while `1 Hz` is 1. Of a column that
+//! is a rate of turning only units that name an angle are read ([`question`]).
 //!
-//! **Temperatures.** `degC` has an offset and therefore stands alone; a
+//! **Temperatures.** `degC` and `degF` have an offset and therefore stand alone; a
 //! difference or a standard uncertainty in `degC` is the same number of kelvin.
 //!
 //! | symbols | prefixes |
 //! | --- | --- |
-//! | `m s g N Pa Hz A V W J l L K Nm` | `n u µ m c d h k M G` |
-//! | `rad deg ° gon rev rpm min h degC °C ft in kn kt nmi lb lbf gf kgf t bar Nmm % ppm 1` | none |
+//! | `m s g N Pa Hz A V ohm W J l L K Nm` | `n u µ m c d h k M G` |
+//! | `rad deg ° gon rev rpm rps min h degC degF ft in yd mi nmi kn kt mph g0` | none |
+//! | `lb oz t ton_short ton_long lbf ozf gf kgf tf kip bar mbar dbar atm psi mmHg mmH2O cmH2O mH2O` | none |
+//! | `Nmm Ncm PS hp_imp gal_US gal_imp cSt cP % ‰ ppm strain microstrain count 1` | none |
 //!
 //! Angles, minutes, hours and degC take no prefix: `Grad` is German for degree and French for a 400th of a turn, never a
 //! milliard of radians.
+//!
+//! Other spellings with one meaning (`sec`, `knots`, `lbs`, `U/min`, `-`) are read as these; those with several are refused, and the message
+//! lists the units to choose from, each with its quantity.
 
 mod dimension;
 mod error;
+mod expected;
+mod foreign;
 mod parser;
+mod spellings;
 mod symbols;
 
 use std::fmt;
 
 pub use dimension::Dimension;
 pub use error::UnitError;
+pub use expected::{parse_unit_for, question};
 use parser::Parser;
 pub(crate) use parser::SUPERSCRIPTS;
+use symbols::TEMPERATURES;
 
 /// A unit as written, with its way to SI: `si = factor · value + offset`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
-    /// As written, without surrounding spaces.
+    /// As written, without surrounding spaces and brackets.
     pub text: String,
     /// SI units in one of this unit.
     pub factor: f64,
-    /// SI value of zero; 0 for all units but `degC`.
+    /// SI value of zero; 0 for all units but `degC` and `degF`.
     pub offset: f64,
     /// What it measures.
     pub dimension: Dimension,
@@ -165,10 +177,17 @@ pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
     if text.len() > LONGEST {
         return Err(UnitError::syntax(&shorten(text), &format!("it is longer than {LONGEST} bytes")));
     }
-    if matches!(text, "degC" | "°C") {
-        return Ok(Unit { text: text.to_owned(), factor: 1.0, offset: 273.15, dimension: Dimension::TEMPERATURE });
+    let text = bare(text);
+    if NO_UNIT.contains(&text) {
+        let newtons = if text == "N/A" { ", `N A^-1` for newtons per ampere," } else { "," };
+        let advice = format!("write `1` where the numbers are pure{newtons} and else their unit");
+        return Err(UnitError::Other(format!("`{text}` is not a unit; {advice}")));
     }
-    let mut parser = Parser { text, rest: text, depth: 0 };
+    if let Some((_, factor, offset)) = TEMPERATURES.iter().find(|(spellings, ..)| spellings.contains(&text)) {
+        return Ok(Unit { text: text.to_owned(), factor: *factor, offset: *offset, dimension: Dimension::TEMPERATURE });
+    }
+    let inner = spellings::whole(text);
+    let mut parser = Parser { text: inner, rest: inner, depth: 0, is_inverse: false };
     let scale = parser.quotient()?;
     if let Some(c) = parser.rest.chars().next() {
         return Err(parser.syntax(format!("unexpected `{c}`")));
@@ -178,6 +197,15 @@ pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
         return Err(UnitError::range(text));
     }
     Ok(Unit { text: text.to_owned(), factor, offset: 0.0, dimension: scale.dimension })
+}
+
+/// What people write where there is no unit to write, and where they do not know it.
+const NO_UNIT: &[&str] = &["n/a", "N/A", "na", "NA", "none", "None", "nil", "a.u.", "arb", "?", "??", "???"];
+
+/// A unit without the brackets about it: `[m/s]`.
+fn bare(text: &str) -> &str {
+    let text = text.trim();
+    text.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')).map_or(text, str::trim)
 }
 
 /// Read a number and its unit, such as `0.4 m/s`, `25 %` or `1e-6 m^2/s`.

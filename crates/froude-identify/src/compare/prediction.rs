@@ -101,7 +101,13 @@ impl Points {
         let links =
             links.map_or_else(|| vec![1.0], |r| if r.low == r.high { vec![r.low] } else { vec![r.low, r.high] });
         let density = chosen.first().and_then(|(n, _)| n.estimate.density()).map_or(1000.0, |d| d.value);
-        Ok(Some(Self { data: operating_points(&speed, &angle, &links, density), has_links }))
+        let mut data = operating_points(&speed, &angle, &links, density);
+        let viscosity = chosen.iter().find_map(|(n, _)| n.estimate.refers_to.get("kinematic_viscosity"));
+        if let Some(viscosity) = viscosity {
+            let values = vec![viscosity.value; data.rows];
+            data.put("kinematic_viscosity", values, Dimension::KINEMATIC_VISCOSITY);
+        }
+        Ok(Some(Self { data, has_links }))
     }
 }
 

@@ -46,7 +46,7 @@ impl Affine {
         Self { fixed: None, parts: vec![(name.to_owned(), Part::one())] }
     }
 
-    fn fixed(part: Part) -> Self {
+    pub(super) fn fixed(part: Part) -> Self {
         Self { fixed: Some(part), parts: Vec::new() }
     }
 

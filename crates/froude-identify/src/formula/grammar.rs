@@ -193,7 +193,7 @@ impl<'a> Reader<'_, 'a> {
             (None, Kind::Open) => {
                 let Token { text, position, .. } = token;
                 Err(FormulaError(format!(
-                    "{text} at character {position} is not a function; known are abs, sqrt, sin, cos, tan, exp, ln and sign; a product is \
+                    "{text} at character {position} is not a function; known are abs, sqrt, sin, cos, tan, exp, ln, sign and CF_ITTC57; a product is \
                      written {text}*(…)"
                 )))
             }

@@ -28,6 +28,11 @@ impl Part {
         Self { program: vec![Op::Number(1.0)], unit: Unit::ONE, text: "1".to_owned(), binding: Binding::Atom }
     }
 
+    /// A pure number that is computed from what is known, under the name that stands for it.
+    pub(super) fn named(name: &str, program: Vec<Op>) -> Self {
+        Self { program, unit: Unit::ONE, text: name.to_owned(), binding: Binding::Atom }
+    }
+
     fn number(&self) -> Option<f64> {
         match self.program[..] {
             [Op::Number(x)] => Some(x),

@@ -1,5 +1,7 @@
 //! What is computed a row: operations in postfix order on a stack.
 
+use froude_hydro::similarity::friction_ittc57;
+
 /// One operation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Op {
@@ -45,10 +47,13 @@ pub(super) enum Function {
     Exp,
     Ln,
     Sign,
+    /// The ITTC-57 line of a Reynolds number; NaN below 1000, where it has no meaning.
+    FrictionIttc57,
 }
 
 impl Function {
-    const ALL: [Self; 8] = [Self::Abs, Self::Sqrt, Self::Sin, Self::Cos, Self::Tan, Self::Exp, Self::Ln, Self::Sign];
+    const ALL: [Self; 9] =
+        [Self::Abs, Self::Sqrt, Self::Sin, Self::Cos, Self::Tan, Self::Exp, Self::Ln, Self::Sign, Self::FrictionIttc57];
 
     /// The function of this name.
     pub(super) fn named(name: &str) -> Option<Self> {
@@ -65,6 +70,7 @@ impl Function {
             Self::Exp => "exp",
             Self::Ln => "ln",
             Self::Sign => "sign",
+            Self::FrictionIttc57 => "CF_ITTC57",
         }
     }
 
@@ -79,6 +85,7 @@ impl Function {
             Self::Ln => x.ln(),
             Self::Sign if x == 0.0 => 0.0,
             Self::Sign => x.signum(),
+            Self::FrictionIttc57 => friction_ittc57(x).unwrap_or(f64::NAN),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What formulas mean, and what is refused.
 
 mod language;
+mod named_numbers;
 mod refusals;
 mod round_trip;
 mod trees;

@@ -117,13 +117,34 @@ impl<'a> Job<'a> {
             fit::FitError::NotFinite(_) if self.law.is_nonlinear() => {
                 self.no_fit(ran_away(self.law, self.data, &self.newtons))
             }
-            source => IdentifyError::Fit {
-                source_name: self.settings.source_name.to_owned(),
-                model: self.law.name.clone(),
-                source: Box::new(source),
+            source => match no_value(self.law, self.data).filter(|_| matches!(source, fit::FitError::NotFinite(_))) {
+                Some(why) => self.no_fit(why),
+                None => IdentifyError::Fit {
+                    source_name: self.settings.source_name.to_owned(),
+                    model: self.law.name.clone(),
+                    source: Box::new(source),
+                },
             },
         }
     }
+}
+
+/// The first row in which a formula has no value, and what to do.
+fn no_value(law: &ForceLaw, data: &Dataset) -> Option<String> {
+    let Kind::Formulas(_) = &law.kind else { return None };
+    let slopes = law.regressors(data, &[]).ok()?;
+    let at = |row: usize| (0..slopes.ncols()).find(|&j| !slopes[(row, j)].is_finite()).map(|j| (row, j));
+    let (row, j) = (0..slopes.nrows()).find_map(at)?;
+    let load = law.responses.get(row / data.rows.max(1))?;
+    let coefficient = &law.coefficients.get(j)?.name;
+    let speed = data.values("speed").and_then(|speed| speed.get(row % data.rows.max(1)));
+    let at_speed = speed.map_or_else(String::new, |speed| format!(", at {speed} m/s"));
+    Some(format!(
+        "in {}{at_speed} the factor of {coefficient} in {load} is {}: a root or logarithm of a negative number, a division by zero, or \
+         CF_ITTC57 below Re = 1000; leave the row out with `keep`",
+        data.row_name(row % data.rows.max(1)),
+        slopes[(row, j)]
+    ))
 }
 
 /// Why the iteration of a power law left all bounds.

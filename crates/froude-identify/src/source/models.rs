@@ -12,6 +12,7 @@ use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::lint::motion::moving;
+use crate::source::constants::{constants, with_undeclared};
 use crate::validity::{AT_REST, off_axis};
 
 /// Built-in models that need no body.
@@ -104,7 +105,9 @@ pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<
             moving_axes(data, source)?;
             out.push(ForceLaw::drag(model, body(campaign, data, name)?, CrossTerm::AsPrinted));
         } else if let Some(user) = identify.user_models.iter().find(|m| &m.name == name) {
-            out.push(ForceLaw::formulas(name, &user.formulas, data)?);
+            let known = constants(campaign, data)?;
+            let law = ForceLaw::with_constants(name, &user.formulas, data, &known);
+            out.push(law.map_err(|error| with_undeclared(error, &user.formulas, &known, data))?);
         } else {
             match name.as_str() {
                 "quadratic" => out.push(polynomial(name, data, source, false)?),

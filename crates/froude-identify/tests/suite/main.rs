@@ -5,6 +5,7 @@ mod advice;
 mod choices;
 mod declare;
 mod drift;
+mod form_factor;
 mod idle;
 mod in_time;
 mod physics;

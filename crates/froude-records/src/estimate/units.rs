@@ -211,6 +211,7 @@ fn ends(unit: &Unit, interval: &mut Option<[f64; 2]>) {
 fn of_reference(name: &str) -> Option<Dimension> {
     Some(match name {
         "density" => Dimension::DENSITY,
+        "kinematic_viscosity" => Dimension::KINEMATIC_VISCOSITY,
         "area" | "head_side_area" | "tail_side_area" => Dimension::AREA,
         "volume" | "link_volume" => Dimension::VOLUME,
         "length" | "major_semi_axis" | "minor_semi_axis" | "half_length" => Dimension::LENGTH,

@@ -60,6 +60,8 @@ impl Dimension {
     pub const CURRENT: Self = Self { a: 1, ..Self::ONE };
     /// Voltage, V.
     pub const VOLTAGE: Self = Self { m: 2, kg: 1, s: -3, k: 0, a: -1 };
+    /// Electric resistance, ohm.
+    pub const RESISTANCE: Self = Self { m: 2, kg: 1, s: -3, k: 0, a: -2 };
 
     /// A mechanical dimension from its exponents of metre, kilogram and second.
     #[must_use]
@@ -121,45 +123,93 @@ impl Dimension {
             Self::TEMPERATURE => return "a temperature (degC or K)".to_owned(),
             Self::CURRENT => "a current",
             Self::VOLTAGE => "a voltage",
+            Self::RESISTANCE => "an electrical resistance",
             _ => return format!("a quantity in {self}"),
         };
         format!("{words} ({self})")
     }
 }
 
-impl fmt::Display for Dimension {
-    /// The SI unit as text that [`parse_unit`](super::parse_unit) reads back: `kg/m^3`, `N m`, `1`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let named = match *self {
-            Self::ONE => "1",
-            Self::FORCE => "N",
-            Self::MOMENT => "N m",
-            Self::PRESSURE => "Pa",
-            Self::DYNAMIC_VISCOSITY => "Pa s",
-            Self::POWER => "W",
-            Self::VOLTAGE => "V",
-            _ => "",
+impl Dimension {
+    /// The SI unit, written with volts or amperes where only one of them is among `beside`, the dimensions of the columns that it belongs to.
+    ///
+    /// `N/V^2` of a thrust over a voltage, rather than the base units `s^4 A^2/(kg m^3)`. Without electricity it is the same as by `Display`.
+    #[must_use]
+    pub fn written_beside(self, beside: &[Self]) -> String {
+        let has = |dimension| beside.contains(&dimension);
+        match (has(Self::VOLTAGE), has(Self::CURRENT)) {
+            (true, false) => self.over(Self::VOLTAGE, "V").unwrap_or_else(|| self.to_string()),
+            (false, true) => self.over(Self::CURRENT, "A").unwrap_or_else(|| self.to_string()),
+            _ => self.to_string(),
+        }
+    }
+
+    /// As a mechanical unit times a power of an electrical one; `None` where there is no such power.
+    fn over(self, electrical: Self, symbol: &'static str) -> Option<String> {
+        let power = self.a.checked_mul(electrical.a)?;
+        let rest = self.checked_div(electrical.checked_powi(power)?)?;
+        let mut parts = rest.parts();
+        parts.insert(0, (symbol, power));
+        (power != 0).then(|| joined(&parts))
+    }
+
+    /// Symbols of a mechanical dimension or of base units, with their exponents.
+    fn parts(self) -> Vec<(&'static str, i8)> {
+        let named: &[(&'static str, i8)] = match self {
+            Self::ONE => return Vec::new(),
+            Self::FORCE => &[("N", 1)],
+            Self::MOMENT => &[("N", 1), ("m", 1)],
+            Self::PRESSURE => &[("Pa", 1)],
+            Self::DYNAMIC_VISCOSITY => &[("Pa", 1), ("s", 1)],
+            Self::POWER => &[("W", 1)],
+            Self::VOLTAGE => &[("V", 1)],
+            Self::RESISTANCE => &[("ohm", 1)],
+            _ => &[],
         };
         if !named.is_empty() {
-            return f.write_str(named);
+            return named.to_vec();
         }
         let bases = [("kg", self.kg), ("m", self.m), ("s", self.s), ("K", self.k), ("A", self.a)];
-        let product = |positive: bool| {
-            bases
-                .iter()
-                .filter(|(_, e)| *e != 0 && (*e > 0) == positive)
-                .map(|(symbol, e)| match e.unsigned_abs() {
-                    1 => (*symbol).to_owned(),
-                    power => format!("{symbol}^{power}"),
-                })
-                .collect::<Vec<_>>()
-        };
-        let (above, below) = (product(true), product(false));
-        f.write_str(&if above.is_empty() { "1".to_owned() } else { above.join(" ") })?;
-        match below.len() {
-            0 => Ok(()),
-            1 => write!(f, "/{}", below[0]),
-            _ => write!(f, "/({})", below.join(" ")),
+        bases.into_iter().filter(|(_, exponent)| *exponent != 0).collect()
+    }
+}
+
+/// `kg/m^3`, `N m`, `1/(s^2 A)`, `1`.
+fn joined(parts: &[(&str, i8)]) -> String {
+    let product = |positive: bool| {
+        let chosen = parts.iter().filter(|(_, e)| (*e > 0) == positive);
+        let words = chosen.map(|(symbol, e)| match e.unsigned_abs() {
+            1 => (*symbol).to_owned(),
+            power => format!("{symbol}^{power}"),
+        });
+        words.collect::<Vec<_>>()
+    };
+    let (above, below) = (product(true), product(false));
+    let above = if above.is_empty() { "1".to_owned() } else { above.join(" ") };
+    match below.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        [] => above,
+        // `N/A` is what people write where there is no value.
+        ["A"] if above == "N" => "N A^-1".to_owned(),
+        [one] => format!("{above}/{one}"),
+        several => format!("{above}/({})", several.join(" ")),
+    }
+}
+
+impl fmt::Display for Dimension {
+    /// The SI unit as text that [`parse_unit`](super::parse_unit) reads back: `kg/m^3`, `N m`, `1`, `N/V^2`.
+    ///
+    /// One with electricity is written with amperes, with volts or in base units: the first of these with the fewest symbols.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let own = joined(&self.parts());
+        if self.a == 0 || self.parts().len() == 1 {
+            return f.write_str(&own);
         }
+        // A newton metre is one unit, as the joule is.
+        let length = |text: &String| {
+            text.replace("N m", "J").split(|c: char| !c.is_ascii_alphabetic()).filter(|word| !word.is_empty()).count()
+        };
+        let electrical = [self.over(Self::CURRENT, "A"), self.over(Self::VOLTAGE, "V")];
+        let all = electrical.into_iter().flatten().chain([own]);
+        f.write_str(&all.min_by_key(length).unwrap_or_default())
     }
 }

@@ -1,7 +1,7 @@
 //! Why a text is no unit, and what was probably meant.
 
-use super::symbols::{NEVER_PREFIXED, PLAIN, PREFIXED, PREFIXES};
-use super::{Dimension, number_length, parse_unit};
+use super::foreign::advice;
+use super::{Dimension, number_length};
 
 /// Why a text is not a unit or not the quantity asked for.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -75,55 +75,5 @@ impl UnitError {
             }
             other => other,
         }
-    }
-}
-
-/// What to write for a prefix before a unit that takes none, with the unit's kind.
-fn no_prefix(symbol: &str) -> Option<(Dimension, String)> {
-    PREFIXES.iter().find_map(|(prefix, above, below)| {
-        let unit = NEVER_PREFIXED.iter().find(|unit| symbol.strip_prefix(prefix) == Some(**unit))?;
-        let dimension = parse_unit(unit).ok()?.dimension;
-        Some((
-            dimension,
-            format!("; `{unit}` takes no prefix: write `{unit}`, and the numbers times {}", above / below),
-        ))
-    })
-}
-
-/// What was probably meant, among the units of one kind where that is known.
-pub(super) fn advice(symbol: &str, dimension: Option<Dimension>) -> String {
-    let is_wanted = |found: Dimension| dimension.is_none_or(|wanted| wanted == found);
-    if is_wanted(Dimension::ANGLE)
-        && matches!(symbol.to_lowercase().as_str(), "grad" | "grads" | "grade" | "gradian" | "gradians")
-    {
-        return "; did you mean `deg` (360 to the turn) or `gon` (400 to the turn)?".to_owned();
-    }
-    if let Some(told) = no_prefix(symbol).filter(|(dimension, _)| is_wanted(*dimension)) {
-        return told.1;
-    }
-    let meant = match symbol {
-        "mps" => "m/s",
-        "mps2" => "m/s^2",
-        "sec" | "second" | "seconds" => "s",
-        "hr" | "hour" | "hours" => "h",
-        "degree" | "degrees" => "deg",
-        "radian" | "radians" => "rad",
-        "kph" => "km/h",
-        "knot" | "knots" | "kts" => "kn",
-        "C" | "Celsius" | "celsius" => "degC",
-        "newton" | "newtons" | "Newton" => "N",
-        "meter" | "meters" | "metre" | "metres" => "m",
-        "litre" | "litres" | "liter" | "liters" => "l",
-        "kelvin" | "Kelvin" => "K",
-        _ => "",
-    };
-    if parse_unit(meant).is_ok_and(|unit| is_wanted(unit.dimension)) {
-        return format!("; did you mean `{meant}`?");
-    }
-    let plain = PLAIN.iter().map(|u| (u.0, u.3)).chain(PREFIXED.iter().map(|u| (u.0, u.2)));
-    let known = plain.chain([("degC", Dimension::TEMPERATURE)]).filter(|(_, found)| is_wanted(*found));
-    match crate::nearest::nearest(symbol, known.map(|(name, _)| name)) {
-        Some(near) => format!("; did you mean `{near}`?"),
-        None => String::new(),
     }
 }

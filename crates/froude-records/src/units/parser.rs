@@ -1,7 +1,7 @@
 //! The grammar of a unit: products, whole exponents, one division.
 
-use super::error::advice;
-use super::symbols::look_up;
+use super::foreign::advice;
+use super::symbols::{TEMPERATURES, WITH_DIGITS, look_up};
 use super::{Dimension, UnitError, shorten};
 
 /// A factor kept as a quotient, so that km/h is 1000/3600 and no rounding is added.
@@ -16,6 +16,8 @@ pub(super) struct Parser<'a> {
     pub(super) text: &'a str,
     pub(super) rest: &'a str,
     pub(super) depth: usize,
+    /// Whether the last symbol carries a negative exponent.
+    pub(super) is_inverse: bool,
 }
 
 impl Parser<'_> {
@@ -33,7 +35,14 @@ impl Parser<'_> {
         self.rest = self.rest.trim_start();
     }
 
-    /// quotient = power { (" " | "*" | "·") power } { "/" power }
+    /// A sign of a product that touches both of its factors: `N-m`, `m.s-1`, `kgf.cm`.
+    fn touches(&self, sign: char) -> bool {
+        let is_between =
+            self.rest.strip_prefix(sign).is_some_and(|rest| rest.starts_with(|c: char| is_letter(c) || c == '('));
+        is_between && !self.text[..self.text.len() - self.rest.len()].ends_with(char::is_whitespace)
+    }
+
+    /// quotient = power { (" " | "*" | "·" | "." | "-") power } { "/" power }
     pub(super) fn quotient(&mut self) -> Result<Scale, UnitError> {
         let mut total = self.power()?;
         let mut was_divided = false;
@@ -43,7 +52,9 @@ impl Parser<'_> {
             let divide = match c {
                 ')' => return Ok(total),
                 '/' => true,
-                '*' | '·' | '⋅' | '×' => false,
+                '*' | '·' | '⋅' | '×' | '∙' | '•' => false,
+                '.' | '-' if self.touches(c) => false,
+                '.' | '-' => return Err(self.syntax(format!("unexpected `{c}`"))),
                 _ => {
                     // A space stood here, or two factors touch: `m(s)`.
                     if was_divided {
@@ -59,6 +70,11 @@ impl Parser<'_> {
             }
             self.rest = &self.rest[c.len_utf8()..];
             let factor = self.power()?;
+            if divide && self.is_inverse {
+                let problem =
+                    "can be read in two ways; divide, as in `m/s`, or write a negative exponent, as in `m s^-1`";
+                return Err(UnitError::Other(format!("`{}` {problem}", self.text)));
+            }
             total = self.combine(total, factor, divide)?;
             was_divided |= divide;
         }
@@ -75,6 +91,7 @@ impl Parser<'_> {
     /// power = ("(" quotient ")" | symbol) [ exponent ]
     fn power(&mut self) -> Result<Scale, UnitError> {
         self.skip_spaces();
+        let is_product = self.rest.starts_with('(');
         let base = if let Some(inner) = self.rest.strip_prefix('(') {
             self.depth += 1;
             if self.depth > 8 {
@@ -90,6 +107,7 @@ impl Parser<'_> {
             self.symbol()?
         };
         let exponent = self.exponent()?;
+        self.is_inverse = exponent < 0 && !is_product;
         let dimension = base.dimension.checked_powi(exponent).ok_or_else(|| UnitError::range(self.text))?;
         let power = i32::from(exponent.unsigned_abs());
         let (above, below) = (base.above.powi(power), base.below.powi(power));
@@ -101,13 +119,16 @@ impl Parser<'_> {
     }
 
     fn symbol(&mut self) -> Result<Scale, UnitError> {
-        let is_letter = |c: char| c.is_alphabetic() || matches!(c, '°' | '%' | '_' | '\'' | '"');
-        let end = self.rest.char_indices().find(|(_, c)| !is_letter(*c)).map_or(self.rest.len(), |(i, _)| i);
-        let (symbol, rest) = self.rest.split_at(end);
+        let with_digits = WITH_DIGITS.iter().find(|name| {
+            let rest = self.rest.strip_prefix(**name);
+            rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit() || is_letter(c)))
+        });
+        let letters = self.rest.char_indices().find(|(_, c)| !is_letter(*c)).map_or(self.rest.len(), |(i, _)| i);
+        let (symbol, rest) = self.rest.split_at(with_digits.map_or(letters, |name| name.len()));
         if symbol.is_empty() {
             // The only number that is a unit is 1, and no digit may follow it.
             if let Some(rest) = self.rest.strip_prefix('1')
-                && !rest.starts_with(|c: char| c.is_ascii_digit() || c == '.' || is_letter(c))
+                && !rest.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '−') || is_letter(c))
             {
                 self.rest = rest;
                 return Ok(Scale { above: 1.0, below: 1.0, dimension: Dimension::ONE });
@@ -118,9 +139,9 @@ impl Parser<'_> {
             });
         }
         self.rest = rest;
-        if matches!(symbol, "degC" | "°C") {
-            let problem = "degC has an offset and can only stand alone; write K for differences";
-            return Err(UnitError::Other(format!("`{}`: {problem}", self.text)));
+        if TEMPERATURES.iter().any(|(spellings, ..)| spellings.contains(&symbol)) {
+            let problem = "has an offset and can only stand alone; write K for differences";
+            return Err(UnitError::Other(format!("`{}`: {symbol} {problem}", self.text)));
         }
         let (above, below, dimension) = look_up(symbol)
             .ok_or_else(|| UnitError::Unknown { symbol: symbol.to_owned(), advice: advice(symbol, None) })?;
@@ -137,7 +158,8 @@ impl Parser<'_> {
             self.rest = &self.rest[length..];
             return Ok(value);
         }
-        let (after, is_marked) = match self.rest.trim_start().strip_prefix('^') {
+        let trimmed = self.rest.trim_start();
+        let (after, is_marked) = match trimmed.strip_prefix('^').or_else(|| trimmed.strip_prefix("**")) {
             Some(after) => (after.trim_start(), true),
             None => (self.rest, false),
         };
@@ -145,15 +167,23 @@ impl Parser<'_> {
             Some(inner) if is_marked => (inner.trim_start(), true),
             _ => (after, false),
         };
-        let sign = usize::from(is_marked && body.starts_with(['-', '+']));
+        // The minus of `s-1` and `s−1`; a plus is marked.
+        let minus = ['-', '−'].into_iter().find(|sign| body.starts_with(*sign)).map_or(0, char::len_utf8);
+        let sign = minus.max(usize::from(is_marked && body.starts_with('+')));
         let digits = body[sign..].bytes().take_while(u8::is_ascii_digit).count();
         if digits == 0 {
             return if is_marked { Err(bad(after)) } else { Ok(1) };
         }
         let end = sign + digits;
-        let value: i8 = body[..end].parse().map_err(|_| bad(&body[..end]))?;
+        let size = &body[sign..end];
+        // A name that ends in a zero is no power: `g0`, `x0`.
+        if !is_marked && size.starts_with('0') {
+            return Err(bad(&body[..end]));
+        }
+        let size: i8 = size.parse().map_err(|_| bad(&body[..end]))?;
+        let value = if minus > 0 { -size } else { size };
         let mut rest = &body[end..];
-        if rest.starts_with('.') {
+        if rest.strip_prefix('.').is_some_and(|rest| !rest.starts_with(is_letter)) {
             return Err(bad(body));
         }
         if is_closed {
@@ -162,6 +192,11 @@ impl Parser<'_> {
         self.rest = rest;
         Ok(value)
     }
+}
+
+/// What the name of a unit is made of.
+fn is_letter(c: char) -> bool {
+    c.is_alphabetic() || matches!(c, '°' | '%' | '‰' | '_' | '\'' | '"')
 }
 
 /// The raised digits, from 0 on.

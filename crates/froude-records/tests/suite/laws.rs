@@ -227,7 +227,7 @@ fn units_say_what_is_wrong_with_them() {
     let cases = [
         ("", "no unit is given; write for example `m/s`, or `1` for a pure number"),
         ("mps", "unknown unit `mps`; did you mean `m/s`?"),
-        ("m/sec", "unknown unit `sec`; did you mean `s`?"),
+        ("m/mps", "unknown unit `mps`; did you mean `m/s`?"),
         ("kg/m s", "`kg/m s` can be read in two ways; put the divisor in parentheses, as in `kg/(m s)`"),
         ("degC/s", "`degC/s`: degC has an offset and can only stand alone; write K for differences"),
         ("m^x", "`m^x` is not a unit: `x` is not a whole exponent"),

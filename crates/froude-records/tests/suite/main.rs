@@ -15,4 +15,5 @@ mod official_reader;
 mod parquet_tables;
 mod parquet_types;
 mod runs;
+mod unit_spellings;
 mod writing;

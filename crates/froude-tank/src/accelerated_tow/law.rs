@@ -54,7 +54,7 @@ pub fn with_acceleration(law: &ForceLaw, data: &Dataset, axis: &str) -> Result<F
         return Ok(law.clone());
     }
     let text = format!("{text} - {added}*density*volume*{acceleration}");
-    Ok(ForceLaw::formulas(&format!("added_mass_{}", law.name), &IndexMap::from([(load, text)]), data)?)
+    Ok(law.rewritten(&format!("added_mass_{}", law.name), &IndexMap::from([(load, text)]), data)?)
 }
 
 /// Channels that the laws read, a row each, SI; all vectors have one length.

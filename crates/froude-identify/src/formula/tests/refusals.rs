@@ -74,8 +74,8 @@ fn names_that_could_be_meant_otherwise_are_refused() {
         ("c*f_x", "f_x is the name of a load and cannot stand in a formula; give a coefficient another name"),
         (
             "c*sinh(v)",
-            "sinh at character 3 is not a function; known are abs, sqrt, sin, cos, tan, exp, ln \
-             and sign; a product is written sinh*(…)",
+            "sinh at character 3 is not a function; known are abs, sqrt, sin, cos, tan, exp, ln, \
+             sign and CF_ITTC57; a product is written sinh*(…)",
         ),
     ] {
         assert_eq!(message(text), expected, "{text}");

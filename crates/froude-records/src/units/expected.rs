@@ -1,0 +1,166 @@
+//! Units where it is known what they must measure: a mass that stands for its weight, a frequency that may be a rate of turning.
+
+use super::spellings::{one_spelling, whole};
+use super::{Dimension, Unit, UnitError, bare, parse_unit};
+
+/// Masses, and the unit of the force that each of them is pulled down with, under 9.80665 m/s².
+const WEIGHTS: &[(&str, &str)] = &[("kg", "kgf"), ("g", "gf"), ("t", "tf"), ("lb", "lbf"), ("oz", "ozf")];
+
+/// Units of an angle that say what a whole turn is.
+const ANGLES: &[&str] = &["rad", "deg", "°", "gon", "rev", "rpm", "rps"];
+
+/// Names under which a rate of turning is written, in small letters.
+const RATES: &[&str] = &[
+    "w_x",
+    "w_y",
+    "w_z",
+    "wx",
+    "wy",
+    "wz",
+    "p",
+    "q",
+    "r",
+    "n",
+    "n_p",
+    "n_prop",
+    "rpm",
+    "rps",
+    "omega",
+    "ω",
+    "rotation",
+    "rotation_rate",
+    "rotation_speed",
+    "rotational_speed",
+    "angular_speed",
+    "angular_velocity",
+    "angular_rate",
+    "roll_rate",
+    "pitch_rate",
+    "yaw_rate",
+    "yawrate",
+    "turn_rate",
+    "gyro",
+    "gyro_x",
+    "gyro_y",
+    "gyro_z",
+    "shaft_speed",
+    "shaft_rate",
+    "motor_speed",
+    "motor_rpm",
+    "rotor_speed",
+    "rotspeed",
+    "genspeed",
+    "propeller_speed",
+    "prop_speed",
+    "revs",
+    "revolutions",
+    "drehzahl",
+    "vitesse_de_rotation",
+    "turtall",
+    "回転数",
+];
+
+/// Reads a unit of which it is known what it must measure; the note says what was taken for what, where the text alone does not.
+///
+/// A mass where a force, a moment or a pressure belongs is that mass's weight, so that `kg` is read as `kgf`; its text becomes `kgf`, too.
+///
+/// # Errors
+///
+/// [`UnitError`] where the text is no unit, where it measures something else, and where it is read in two ways: `kn` of a force.
+///
+/// # Example
+///
+/// ```
+/// use froude_records::units::{Dimension, parse_unit_for};
+/// let (unit, note) = parse_unit_for("kg", Dimension::FORCE)?;
+/// assert_eq!((unit.text.as_str(), unit.factor), ("kgf", 9.80665));
+/// assert!(note.is_some_and(|note| note.contains("read as `kgf`")));
+/// # Ok::<(), froude_records::units::UnitError>(())
+/// ```
+pub fn parse_unit_for(text: &str, expected: Dimension) -> Result<(Unit, Option<String>), UnitError> {
+    let usual = expected.to_string();
+    let unit = parse_unit(text).map_err(|error| error.expecting(text, expected, &usual))?;
+    if unit.dimension == expected {
+        let note = note_of(&unit);
+        return Ok((unit, note));
+    }
+    if let Some(weight) = as_weight(&unit, expected) {
+        let note = format!("`{}` is read as `{weight}`, under standard gravity, 9.80665 m/s^2", unit.text);
+        return Ok((weight, Some(note)));
+    }
+    let canonical = one_spelling(whole(bare(text)));
+    let candidates = match (canonical, expected) {
+        ("kn" | "kt", Dimension::FORCE) => "`kN` (kilonewton), or another name where it is a speed in knots",
+        ("g", Dimension::ACCELERATION) => "`g0` (9.80665 m/s^2), or another name where it is a mass in grams",
+        ("mg", Dimension::ACCELERATION) => {
+            "`g0`, and the numbers times 0.001, or another name where it is a mass in milligrams"
+        }
+        _ => {
+            let [found, expected] = [unit.dimension, expected].map(Dimension::describe);
+            return Err(UnitError::Other(format!("`{text}` is {found}; expected {expected}")));
+        }
+    };
+    let [found, expected] = [unit.dimension, expected].map(Dimension::describe);
+    Err(UnitError::Other(format!("`{text}` is {found}, and {expected} is expected; write {candidates}")))
+}
+
+/// What a spelling leaves unsaid.
+fn note_of(unit: &Unit) -> Option<String> {
+    let text = unit.text.as_str();
+    let note = match text {
+        "psig" | "PSIG" | "psid" | "barg" => "a difference of pressure: to the surroundings, or between two places",
+        "psia" | "PSIA" | "bara" => "an absolute pressure, that of the air included",
+        "rps" | "RPS" => "turns a second, each of 2 pi rad",
+        _ => return None,
+    };
+    Some(format!("`{text}` is read as {note}"))
+}
+
+/// The unit with its mass as a weight; `None` where that does not measure what is expected.
+fn as_weight(unit: &Unit, expected: Dimension) -> Option<Unit> {
+    let text = whole(&unit.text);
+    let mut out = String::with_capacity(text.len() + 2);
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let end = if first.is_alphabetic() {
+            rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len())
+        } else {
+            first.len_utf8()
+        };
+        let (word, after) = rest.split_at(end);
+        let weight = WEIGHTS.iter().find(|(mass, _)| *mass == one_spelling(word));
+        out.push_str(weight.map_or(word, |(_, force)| force));
+        rest = after;
+    }
+    parse_unit(&out).ok().filter(|weight| weight.dimension == expected && out != text)
+}
+
+/// What is to be asked of the unit of a column with this name; `None` where it says enough.
+///
+/// A rate of turning in `1/min` counts turns for one and radians for another, 6.28 times apart; an angle in counts has no size.
+#[must_use]
+pub fn question(name: &str, unit: &Unit) -> Option<String> {
+    let text = unit.text.as_str();
+    let plain = name.trim().to_lowercase().replace([' ', '-'], "_");
+    let plain = plain.strip_prefix("std_").unwrap_or(&plain);
+    let words: Vec<&str> = words(whole(text));
+    let says_angle = words.iter().any(|word| ANGLES.contains(word));
+    match unit.dimension {
+        Dimension::ANGULAR_SPEED if !says_angle && RATES.contains(&plain) => {
+            let (turns, radians) = if words.contains(&"min") { ("rpm", "rad/min") } else { ("rev/s", "rad/s") };
+            Some(format!(
+                "`{text}` of a rate of turning is read in two ways; write `{turns}` where turns are counted, or `{radians}`"
+            ))
+        }
+        Dimension::ANGLE if plain == "angle" && !says_angle && text != "1" => {
+            Some(format!("`{text}` of an angle has no size; write `deg` or `rad`, with the numbers converted"))
+        }
+        _ => None,
+    }
+}
+
+/// The symbols of a unit.
+fn words(text: &str) -> Vec<&str> {
+    let words = text.split(|c: char| !(c.is_alphabetic() || matches!(c, '°' | '%' | '‰' | '_')));
+    words.filter(|word| !word.is_empty()).map(one_spelling).collect()
+}
