@@ -14,6 +14,7 @@ use crate::raw_column::{
 use crate::read;
 use crate::run::cell::Cell;
 use crate::run::channel::Words;
+use crate::run::clock_jumps;
 use crate::run::declarations::{self, Declarations};
 use crate::run::meta::Role;
 use crate::run::sensor::{self, Sensor};
@@ -109,8 +110,12 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     let root = Section::new(source, "", document.get_ref(), 0);
     root.schema("sidecar")?;
     root.only(
-        &[&["schema", "method", "role", "mounted", "conditions", "constants", "columns"], &declarations::KEYS[..]]
-            .concat(),
+        &[
+            &["schema", "method", "role", "mounted", "conditions", "constants", "columns"],
+            &declarations::KEYS[..],
+            &clock_jumps::KEYS[..],
+        ]
+        .concat(),
     )?;
     if let Some(mounted) = root.section("mounted")? {
         mounted.only(&["configuration"])?;

@@ -10,6 +10,7 @@ use froude_identify::dataset::distinct as distinct_texts;
 use froude_identify::method::MethodError;
 use froude_identify::runs::{files, logs_in, recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
+use froude_identify::wild;
 use froude_records::campaign::{BudgetEntry, Shared, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::clocks::is_own;
@@ -108,12 +109,16 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
         }
         out.findings.extend(long_logs::note(&log));
         conditioning::condition(&mut log, method)?;
-        let told = log.findings.iter().filter(|f| f.severity > Severity::Note);
+        log.findings.extend(wild::times(&log.log.time_s, wild::SLOWEST_HZ).map(|what| {
+            warning("implausible-times", format!("{}: {what}", path.display()))
+        }));
+        let told = log.findings.iter().filter(|f| f.severity > Severity::Note || OF_STAMPS.contains(&f.code.as_str()));
         of_logs.extend(told.map(|finding| (path.clone(), finding.clone())));
         out.files.extend(files_of(path, assumed.unwrap_or(role.name()), &log));
         out.runs.push(log);
     }
     out.findings.extend(once(of_logs));
+    out.findings.extend(copies(&out.runs));
     conditioning::of_one_rig(&out.runs)?;
     out.findings.extend(of_a_calendar(&out.runs));
     Ok(out)
@@ -125,6 +130,9 @@ pub(crate) fn files_of(path: PathBuf, role: &str, log: &TankLog) -> impl Iterato
     let log = ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role) };
     std::iter::once(log).chain(sidecar.map(|sidecar| ReadFile::new(sidecar, "sidecar")))
 }
+
+/// Notes of a log that a reader should see: what was done to its stamps.
+const OF_STAMPS: [&str; 2] = ["uneven-time-steps", "clock-unwrapped"];
 
 /// Findings of logs, without repeats: findings of one code that differ only in numbers are reported for the first log, with the number of other logs.
 fn once(of_logs: Vec<(PathBuf, Finding)>) -> Vec<Finding> {
@@ -263,6 +271,25 @@ pub(crate) fn add_step(files: &mut [ReadFile], log: &TankLog, step: Step) {
     if let Some(file) = files.iter_mut().find(|file| file.path == log.log.path) {
         file.steps.push(step);
     }
+}
+
+/// Logs with the same samples: one run that counts as several.
+fn copies(logs: &[TankLog]) -> Vec<Finding> {
+    let is_copy = |a: &TankLog, b: &TankLog| {
+        a.log.time_s == b.log.time_s
+            && a.log.channels.len() == b.log.channels.len()
+            && a.log.channels.iter().zip(&b.log.channels).all(|((_, x), (_, y))| x.values == y.values)
+    };
+    let of = |(k, log): (usize, &TankLog)| {
+        let first = logs[..k].iter().find(|earlier| is_copy(earlier, log))?;
+        let text = format!(
+            "{} has the same samples as {}: one run counts twice, and every interval is too narrow; remove one of them, or put the log there that is meant",
+            log.log.path.display(),
+            first.log.path.display()
+        );
+        Some(Finding::new(Severity::Error, "copied-log", text))
+    };
+    logs.iter().enumerate().filter_map(of).collect()
 }
 
 /// Configurations of the runs, in order of first appearance.

@@ -217,7 +217,7 @@ fn drifting(swings: &Swings, id: &str, setup: &DecaySetup) -> Option<Finding> {
 /// What the fitted motion leaves.
 pub(super) fn of_residuals(fit: &DecayFit, residuals: &[Vec<f64>], reduced: &Reduced<'_>) -> Vec<Finding> {
     let mut out = Vec::new();
-    for ((run, left), (record, _)) in fit.runs.iter().zip(residuals).zip(&reduced.runs) {
+    for ((run, left), (record, swings)) in fit.runs.iter().zip(residuals).zip(&reduced.runs) {
         let noise = run.noise.max(1e-9 * fit.range.amplitude[1]);
         // A hand that still holds is in the first samples, and hardly in the mean over all of them.
         let first = ((FIRST_PART * fit.range.period_s / record.step_s()) as usize).min(left.len());
@@ -241,7 +241,7 @@ pub(super) fn of_residuals(fit: &DecayFit, residuals: &[Vec<f64>], reduced: &Red
         }
         let rate = 1.0 / (left.len() as f64 * record.step_s());
         let natural = 1.0 / fit.range.period_s;
-        match line(left, record.step_s()) {
+        match line(left, &record.time_s[swings.samples[0]..swings.samples[1]]) {
             Some((frequency, amplitude, part)) if part > LINE && is_apart(frequency, natural, rate) => {
                 out.push(warning(
                     "second-mode",
@@ -274,14 +274,16 @@ fn is_apart(frequency: f64, natural: f64, resolution: f64) -> bool {
     [1.0, 3.0].iter().all(|k| (frequency - k * natural).abs() > 1.5 * resolution)
 }
 
-/// Strongest line of a series: frequency, amplitude, its part of the power.
-fn line(series: &[f64], step_s: f64) -> Option<(f64, f64, f64)> {
+/// Strongest line of a series at these times: frequency, amplitude, its part of the power.
+fn line(series: &[f64], time_s: &[f64]) -> Option<(f64, f64, f64)> {
     let n = series.len() as f64;
+    let start_s = *time_s.first()?;
+    let step_s = (time_s.last()? - start_s) / (n - 1.0).max(1.0);
     let power: f64 = series.iter().map(|x| x * x).sum();
     let at = |f: f64| {
         let (mut c, mut s) = (0.0, 0.0);
-        for (i, x) in series.iter().enumerate() {
-            let phase = TAU * f * step_s * i as f64;
+        for (t, x) in time_s.iter().zip(series) {
+            let phase = TAU * f * (t - start_s);
             c += x * phase.cos();
             s += x * phase.sin();
         }

@@ -97,11 +97,11 @@ impl<'a> Releases<'a> {
         })
     }
 
-    /// Measured positions of a run.
-    fn measured(&self, run: usize) -> (&[f64], f64) {
+    /// Measured positions of a run, and their times.
+    fn measured(&self, run: usize) -> (&[f64], &[f64]) {
         let (run, swings) = &self.runs[run];
         let [first, end] = swings.samples;
-        (&run.position[first..end], run.step_s())
+        (&run.position[first..end], &run.time_s[first..end])
     }
 }
 
@@ -112,15 +112,15 @@ impl Model for Releases<'_> {
 
     fn residuals(&self, run: usize, theta: &[f64]) -> Option<Vec<f64>> {
         let (motion, start) = self.motion(run, theta)?;
-        let (measured, step_s) = self.measured(run);
-        let path = motion.path(start, step_s, measured.len())?;
+        let (measured, time_s) = self.measured(run);
+        let path = motion.path(start, time_s)?;
         Some(measured.iter().zip(path).map(|(q, [simulated, _])| q - simulated).collect())
     }
 
     fn derivatives(&self, run: usize, theta: &[f64]) -> Option<Vec<Vec<f64>>> {
         let (motion, start) = self.motion(run, theta)?;
-        let (measured, step_s) = self.measured(run);
-        let path = motion.path_and_derivatives(start, step_s, measured.len())?;
+        let (_, time_s) = self.measured(run);
+        let path = motion.path_and_derivatives(start, time_s)?;
         let [added, damping, own] = self.places(run);
         let moving = self.inertia + theta[added];
         let column = |of: &dyn Fn(&[f64; 6]) -> f64| path.iter().map(|(_, by)| -of(by)).collect::<Vec<f64>>();
