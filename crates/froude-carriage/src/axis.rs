@@ -25,7 +25,9 @@ use crate::servo::report::{effective, of_runs as of_several};
 use crate::servo::rows::Rows;
 use crate::servo::scale::ForcePerVolt;
 use crate::servo::two_mass::FlexibleReport;
-use crate::servo::{Chain, Friction, RigidFit, ServoError, ServoCoefficient, ServoLog, ServoReport, identify_servo, record};
+use crate::servo::{
+    Chain, Friction, RigidFit, ServoCoefficient, ServoError, ServoLog, ServoReport, identify_servo, record,
+};
 use crate::source::file_of;
 use crate::two_masses::{motor_of, pulses, relative_errors, servo_log, two_masses};
 
@@ -147,8 +149,7 @@ pub fn of_table(
     let (imported, servo) = read_log(path, sidecar)?;
     let refused = |error: ServoError| MethodError::input(path, error.to_string());
     let even = servo.evenly().map_err(refused)?;
-    let fit =
-        |friction| identify_servo(&servo, &Chain::of_log(gain.n_v, even.rate_hz, friction)).map_err(refused);
+    let fit = |friction| identify_servo(&servo, &Chain::of_log(gain.n_v, even.rate_hz, friction)).map_err(refused);
     let rigid = asked.iter().filter_map(|model| Some((model.friction()?, fit(friction_of(*model)))));
     let (models, not_fitted) = each(rigid);
     let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
@@ -156,9 +157,10 @@ pub fn of_table(
     findings.extend(by_direction(&models));
     findings.extend(not_fitted);
     findings.extend(even.done.map(|done| Finding::new(Severity::Warning, "uneven-time-steps", done)));
-    findings.extend(wild::times(&servo.time_s, SLOWEST_HZ).map(|what| {
-        Finding::new(Severity::Warning, "implausible-times", format!("{}: {what}", path.display()))
-    }));
+    findings.extend(
+        wild::times(&servo.time_s, SLOWEST_HZ)
+            .map(|what| Finding::new(Severity::Warning, "implausible-times", format!("{}: {what}", path.display()))),
+    );
     findings.push(one_excitation());
     let files = files_of_table(path, sidecar);
     let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report.fit, gain), files.clone());

@@ -89,8 +89,7 @@ const SHORTEST_S: f64 = 0.5;
 const SLOW_AND_LONG: (f64, f64) = (2.0, 3000.0);
 
 /// Wrong units of time: by which factor times change, what is written, and what may be meant.
-const UNITS: [(f64, &str, &str); 4] =
-    [(1e-3, "s", "ms"), (1e-6, "s", "us"), (1e3, "ms", "s"), (60.0, "s", "min")];
+const UNITS: [(f64, &str, &str); 4] = [(1e-3, "s", "ms"), (1e-6, "s", "us"), (1e3, "ms", "s"), (60.0, "s", "min")];
 
 /// What is said of a log whose rate or duration is none of a test that needs `slowest_hz` and more: which unit its times would fit in.
 #[must_use]

@@ -109,9 +109,10 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
         }
         out.findings.extend(long_logs::note(&log));
         conditioning::condition(&mut log, method)?;
-        log.findings.extend(wild::times(&log.log.time_s, wild::SLOWEST_HZ).map(|what| {
-            warning("implausible-times", format!("{}: {what}", path.display()))
-        }));
+        log.findings.extend(
+            wild::times(&log.log.time_s, wild::SLOWEST_HZ)
+                .map(|what| warning("implausible-times", format!("{}: {what}", path.display()))),
+        );
         let told = log.findings.iter().filter(|f| f.severity > Severity::Note || OF_STAMPS.contains(&f.code.as_str()));
         of_logs.extend(told.map(|finding| (path.clone(), finding.clone())));
         out.files.extend(files_of(path, assumed.unwrap_or(role.name()), &log));
@@ -119,6 +120,7 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
     }
     out.findings.extend(once(of_logs));
     out.findings.extend(copies(&out.runs));
+    out.findings.extend(in_another_unit(&out.runs));
     conditioning::of_one_rig(&out.runs)?;
     out.findings.extend(of_a_calendar(&out.runs));
     Ok(out)
@@ -272,6 +274,42 @@ pub(crate) fn add_step(files: &mut [ReadFile], log: &TankLog, step: Step) {
         file.steps.push(step);
     }
 }
+
+/// A run that moves so many times as far as every other is in another unit: mm under [m] is a factor of 1000.
+const ANOTHER_UNIT: f64 = 200.0;
+/// Channels that a test moves.
+const MOVED: [&str; 6] = ["position", "y/position", "sway", "heave", "angle", "speed"];
+
+/// Runs whose motion is orders of magnitude larger, or smaller, than that of every other run of their role.
+fn in_another_unit(logs: &[TankLog]) -> Vec<Finding> {
+    let range = |log: &TankLog, name: &str| {
+        let values = &log.log.channels.get(name)?.values;
+        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+        Some(high - low).filter(|range| *range > 0.0)
+    };
+    let mut out = Vec::new();
+    for name in MOVED {
+        for (k, log) in logs.iter().enumerate() {
+            let alike =
+                logs.iter().enumerate().filter(|(j, other)| *j != k && other.log.meta.role == log.log.meta.role);
+            let others: Vec<f64> = alike.filter_map(|(_, other)| range(other, name)).collect();
+            let (low, high) = others.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), x| (a.min(*x), b.max(*x)));
+            let Some(own) = range(log, name).filter(|_| others.len() >= FEWEST_OTHERS) else { continue };
+            if own > ANOTHER_UNIT * high || own < low / ANOTHER_UNIT {
+                let unit = log.log.channels.get(name).map_or("", |channel| channel.meaning.unit.as_str());
+                let text = format!(
+                    "{}: {name} goes through {own:.3e} {unit}, and through {low:.3e} to {high:.3e} {unit} in the other runs: check its unit (mm under [m] is a factor of 1000)",
+                    log.log.path.display()
+                );
+                out.push(warning("run-stands-out", text));
+            }
+        }
+    }
+    out
+}
+
+/// Fewest runs that say what is usual.
+const FEWEST_OTHERS: usize = 2;
 
 /// Logs with the same samples: one run that counts as several.
 fn copies(logs: &[TankLog]) -> Vec<Finding> {

@@ -11,16 +11,16 @@ mod ticks;
 use std::path::{Path, PathBuf};
 
 use froude_identify::method::MethodError;
-use froude_records::{Place, RecordError};
 use froude_records::chunks::{count_rows, for_each_chunk};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::run::clock_jumps::{ClockJumps, across_wrap, not_a_wrap, twice};
+use froude_records::run::clock_jumps::{Wraps, twice};
 use froude_records::run::{LogTimes, channel_name, import_run, run_of, time_column};
 use froude_records::sidecar::read_sidecar;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::table_file::sidecar_of;
 use froude_records::units::Dimension;
+use froude_records::{Place, RecordError};
 use froude_signal::block_mean::{BlockMean, gain, noise_bandwidth_hz};
 use indexmap::IndexMap;
 
@@ -112,31 +112,6 @@ pub(crate) fn import(path: &Path, reading: Reading, progress: &dyn Fn(&str)) -> 
         Ok(())
     })?;
     means.finish(path)
-}
-
-/// Wraps of a counter of times, undone while the log goes by.
-#[derive(Debug, Default)]
-struct Wraps {
-    last_s: Option<f64>,
-    turned_s: f64,
-}
-
-impl Wraps {
-    fn undo(&mut self, part: &mut Table, jumps: ClockJumps) -> Result<(), RecordError> {
-        let Some(period_s) = jumps.wraps_s else { return Ok(()) };
-        let places: Vec<_> = (0..part.n_rows).map(|row| part.place_of_row(row)).collect();
-        let time = part.columns.iter_mut().find(|column| column.name == "time");
-        let Some(Column { data: ColumnData::Number { si, .. }, .. }) = time else { return Ok(()) };
-        for (t, place) in si.iter_mut().zip(places) {
-            let now = *t;
-            if let Some(before) = self.last_s.replace(now).filter(|before| now < *before) {
-                across_wrap(before, now, period_s).ok_or_else(|| not_a_wrap(place, before, now, period_s))?;
-                self.turned_s += period_s;
-            }
-            *t += self.turned_s;
-        }
-        Ok(())
-    }
 }
 
 /// The means of a log while it goes by.

@@ -145,7 +145,10 @@ impl Chain {
             match (self.rows_of_stretch(&stretch), &mut joined) {
                 (Ok(rows), None) => joined = Some(rows),
                 (Ok(rows), Some(all)) => all.append(rows),
-                (Err(error @ (ServoError::TooFewRows { .. } | ServoError::AtRest { .. } | ServoError::Signal(_))), _) => {
+                (
+                    Err(error @ (ServoError::TooFewRows { .. } | ServoError::AtRest { .. } | ServoError::Signal(_))),
+                    _,
+                ) => {
                     first_error.get_or_insert(error);
                 }
                 (Err(error), _) => return Err(error),

@@ -130,10 +130,7 @@ impl ServoLog {
             ));
         }
         if !gaps.is_empty() {
-            done.push(format!(
-                "the log is cut at {}: no filter runs across them",
-                counted(gaps.len(), "gap", "gaps")
-            ));
+            done.push(format!("the log is cut at {}: no filter runs across them", counted(gaps.len(), "gap", "gaps")));
         }
         if short > 0 {
             done.push(format!("{} between gaps are too few for a filter and left out", counted(short, "row", "rows")));
@@ -211,7 +208,10 @@ mod tests {
             assert!((u - (2.0 * t).cos()).abs() < 1e-4, "{t}: {u}");
         }
         let done = even.done.unwrap();
-        assert!(done.starts_with("position and command are read at even times 5.0") && done.contains(" V rms"), "{done}");
+        assert!(
+            done.starts_with("position and command are read at even times 5.0") && done.contains(" V rms"),
+            "{done}"
+        );
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::error::{Place, RecordError};
 use crate::number::plain;
 use crate::run::stamps::{GAP, usual_step_s};
 use crate::section::Section;
-use crate::table::Table;
+use crate::table::{Column, ColumnData, Table};
 use crate::text::counted;
 use crate::units::Dimension;
 
@@ -71,9 +71,38 @@ pub(crate) struct InOrder {
 }
 
 /// The step by which times go on across a wrap, s; `None` where the counter would have skipped more than a tenth of its period.
-#[must_use]
-pub fn across_wrap(before_s: f64, now_s: f64, period_s: f64) -> Option<f64> {
+fn across_wrap(before_s: f64, now_s: f64, period_s: f64) -> Option<f64> {
     Some(now_s + period_s - before_s).filter(|step| *step > 0.0 && *step <= SKIPS * period_s)
+}
+
+/// Wraps of a counter of times, undone while a log goes by in parts.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Wraps {
+    last_s: Option<f64>,
+    turned_s: f64,
+}
+
+impl Wraps {
+    /// Lets the times of the next part go on across each wrap, where one is declared.
+    ///
+    /// # Errors
+    ///
+    /// A step back that the declared period does not explain.
+    pub fn undo(&mut self, part: &mut Table, jumps: ClockJumps) -> Result<(), RecordError> {
+        let Some(period_s) = jumps.wraps_s else { return Ok(()) };
+        let places: Vec<Place> = (0..part.n_rows).map(|row| part.place_of_row(row)).collect();
+        let time = part.columns.iter_mut().find(|column| column.name == "time");
+        let Some(Column { data: ColumnData::Number { si, .. }, .. }) = time else { return Ok(()) };
+        for (t, place) in si.iter_mut().zip(places) {
+            let now = *t;
+            if let Some(before) = self.last_s.replace(now).filter(|before| now < *before) {
+                across_wrap(before, now, period_s).ok_or_else(|| not_a_wrap(place, before, now, period_s))?;
+                self.turned_s += period_s;
+            }
+            *t += self.turned_s;
+        }
+        Ok(())
+    }
 }
 
 /// Times that do not go back, by what is declared.
@@ -171,8 +200,7 @@ pub fn clock_back(place: Place, before_s: f64, now_s: f64, usual_s: f64) -> Reco
 }
 
 /// The error for a step back that the declared period does not explain.
-#[must_use]
-pub fn not_a_wrap(place: Place, before_s: f64, now_s: f64, period_s: f64) -> RecordError {
+fn not_a_wrap(place: Place, before_s: f64, now_s: f64, period_s: f64) -> RecordError {
     let problem = format!(
         "is {now_s} s after {before_s} s, and no wrap of the declared {} s: that would be a step of {} s. Correct clock_wraps, or cut the log there",
         plain(period_s, 9),

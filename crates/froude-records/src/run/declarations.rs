@@ -69,7 +69,14 @@ impl Declarations {
         let frames = frames(root)?;
         let names: Vec<&str> = frames.keys().map(String::as_str).collect();
         let cell = cell(root, &names)?;
-        Ok(Self { jumps: ClockJumps::read(root)?, clocks: clocks(root)?, cell, marks: marks(root)?, segments: segments(root)?, frames })
+        Ok(Self {
+            jumps: ClockJumps::read(root)?,
+            clocks: clocks(root)?,
+            cell,
+            marks: marks(root)?,
+            segments: segments(root)?,
+            frames,
+        })
     }
 
     /// Names of the declared frames.

@@ -24,8 +24,8 @@ use indexmap::IndexMap;
 use crate::error::{Place, RecordError};
 use crate::finding::{Finding, Severity};
 use crate::measured::Measured;
-use crate::raw_column::TWICE;
 use crate::number::{percent, plain};
+use crate::raw_column::TWICE;
 use crate::run::channel::{LOG, Meaning};
 use crate::run::clock_jumps::{ClockJumps, in_order, twice};
 use crate::run::declarations::{Declarations, Told};
@@ -112,11 +112,7 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
 /// # Errors
 ///
 /// Two columns that are one channel.
-pub fn run_of(
-    table: &Table,
-    sidecar: Option<&Sidecar>,
-    times: LogTimes,
-) -> Result<ImportedRun, RecordError> {
+pub fn run_of(table: &Table, sidecar: Option<&Sidecar>, times: LogTimes) -> Result<ImportedRun, RecordError> {
     let LogTimes { rows, time_s, steps, lost, findings } = times;
     let mut channels = IndexMap::new();
     let mut told = IndexMap::new();
@@ -131,7 +127,8 @@ pub fn run_of(
             entry.words.set(&mut meaning);
             told.insert(channel_name(&column.name), entry.told(header));
         }
-        if channels.insert(channel_name(&column.name), Channel { meaning, values: si[rows.clone()].to_vec() }).is_some() {
+        if channels.insert(channel_name(&column.name), Channel { meaning, values: si[rows.clone()].to_vec() }).is_some()
+        {
             return Err(RecordError::column(Place::whole(&table.path), &column.name, TWICE));
         }
     }

@@ -90,12 +90,7 @@ fn fitted(stamps_s: &[f64], ticks: Vec<f64>, resolution_s: f64) -> Option<EvenTi
     }
     // Stamps that are cut off instead of rounded are late by half a resolution on average, which is the same for all. The line is known to r/√(3n) or so.
     let allowed = resolution_s * (1.0 + 2.0 / (ticks.len() as f64).sqrt()) + 16.0 * f64::EPSILON * largest;
-    (step_s > 0.0 && high - low <= allowed).then_some(EvenTimes {
-        start_s,
-        step_s,
-        ticks,
-        off_s: high.max(-low),
-    })
+    (step_s > 0.0 && high - low <= allowed).then_some(EvenTimes { start_s, step_s, ticks, off_s: high.max(-low) })
 }
 
 /// Least squares of a straight line: its value at 0, and its slope.
@@ -205,7 +200,8 @@ mod tests {
         let mut time: Vec<f64> = (0..30).map(f64::from).collect();
         time.extend((1..500).map(|i| 29.0 + 0.01 * f64::from(i)));
         assert_eq!(gaps(&time), Vec::<[usize; 2]>::new());
-        let without: Vec<f64> = time.iter().enumerate().filter(|(i, _)| !(200..250).contains(i)).map(|(_, t)| *t).collect();
+        let without: Vec<f64> =
+            time.iter().enumerate().filter(|(i, _)| !(200..250).contains(i)).map(|(_, t)| *t).collect();
         assert_eq!(gaps(&without), [[199, 200]]);
         assert_eq!(gaps(&[]), Vec::<[usize; 2]>::new());
         assert_eq!(gaps(&[1.0]), Vec::<[usize; 2]>::new());

@@ -7,6 +7,7 @@ use froude_fit::budget::jackknife_of_one;
 use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::{Col, Mat};
 use froude_records::finding::Finding;
+use froude_records::run::median;
 use froude_records::text::counted;
 
 use super::fit::{DecayFit, HalfCycle};
@@ -36,6 +37,11 @@ const FEWEST_FIRST: usize = 4;
 /// … and doubted where what the fit leaves there is so many times that of the whole: of noise alone, four samples have that in one release of
 /// 50,000 (χ² with four degrees of freedom beyond 27).
 const FIRST_BEYOND: f64 = 2.6;
+/// A release that swings so many times as far as the others is in another unit.
+const ANOTHER_UNIT: f64 = 50.0;
+/// A moving inertia that differs by this part from the median of the others, and by so many of their median distances from it, is of another body.
+const MASS_OFF: f64 = 0.05;
+const MASS_SPREADS: f64 = 8.0;
 /// A second mode has at least this part of the residuals' power in one line.
 const LINE: f64 = 0.3;
 
@@ -53,6 +59,7 @@ pub(super) fn common(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) 
             ),
         ));
     }
+    out.extend(stands_out(fit));
     let [low, high] = fit.range.speed;
     if high < APART * low {
         out.push(warning(
@@ -83,6 +90,50 @@ pub(super) fn common(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) 
         out.extend(drifting(swings, run.id, setup));
     }
     out
+}
+
+/// A release whose period says that it is of another body, or whose size that it is in another unit.
+fn stands_out(fit: &DecayFit) -> Vec<Finding> {
+    if fit.runs.len() < FEWEST_RUNS {
+        return Vec::new();
+    }
+    let middle = |values: &mut [f64]| median(values).unwrap_or(f64::NAN);
+    let others =
+        |i: usize, of: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..fit.runs.len()).filter(|j| *j != i).map(of).collect() };
+    let reach = |i: usize| {
+        let of_run = fit.rows.iter().filter(|row| row.run == fit.runs[i].id);
+        of_run.map(|row| row.amplitude).fold(0.0_f64, f64::max)
+    };
+    let moving = |i: usize| fit.inertia.value + fit.runs[i].added;
+    let (unit, of_mass) = (fit.axis.position_unit(), fit.axis.decay_units()[0]);
+    let of = |i: usize| {
+        let (mut sizes, mut masses) = (others(i, &reach), others(i, &moving));
+        let (usual, usual_mass) = (middle(&mut sizes), middle(&mut masses));
+        let ratio = reach(i) / usual;
+        if ratio > ANOTHER_UNIT || ratio < 1.0 / ANOTHER_UNIT {
+            let text = format!(
+                "run {:?} swings by {:.3e} {unit} where the others swing by {usual:.3e} {unit}, {ratio:.3} times as far: check the unit of its position (mm under [m] is a factor of 1000)",
+                fit.runs[i].id,
+                reach(i)
+            );
+            return Some(warning("release-stands-out", text));
+        }
+        let mut off: Vec<f64> = masses.iter().map(|m| (m - usual_mass).abs()).collect();
+        let allowed = (MASS_OFF * usual_mass).max(MASS_SPREADS * middle(&mut off));
+        let found = moving(i);
+        ((found - usual_mass).abs() > allowed).then(|| {
+            let text = format!(
+                "run {:?} swings with a period of {:.4} s, which is a moving inertia of {found:.4} {of_mass} where the others have {usual_mass:.4} {of_mass} ({:+.1} %): another body, other springs, \
+                 or a wrong unit of time; {} by each release alone stands in the table of the releases",
+                fit.runs[i].id,
+                fit.runs[i].period_s,
+                100.0 * (found / usual_mass - 1.0),
+                fit.names[0]
+            );
+            warning("release-stands-out", text)
+        })
+    };
+    (0..fit.runs.len()).filter_map(of).collect()
 }
 
 fn negative(fit: &DecayFit, j: usize) -> Option<Finding> {

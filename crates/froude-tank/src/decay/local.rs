@@ -135,7 +135,8 @@ pub fn noise_of(time_s: &[f64], position: &[f64]) -> f64 {
             let others = (0..5).filter(|k| *k != j);
             others.map(|k| (t[j] - t[k]) / (t[4] - t[0])).product::<f64>().recip()
         });
-        let (sum, squares) = weights.iter().zip(x).fold((0.0, 0.0), |(sum, squares), (w, x)| (sum + w * x, squares + w * w));
+        let (sum, squares) =
+            weights.iter().zip(x).fold((0.0, 0.0), |(sum, squares), (w, x)| (sum + w * x, squares + w * w));
         sum * sum / squares
     };
     (time_s.windows(5).zip(position.windows(5)).map(square).sum::<f64>() / n as f64).sqrt()

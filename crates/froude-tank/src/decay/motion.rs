@@ -265,7 +265,8 @@ mod tests {
     fn uneven_times_are_of_the_same_motion() {
         let fine = MOTION.path([0.4, 0.0], &even(0.001, 4001)).unwrap();
         let rows: Vec<usize> = (0..4001).filter(|i| i % 20 == i * 7 % 3 && !(1000..1300).contains(i)).collect();
-        let time_s: Vec<f64> = std::iter::once(0.0).chain(rows.iter().map(|i| 0.001 * *i as f64).filter(|t| *t > 0.0)).collect();
+        let time_s: Vec<f64> =
+            std::iter::once(0.0).chain(rows.iter().map(|i| 0.001 * *i as f64).filter(|t| *t > 0.0)).collect();
         for (t, [q, _]) in time_s.iter().zip(MOTION.path([0.4, 0.0], &time_s).unwrap()) {
             assert!((q - fine[(t / 0.001).round() as usize][0]).abs() < 1e-5, "{t}: {q}");
         }

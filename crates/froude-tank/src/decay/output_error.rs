@@ -153,6 +153,7 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
         let [first, end] = swings.samples;
         let [q, v, rest] = model.start(i, &found.values);
         let residuals = &found.residuals[i];
+        let [period_s, by_period] = RunSummary::period_and_added(swings, setup);
         RunSummary {
             id: run.id.to_owned(),
             samples: end - first,
@@ -160,6 +161,8 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
             from_s: run.time_s[first],
             start: [q, v],
             rest,
+            period_s,
+            added: if model.has_own { found.values[model.places(i)[0]] } else { by_period },
             noise: swings.noise,
             residual_rms: (residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64).sqrt(),
             fitted: run.position[first..end].iter().zip(residuals).map(|(q, r)| q - r).collect(),
@@ -195,9 +198,10 @@ fn reach_of_releases(fit: &mut DecayFit, reduced: &Reduced<'_>) {
             continue;
         }
         let [furthest, fastest] = [&mut fit.range.amplitude[1], &mut fit.range.speed[1]];
-        for pair in summary.fitted.windows(2) {
+        let time_s = &run.time_s[swings.samples[0]..swings.samples[1]];
+        for (pair, t) in summary.fitted.windows(2).zip(time_s.windows(2)) {
             *furthest = furthest.max((pair[0] - summary.rest).abs());
-            *fastest = fastest.max((pair[1] - pair[0]).abs() / run.step_s());
+            *fastest = fastest.max((pair[1] - pair[0]).abs() / (t[1] - t[0]));
         }
     }
 }

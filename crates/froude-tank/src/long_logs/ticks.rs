@@ -138,7 +138,8 @@ impl Ticks {
         let steps = TimeSteps { median_s, shortest_s: self.shortest_s, longest_s: self.longest_s };
         let lost: Vec<Gap> = self.long.into_iter().map(|[from_s, to_s]| gap(from_s, to_s, usual_s)).collect();
         let off_s = (self.longest_whole_s - usual_s).max(usual_s - self.shortest_s);
-        let words = "blocks have the mean of their times and of all channels alike, so that no step is assumed to be even";
+        let words =
+            "blocks have the mean of their times and of all channels alike, so that no step is assumed to be even";
         let even = (off_s > EVEN * usual_s).then(|| (Severity::Note, words.to_owned()));
         let findings = vec![steps_finding(steps, even, &self.missing, &lost, &path.display().to_string())];
         Ok(LogTimes { steps, lost, findings, ..LogTimes::default() })
