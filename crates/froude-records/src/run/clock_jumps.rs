@@ -178,7 +178,10 @@ fn goes_back(table: &Table, stamps_s: &[f64], back: &[usize]) -> RecordError {
 /// The error for a clock that goes back between two rows of steps that are usually `usual_s`: which counter it may be, and what to declare.
 #[must_use]
 pub fn clock_back(place: Place, before_s: f64, now_s: f64, usual_s: f64) -> RecordError {
-    let sidecar = "at the head of its sidecar";
+    let sidecar = format!(
+        "at the head of its sidecar, {} (where there is none: schema = 1, this line, and [columns] with each header)",
+        place.path.with_extension("toml").display()
+    );
     let fits = |(period_s, _): &&(f64, &str)| {
         across_wrap(before_s, now_s, *period_s).is_some_and(|step| step <= GAP * usual_s) && before_s < *period_s
     };
