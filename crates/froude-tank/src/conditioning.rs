@@ -54,7 +54,7 @@ pub fn condition(run: &mut TankLog, method: &str) -> Result<(), MethodError> {
         return Err(MethodError::input(&run.log.path, format!("{what}; {advice}")));
     }
     let stamps = align::stamps(run, method);
-    stretches::mark_gaps(run, !stamps.is_empty());
+    stretches::mark_gaps(run, method, !stamps.is_empty());
     clipped::mark(run, &stamps);
     align::resample(run, &stamps)?;
     loads::of_cell(run)?;

@@ -114,7 +114,8 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
                 .map(|what| warning("implausible-times", format!("{}: {what}", path.display()))),
         );
         let told = log.findings.iter().filter(|f| f.severity > Severity::Note || OF_STAMPS.contains(&f.code.as_str()));
-        of_logs.extend(told.map(|finding| (path.clone(), finding.clone())));
+        let of_this = |finding: &Finding| Finding { message: of_file(&path, &finding.message), ..finding.clone() };
+        of_logs.extend(told.map(|finding| (path.clone(), of_this(finding))));
         out.files.extend(files_of(path, assumed.unwrap_or(role.name()), &log));
         out.runs.push(log);
     }
@@ -131,6 +132,12 @@ pub(crate) fn files_of(path: PathBuf, role: &str, log: &TankLog) -> impl Iterato
     let sidecar = Some(path.with_extension("toml")).filter(|sidecar| sidecar.exists());
     let log = ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role) };
     std::iter::once(log).chain(sidecar.map(|sidecar| ReadFile::new(sidecar, "sidecar")))
+}
+
+/// A sentence about a log, with its file.
+fn of_file(path: &Path, sentence: &str) -> String {
+    let file = path.display().to_string();
+    if sentence.contains(&file) { sentence.to_owned() } else { format!("{file}: {sentence}") }
 }
 
 /// Notes of a log that a reader should see: what was done to its stamps.

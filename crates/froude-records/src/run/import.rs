@@ -32,7 +32,7 @@ use crate::run::declarations::{Declarations, Told};
 use crate::run::layout::AXIS;
 use crate::run::log::{Channel, Gap, GapCause, RunLog, median};
 use crate::run::meta::{Role, RunMeta, RunStatus};
-use crate::run::stamps::{LACKS, even_times, gaps, resolution, usual_step_s};
+use crate::run::stamps::{LACKS, even_times, gaps, resolution, timer_step, usual_step_s};
 use crate::sidecar::{Mapping, Sidecar, read_sidecar};
 use crate::table::{ColumnData, Table};
 use crate::table_file::read_table;
@@ -246,9 +246,15 @@ impl LogTimes {
         let order = in_order(table, stamps, jumps)?;
         let unit_s = unit_of_times_s(table);
         let written: Vec<f64> = stamps.iter().map(|t| t / unit_s).collect();
-        let resolution_s = resolution(&written).map(|digits| digits * unit_s);
+        let digits = resolution(&written);
+        let timer = digits.and_then(|digits| timer_step(&written, digits));
         let recorded = TimeSteps::of(&order.time_s);
-        let even = even_times(&order.time_s, resolution_s.unwrap_or(FINE * recorded.median_s));
+        let of = |resolution_s: f64| even_times(&order.time_s, resolution_s).map(|even| (even, resolution_s));
+        let fine = digits.map_or(FINE * recorded.median_s, |digits| digits * unit_s);
+        let found = of(fine).or_else(|| of(timer? * unit_s));
+        let resolution_s =
+            found.as_ref().map(|(_, r)| *r).or(digits.map(|digits| digits * unit_s)).filter(|_| digits.is_some());
+        let even = found.map(|(even, _)| even);
         let is_rounded = even.as_ref().is_some_and(|even| even.off_s > EVEN * even.step_s);
         let step_s = even.as_ref().map(|even| even.step_s).or_else(|| usual_step_s(&order.time_s));
         let time_s = match even.as_ref().filter(|_| is_rounded) {
@@ -380,7 +386,7 @@ pub fn steps_finding(
         let ticks: u64 = gaps.iter().filter_map(|gap| gap.ticks).sum();
         let (from_s, to_s) = (gap.from_s.unwrap_or(0.0), gap.to_s.unwrap_or(0.0));
         format!(
-            "{} missing in {}, the longest of {} s from {} s on; no window runs across them",
+            "{} missing in {}, the longest of {} s from {} s on; no steady window, cycle or filter runs across them",
             counted(ticks as usize, "tick is", "ticks are"),
             counted(gaps.len(), "gap", "gaps"),
             plain(to_s - from_s, 4),

@@ -51,6 +51,21 @@ pub fn resolution(stamps: &[f64]) -> Option<f64> {
     (-9..=9).map(|digits| 10.0_f64.powi(-digits)).find(|resolution| is_multiple(*resolution))
 }
 
+/// The largest step that all differences between stamps are multiples of, where that is coarser than their digits: a timer of 5 ms whose stamps are in milliseconds.
+#[must_use]
+pub fn timer_step(stamps: &[f64], resolution: f64) -> Option<f64> {
+    let first = *stamps.first()?;
+    let divisor = stamps.iter().map(|x| ((x - first) / resolution).round().abs() as u64).fold(0, gcd);
+    (divisor > 1).then(|| divisor as f64 * resolution)
+}
+
+fn gcd(mut a: u64, mut b: u64) -> u64 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
 /// The even times that stamps, which do not decrease, lie within half a resolution of; `None` where there are none.
 #[must_use]
 pub fn even_times(stamps_s: &[f64], resolution_s: f64) -> Option<EvenTimes> {
@@ -182,6 +197,16 @@ mod tests {
         let even = even_times(&stamps, 1e-3).unwrap();
         assert!((even.step_s * 2300.0 - 1.0).abs() < 1e-5);
         assert_eq!(even_times(&rounded(2300.0, 1e-3, |i| i != 400 && i != 401 && i != 900), 1e-3), None);
+    }
+
+    #[test]
+    fn a_timer_is_told_from_the_digits() {
+        let stamps: Vec<f64> = (0..300).map(|i| (f64::from(i) / 60.0 / 5e-3).round() * 5e-3).collect();
+        assert_eq!(resolution(&stamps), Some(1e-3));
+        let timer = timer_step(&stamps, 1e-3).unwrap();
+        assert!((timer - 5e-3).abs() < 1e-12 && even_times(&stamps, 1e-3).is_none());
+        assert!((even_times(&stamps, timer).unwrap().step_s * 60.0 - 1.0).abs() < 1e-4);
+        assert_eq!(timer_step(&[0.0, 0.017, 0.033], 1e-3), None);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::findings::warning;
 use crate::log::TankLog;
-use crate::names::{EXCITED_RESPONSE, FREE_DECAY};
+use crate::names::{EXCITED_RESPONSE, FREE_DECAY, WEIGHT_TOW};
 use froude_identify::method::MethodError;
 use froude_records::finding::Finding;
 use froude_records::number::plain;
@@ -20,8 +20,11 @@ pub const MARK_UNAWARE: [&str; 2] = [FREE_DECAY, EXCITED_RESPONSE];
 const FEWEST: usize = 4;
 
 /// Marks the gaps of a log, so that no window runs across them; missing ticks that are fewer than a gap are left. Where channels are read by a spline, the samples at
-/// either end of a gap are marked too.
-pub(super) fn mark_gaps(run: &mut TankLog, is_resampled: bool) {
+/// either end of a gap are marked too. A weight tow has one motion, which is fitted to the samples on both sides.
+pub(super) fn mark_gaps(run: &mut TankLog, method: &str, is_resampled: bool) {
+    if method == WEIGHT_TOW && !is_resampled {
+        return;
+    }
     let longest_s = GAP * run.steps.median_s;
     let ends = run.log.lost.iter().filter_map(|gap| Some((gap.from_s?, gap.to_s?, gap.ticks)));
     let marks = ends.filter(|(from_s, to_s, _)| to_s - from_s > longest_s).map(|(from_s, to_s, ticks)| {
