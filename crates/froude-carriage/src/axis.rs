@@ -25,7 +25,9 @@ use crate::servo::report::{effective, of_runs as of_several};
 use crate::servo::rows::Rows;
 use crate::servo::scale::ForcePerVolt;
 use crate::servo::two_mass::FlexibleReport;
-use crate::servo::{Chain, Friction, RigidFit, ServoCoefficient, ServoLog, ServoReport, identify_servo, record};
+use crate::servo::{
+    Chain, Friction, RigidFit, ServoCoefficient, ServoError, ServoLog, ServoReport, identify_servo, record,
+};
 use crate::source::file_of;
 use crate::two_masses::{motor_of, pulses, relative_errors, servo_log, two_masses};
 
@@ -145,21 +147,28 @@ pub fn of_table(
     gain: &ForcePerVolt<'_>,
 ) -> Result<AxisModels, MethodError> {
     let (imported, servo) = read_log(path, sidecar)?;
-    // The mean step, as the chunks of a long log have it.
-    let rate_hz = servo.rate_hz().map_err(MethodError::refused)?;
-    let fit =
-        |friction| identify_servo(&servo, &Chain::of_log(gain.n_v, rate_hz, friction)).map_err(MethodError::refused);
+    let refused = |error: ServoError| MethodError::input(path, error.to_string());
+    let even = servo.evenly().map_err(refused)?;
+    let fit = |friction| identify_servo(&servo, &Chain::of_log(gain.n_v, even.rate_hz, friction)).map_err(refused);
     let rigid = asked.iter().filter_map(|model| Some((model.friction()?, fit(friction_of(*model)))));
     let (models, not_fitted) = each(rigid);
     let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
     let mut findings = reported(&models, imported.findings);
     findings.extend(by_direction(&models));
     findings.extend(not_fitted);
+    findings.extend(even.done.map(|done| Finding::new(Severity::Warning, "uneven-time-steps", done)));
+    findings.extend(
+        wild::times(&servo.time_s, SLOWEST_HZ)
+            .map(|what| Finding::new(Severity::Warning, "implausible-times", format!("{}: {what}", path.display()))),
+    );
     findings.push(one_excitation());
     let files = files_of_table(path, sidecar);
     let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report.fit, gain), files.clone());
     Ok(AxisModels { estimates: models.iter().map(rigid).collect(), models, findings, ..AxisModels::default() })
 }
+
+/// Slowest rate of a log that shows a servo, Hz.
+const SLOWEST_HZ: f64 = 5.0;
 
 /// Reads a log from another program; rejects it if a sample is far from all others.
 fn read_log(path: &Path, sidecar: Option<&Path>) -> Result<(ImportedRun, ServoLog), MethodError> {

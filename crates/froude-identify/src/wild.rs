@@ -80,6 +80,50 @@ fn wild(mut values: Vec<(usize, f64)>) -> Option<(usize, f64, f64)> {
     (all.windows(2).filter(|pair| pair[0] != pair[1]).count() >= FEWEST).then_some(found)
 }
 
+/// Slowest rate of a test that moves, Hz; a log of one sample in a second and slower is of no motion.
+pub const SLOWEST_HZ: f64 = 1.0;
+/// Fastest rate of a test, Hz, and its shortest duration, s.
+const FASTEST_HZ: f64 = 1e5;
+const SHORTEST_S: f64 = 0.5;
+/// A log this slow, Hz, and this long, s, is in the wrong unit, or of no test.
+const SLOW_AND_LONG: (f64, f64) = (2.0, 3000.0);
+
+/// Wrong units of time: by which factor times change, what is written, and what may be meant.
+const UNITS: [(f64, &str, &str); 4] = [(1e-3, "s", "ms"), (1e-6, "s", "us"), (1e3, "ms", "s"), (60.0, "s", "min")];
+
+/// What is said of a log whose rate or duration is none of a test that needs `slowest_hz` and more: which unit its times would fit in.
+#[must_use]
+pub fn times(time_s: &[f64], slowest_hz: f64) -> Option<String> {
+    let (first, last) = (time_s.first()?, time_s.last()?);
+    let lasts_s = last - first;
+    let rate_hz = time_s.len().saturating_sub(1) as f64 / lasts_s;
+    let is_of_a_test = |factor: f64| {
+        let (rate_hz, lasts_s) = (rate_hz / factor, lasts_s * factor);
+        let is_slow = rate_hz < slowest_hz || rate_hz < SLOW_AND_LONG.0 && lasts_s > SLOW_AND_LONG.1;
+        !is_slow && rate_hz <= FASTEST_HZ && (lasts_s >= SHORTEST_S || time_s.len() < FEWEST)
+    };
+    if !lasts_s.is_finite() || lasts_s <= 0.0 || is_of_a_test(1.0) {
+        return None;
+    }
+    let fits: Vec<String> = UNITS
+        .iter()
+        .filter(|(factor, ..)| is_of_a_test(*factor))
+        .map(|(factor, written, meant)| {
+            format!(
+                "`time [{meant}]` where `time [{written}]` stands makes it {} Hz and {} s",
+                significant(rate_hz / factor, 3),
+                significant(lasts_s * factor, 3)
+            )
+        })
+        .collect();
+    let advice = if fits.is_empty() { "check the unit of its times".to_owned() } else { fits.join("; ") };
+    Some(format!(
+        "its times make {} Hz and {} s, which no such test has: every result with a unit of time is then wrong by powers of the same factor; {advice}",
+        significant(rate_hz, 3),
+        significant(lasts_s, 3)
+    ))
+}
+
 /// What is said of a log whose steps of time are far longer than those of the other logs, and which it is.
 #[must_use]
 pub fn steps(logs: &[&RunLog]) -> Option<(usize, String)> {
@@ -109,6 +153,22 @@ pub fn steps(logs: &[&RunLog]) -> Option<(usize, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_log_in_milliseconds_headed_as_seconds_says_which_unit_fits() {
+        let times_of = |step_s: f64, n: u32| (0..n).map(|i| step_s * f64::from(i)).collect::<Vec<f64>>();
+        assert_eq!(
+            times(&times_of(1000.0 / 60.0, 1440), SLOWEST_HZ).unwrap(),
+            "its times make 0.0600 Hz and 24000 s, which no such test has: every result with a unit of time is then wrong by powers of the same factor; \
+             `time [ms]` where `time [s]` stands makes it 60.0 Hz and 24.0 s"
+        );
+        // A kilohertz in milliseconds; a minute of 100 Hz, headed as milliseconds; sound logs, also of hours.
+        assert!(times(&times_of(1.0, 20_000), SLOWEST_HZ).unwrap().contains("`time [ms]`"));
+        assert!(times(&times_of(1e-5, 6000), SLOWEST_HZ).unwrap().contains("`time [s]` where `time [ms]` stands"));
+        for (step_s, n) in [(0.01, 6000), (1.0, 600), (1e-4, 20_000), (0.1, 100_000)] {
+            assert_eq!(times(&times_of(step_s, n), SLOWEST_HZ), None, "{step_s}");
+        }
+    }
 
     #[test]
     fn one_sample_of_a_million_newtons_is_wild_and_a_peak_is_not() {

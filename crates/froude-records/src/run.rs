@@ -35,6 +35,7 @@ pub const CAMPAIGN_COPY: &str = "campaign.toml";
 mod allowance;
 pub mod cell;
 pub(crate) mod channel;
+pub mod clock_jumps;
 pub mod clocks;
 pub(crate) mod declarations;
 mod declared;
@@ -52,6 +53,7 @@ mod recorder;
 mod seal;
 pub mod sensor;
 pub(crate) mod sidecar;
+pub mod stamps;
 pub mod step;
 mod sync;
 
@@ -60,8 +62,8 @@ pub use channel::{BOARD, Frame, LOG, Meaning};
 pub use declarations::{Declarations, Stated, Told};
 pub use declared::{Declared, declared, declared_value};
 pub use import::{
-    EVEN, GAP, ImportedRun, TimeSteps, channel_name, gap, import_run, is_servo_log, not_increasing, run_of,
-    run_of_table, time_column, times,
+    EVEN, ImportedRun, LogTimes, Missing, TimeSteps, channel_name, gap, import_run, is_servo_log, run_of, run_of_table,
+    steps_finding, time_column,
 };
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog, median};

@@ -16,6 +16,7 @@ use crate::raw_column::{
 use crate::read;
 use crate::run::cell::Cell;
 use crate::run::channel::Words;
+use crate::run::clock_jumps;
 use crate::run::declarations::{self, Declarations};
 use crate::run::meta::Role;
 use crate::run::sensor::{self, Sensor};
@@ -116,6 +117,7 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
         &[
             &["schema", "file", "method", "role", "mounted", "conditions", "constants", "columns"],
             &declarations::KEYS[..],
+            &clock_jumps::KEYS[..],
         ]
         .concat(),
     )?;

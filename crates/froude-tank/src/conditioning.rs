@@ -4,6 +4,7 @@
 //! |-------------|-------------|--------------------------------------------------------------------------------------------------------|
 //! | `read`      | –           | columns by unit and sign (done by the importer)                                                        |
 //! | `times`     | [`times`]   | times of a calendar are counted from the first sample of the log                                        |
+//! | `gap`       | [`stretches`] | gaps are marked                                                                                      |
 //! | –           | [`froude_identify::wild`] | a sample orders of magnitude away from all others is refused                                            |
 //! | `clock`, `delay`, `filter` | [`align`] | stamps of another clock, and late ones, as times of the log                               |
 //! | `clipped`   | [`clipped`] | readings at the end of the range, or flat at an extreme, are marked                                    |
@@ -53,6 +54,7 @@ pub fn condition(run: &mut TankLog, method: &str) -> Result<(), MethodError> {
         return Err(MethodError::input(&run.log.path, format!("{what}; {advice}")));
     }
     let stamps = align::stamps(run, method);
+    stretches::mark_gaps(run, method, !stamps.is_empty());
     clipped::mark(run, &stamps);
     align::resample(run, &stamps)?;
     loads::of_cell(run)?;

@@ -10,6 +10,7 @@ use froude_identify::dataset::distinct as distinct_texts;
 use froude_identify::method::MethodError;
 use froude_identify::runs::{files, logs_in, recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
+use froude_identify::wild;
 use froude_records::campaign::{BudgetEntry, Shared, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::clocks::is_own;
@@ -108,12 +109,19 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
         }
         out.findings.extend(long_logs::note(&log));
         conditioning::condition(&mut log, method)?;
-        let told = log.findings.iter().filter(|f| f.severity > Severity::Note);
-        of_logs.extend(told.map(|finding| (path.clone(), finding.clone())));
+        log.findings.extend(
+            wild::times(&log.log.time_s, wild::SLOWEST_HZ)
+                .map(|what| warning("implausible-times", format!("{}: {what}", path.display()))),
+        );
+        let told = log.findings.iter().filter(|f| f.severity > Severity::Note || OF_STAMPS.contains(&f.code.as_str()));
+        let of_this = |finding: &Finding| Finding { message: of_file(&path, &finding.message), ..finding.clone() };
+        of_logs.extend(told.map(|finding| (path.clone(), of_this(finding))));
         out.files.extend(files_of(path, assumed.unwrap_or(role.name()), &log));
         out.runs.push(log);
     }
     out.findings.extend(once(of_logs));
+    out.findings.extend(copies(&out.runs));
+    out.findings.extend(in_another_unit(&out.runs));
     conditioning::of_one_rig(&out.runs)?;
     out.findings.extend(of_a_calendar(&out.runs));
     Ok(out)
@@ -125,6 +133,15 @@ pub(crate) fn files_of(path: PathBuf, role: &str, log: &TankLog) -> impl Iterato
     let log = ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role) };
     std::iter::once(log).chain(sidecar.map(|sidecar| ReadFile::new(sidecar, "sidecar")))
 }
+
+/// A sentence about a log, with its file.
+fn of_file(path: &Path, sentence: &str) -> String {
+    let file = path.display().to_string();
+    if sentence.contains(&file) { sentence.to_owned() } else { format!("{file}: {sentence}") }
+}
+
+/// Notes of a log that a reader should see: what was done to its stamps.
+const OF_STAMPS: [&str; 2] = ["uneven-time-steps", "clock-unwrapped"];
 
 /// Findings of logs, without repeats: findings of one code that differ only in numbers are reported for the first log, with the number of other logs.
 fn once(of_logs: Vec<(PathBuf, Finding)>) -> Vec<Finding> {
@@ -263,6 +280,61 @@ pub(crate) fn add_step(files: &mut [ReadFile], log: &TankLog, step: Step) {
     if let Some(file) = files.iter_mut().find(|file| file.path == log.log.path) {
         file.steps.push(step);
     }
+}
+
+/// A run that moves so many times as far as every other is in another unit: mm under [m] is a factor of 1000.
+const ANOTHER_UNIT: f64 = 200.0;
+/// Channels that a test moves.
+const MOVED: [&str; 6] = ["position", "y/position", "sway", "heave", "angle", "speed"];
+
+/// Runs whose motion is orders of magnitude larger, or smaller, than that of every other run of their role.
+fn in_another_unit(logs: &[TankLog]) -> Vec<Finding> {
+    let range = |log: &TankLog, name: &str| {
+        let values = &log.log.channels.get(name)?.values;
+        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+        Some(high - low).filter(|range| *range > 0.0)
+    };
+    let mut out = Vec::new();
+    for name in MOVED {
+        for (k, log) in logs.iter().enumerate() {
+            let alike =
+                logs.iter().enumerate().filter(|(j, other)| *j != k && other.log.meta.role == log.log.meta.role);
+            let others: Vec<f64> = alike.filter_map(|(_, other)| range(other, name)).collect();
+            let (low, high) = others.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), x| (a.min(*x), b.max(*x)));
+            let Some(own) = range(log, name).filter(|_| others.len() >= FEWEST_OTHERS) else { continue };
+            if own > ANOTHER_UNIT * high || own < low / ANOTHER_UNIT {
+                let unit = log.log.channels.get(name).map_or("", |channel| channel.meaning.unit.as_str());
+                let text = format!(
+                    "{}: {name} goes through {own:.3e} {unit}, and through {low:.3e} to {high:.3e} {unit} in the other runs: check its unit (mm under [m] is a factor of 1000)",
+                    log.log.path.display()
+                );
+                out.push(warning("run-stands-out", text));
+            }
+        }
+    }
+    out
+}
+
+/// Fewest runs that say what is usual.
+const FEWEST_OTHERS: usize = 2;
+
+/// Logs with the same samples: one run that counts as several.
+fn copies(logs: &[TankLog]) -> Vec<Finding> {
+    let is_copy = |a: &TankLog, b: &TankLog| {
+        a.log.time_s == b.log.time_s
+            && a.log.channels.len() == b.log.channels.len()
+            && a.log.channels.iter().zip(&b.log.channels).all(|((_, x), (_, y))| x.values == y.values)
+    };
+    let of = |(k, log): (usize, &TankLog)| {
+        let first = logs[..k].iter().find(|earlier| is_copy(earlier, log))?;
+        let text = format!(
+            "{} has the same samples as {}: one run counts twice, and every interval is too narrow; remove one of them, or put the log there that is meant",
+            log.log.path.display(),
+            first.log.path.display()
+        );
+        Some(Finding::new(Severity::Error, "copied-log", text))
+    };
+    logs.iter().enumerate().filter_map(of).collect()
 }
 
 /// Configurations of the runs, in order of first appearance.

@@ -11,14 +11,16 @@ mod ticks;
 use std::path::{Path, PathBuf};
 
 use froude_identify::method::MethodError;
-use froude_records::RecordError;
 use froude_records::chunks::{count_rows, for_each_chunk};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::run::{channel_name, import_run, run_of, times};
+use froude_records::run::clock_jumps::{Wraps, twice};
+use froude_records::run::{LogTimes, channel_name, import_run, run_of, time_column};
 use froude_records::sidecar::read_sidecar;
 use froude_records::table::{Column, ColumnData, Table};
+use froude_records::table_file::sidecar_of;
 use froude_records::units::Dimension;
+use froude_records::{Place, RecordError};
 use froude_signal::block_mean::{BlockMean, gain, noise_bandwidth_hz};
 use indexmap::IndexMap;
 
@@ -96,10 +98,12 @@ pub(crate) fn import(path: &Path, reading: Reading, progress: &dyn Fn(&str)) -> 
     if reading.block_rows == 1 {
         return Ok(import_run(path, None)?.into());
     }
-    let mut means = Means::of(reading.block_rows);
+    let jumps = sidecar_of(path, None)?.map(|sidecar| sidecar.run.declared.jumps).unwrap_or_default();
+    let (mut means, mut wraps) = (Means::of(reading.block_rows), Wraps::default());
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let mut shown = None;
-    for_each_chunk::<RecordError>(path, None, &mut |part| {
+    for_each_chunk::<RecordError>(path, None, &mut |mut part| {
+        wraps.undo(&mut part, jumps)?;
         means.push(&part)?;
         let percent = (100 * means.rows / reading.rows.max(1)).min(100);
         if shown.replace(percent) != Some(percent) {
@@ -181,8 +185,12 @@ impl Means {
         }
         let averaged = Averaged { rows: self.rows, block_rows: self.block_rows, left_out: self.left_out };
         let sidecar = table.sidecar.as_deref().map(read_sidecar).transpose()?;
-        let (steps, lost) = self.ticks.finish(&table.path)?;
-        let mut run = run_of(&table, sidecar.as_ref(), times(&table)?, steps, lost)?;
+        let found = self.ticks.finish(&table.path)?;
+        let time_s = time_column(&table)?.to_vec();
+        if let Some(row) = time_s.windows(2).position(|w| w[1] <= w[0]) {
+            return Err(twice(Place::whole(path), time_s[row]).into());
+        }
+        let mut run = run_of(&table, sidecar.as_ref(), LogTimes { rows: 0..time_s.len(), time_s, ..found })?;
         run.log.meta.log_rate_hz /= averaged.block_rows as f64;
         let recorded = self.extremes.into_iter().map(|(name, extremes)| (channel_name(&name), extremes)).collect();
         Ok(TankLog { recorded, averaged: Some(averaged), ..run.into() })

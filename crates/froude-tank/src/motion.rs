@@ -179,7 +179,7 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     let dropped = whole - cycles.len();
     if cycles.len() < asked.fewest.max(1) {
         let what = format!(
-            "of its {whole} whole cycles {} are left without a mark, and {} are needed: {}; repeat the run, or widen the sensor's range",
+            "of its {whole} whole cycles {} are left without a mark, and {} are needed: {}; repeat the run, widen the sensor's range, or lower cycles.fewest and read the intervals with care",
             cycles.len(),
             asked.fewest.max(1),
             in_words(marks)

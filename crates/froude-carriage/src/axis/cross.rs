@@ -14,7 +14,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 
 use super::{AxisModel, force_per_volt_n_v, friction_of, read_log};
-use crate::servo::Chain;
+use crate::servo::{Chain, ServoError};
 
 /// The error of one model.
 struct Cross {
@@ -33,14 +33,15 @@ struct Cross {
 pub(super) fn hold_against(source: &Source, estimates: &[&Estimate]) -> Result<(Vec<Finding>, Section), MethodError> {
     let (path, sidecar, name) = (source.input.path(), source.sidecar.as_deref(), &source.name);
     let (imported, log) = read_log(path, sidecar)?;
-    let rate_hz = log.rate_hz().map_err(MethodError::refused)?;
+    let refused = |error: ServoError| MethodError::input(path, error.to_string());
+    let rate_hz = log.evenly().map_err(refused)?.rate_hz;
     let force_per_volt_n_v = force_per_volt_n_v(path, sidecar)?;
     let mut found = Vec::new();
     for estimate in estimates {
         let model = AxisModel::ALL.into_iter().find(|model| model.name() == estimate.method.name);
         let Some(model) = model.filter(|model| AxisModel::OF_LOGS.contains(&model.name())) else { continue };
         let chain = Chain::of_log(force_per_volt_n_v, rate_hz, friction_of(model));
-        let rows = chain.rows(&log).map_err(MethodError::refused)?;
+        let rows = chain.rows(&log).map_err(refused)?;
         // Of a rig the friction may have no offset.
         let value = |label: &str| {
             let is_of =

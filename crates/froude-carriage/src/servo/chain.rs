@@ -134,12 +134,30 @@ impl Chain {
         Ok(Motion { position_m, velocity_m_s, acceleration_m_s2 })
     }
 
-    /// The rows of the regression.
+    /// The rows of the regression, of each stretch of even steps by itself; stretches too short for any are left out.
     ///
     /// # Errors
     ///
     /// [`ServoError`].
     pub fn rows(&self, log: &ServoLog) -> Result<Rows, ServoError> {
+        let (mut joined, mut first_error): (Option<Rows>, Option<ServoError>) = (None, None);
+        for stretch in log.evenly()?.stretches {
+            match (self.rows_of_stretch(&stretch), &mut joined) {
+                (Ok(rows), None) => joined = Some(rows),
+                (Ok(rows), Some(all)) => all.append(rows),
+                (
+                    Err(error @ (ServoError::TooFewRows { .. } | ServoError::AtRest { .. } | ServoError::Signal(_))),
+                    _,
+                ) => {
+                    first_error.get_or_insert(error);
+                }
+                (Err(error), _) => return Err(error),
+            }
+        }
+        joined.ok_or_else(|| first_error.unwrap_or(ServoError::TooFewRows { rows: 0, needed: 3 }))
+    }
+
+    fn rows_of_stretch(&self, log: &ServoLog) -> Result<Rows, ServoError> {
         let rate_hz = log.rate_hz()?;
         let motion = self.motion(&log.position_m, rate_hz)?;
         let force_n = self.force_n(&log.command_v, None);

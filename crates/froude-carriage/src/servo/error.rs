@@ -2,6 +2,7 @@
 
 use froude_fit::nonlinear::NonlinearError;
 use froude_fit::stream::StreamError;
+use froude_records::number::plain;
 use froude_signal::SignalError;
 
 /// Why an axis could not be identified; each message states what to do.
@@ -21,7 +22,10 @@ pub enum ServoError {
 
     /// Samples that are not equidistant.
     #[error(
-        "the step after {time_s} s is {step_s} s where the mean is {mean_s} s; resample the record or cut it at the gap"
+        "the step after {} s is {} ms where the mean is {} ms; resample the record or cut it at the gap",
+        plain(*time_s, 6),
+        plain(1e3 * step_s, 5),
+        plain(1e3 * mean_s, 5)
     )]
     Uneven {
         /// Before the step.

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use froude_carriage::servo::{Chain, Friction, ServoError, ServoLog, ServoReport, identify_servo};
+use froude_records::run::stamps::even_times;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
@@ -223,5 +224,78 @@ fn a_slow_drive_determines_friction_in_slow_motions() {
         let told_of = TRUTHS.map(|truth| counts(&found, truth));
         assert_eq!(told_of.iter().map(|[given, _]| given).sum::<usize>(), told, "{told_of:?}");
         assert!(told_of.iter().all(|[given, held]| given == held), "{:?}", found[0].as_ref().unwrap().fit.coefficients);
+    }
+}
+
+/// What is done to the stamps and rows of a log.
+type Degraded = fn(ServoLog, &mut Pcg64Mcg) -> ServoLog;
+
+/// Stamps in whole milliseconds, and 3 % of the rows lost.
+fn lost(log: ServoLog, rng: &mut Pcg64Mcg) -> ServoLog {
+    let keep: Vec<usize> = (0..log.time_s.len()).filter(|_| rng.random::<f64>() >= 0.03).collect();
+    let of = |column: &[f64]| keep.iter().map(|i| column[*i]).collect::<Vec<f64>>();
+    let stamps: Vec<f64> = of(&log.time_s).iter().map(|t| (1e3 * t).round() / 1e3).collect();
+    let time_s = even_times(&stamps, 1e-3).expect("rounded stamps of an even rate").times_s();
+    ServoLog { time_s, position_m: of(&log.position_m), command_v: of(&log.command_v) }
+}
+
+/// Two seconds missing.
+fn cut(log: ServoLog, _: &mut Pcg64Mcg) -> ServoLog {
+    let keep: Vec<usize> = (0..log.time_s.len()).filter(|i| !(8.0..10.0).contains(&log.time_s[*i])).collect();
+    let of = |column: &[f64]| keep.iter().map(|i| column[*i]).collect::<Vec<f64>>();
+    ServoLog { time_s: of(&log.time_s), position_m: of(&log.position_m), command_v: of(&log.command_v) }
+}
+
+/// Coefficients agree with those of the clean log within both intervals, and each interval holds the truth as often as that of the clean log, less 2.3 standard
+/// deviations of 200.
+#[test]
+fn rounded_stamps_lost_samples_and_gaps_leave_the_coefficients_and_their_coverage() {
+    let motions =
+        [MOTIONS.iter().find(|(name, _)| *name == "a chirp"), MOTIONS.iter().find(|(name, _)| *name == "three sines")];
+    let seeds = 200_u64;
+    for rate_hz in [60.0, 200.0] {
+        let rig = Rig { rate_hz, disturbed_n: 0.05, ..RIG };
+        for (name, motion) in motions.into_iter().flatten() {
+            let chain = Chain::of_log(AXIS.force_per_volt_n_v, rate_hz, Friction::symmetric());
+            let of = |degraded: Option<Degraded>| -> Vec<_> {
+                let one = |seed: u64| {
+                    let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x10_57);
+                    let log = log(motion, rig, seed);
+                    identify_servo(
+                        &degraded.map_or_else(|| log.clone(), |degraded| degraded(log.clone(), &mut rng)),
+                        &chain,
+                    )
+                };
+                (0..seeds).into_par_iter().map(one).collect()
+            };
+            let clean = of(None);
+            for (way, degraded) in [("lost", lost as Degraded), ("cut", cut)] {
+                let found = of(Some(degraded));
+                for truth in TRUTHS {
+                    let ([given, held], [n, holds]) = (counts(&found, truth), counts(&clean, truth));
+                    println!("{rate_hz} Hz, {name}, {way}, {}: {held} of {given}; clean {holds} of {n}", truth.0);
+                    assert!(10 * given >= 9 * n, "{rate_hz} Hz, {name}, {way}, {}: {given} of {n}", truth.0);
+                    if given == 0 {
+                        continue;
+                    }
+                    let (p, clean) = (held as f64 / given as f64, (holds as f64 / n as f64).min(0.95));
+                    let scatter = (2.0 * clean * (1.0 - clean) / given as f64).sqrt();
+                    assert!(p >= clean - 2.3 * scatter, "{rate_hz} Hz, {name}, {way}, {}: {held} of {given}", truth.0);
+                }
+                let alike = found.iter().flatten().zip(clean.iter().flatten()).filter(|(a, b)| {
+                    let pairs = a.fit.coefficients.iter().zip(&b.fit.coefficients);
+                    pairs.into_iter().all(|(a, b)| {
+                        let [low, high] = a.interval;
+                        !low.is_finite()
+                            || !b.interval[0].is_finite()
+                            || (low <= b.interval[1] && b.interval[0] <= high)
+                    })
+                });
+                assert!(
+                    alike.count() as u64 * 100 >= 99 * found.iter().flatten().count() as u64,
+                    "{rate_hz} Hz, {name}, {way}"
+                );
+            }
+        }
     }
 }

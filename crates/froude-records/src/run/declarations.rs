@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 
 use crate::error::{Place, RecordError};
 use crate::run::cell::{Cell, cell};
+use crate::run::clock_jumps::ClockJumps;
 use crate::run::clocks::{Clock, clocks};
 use crate::run::frames::{FrameSpec, frames};
 use crate::run::marks::{Mark, Segment, marks, segments};
@@ -16,6 +17,8 @@ pub(crate) const KEYS: [&str; 5] = ["clocks", "frames", "cell", "marks", "segmen
 /// What a sidecar declares of the data.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Declarations {
+    /// What is declared of a clock that goes back.
+    pub jumps: ClockJumps,
     /// Clocks beside the log's own, by name.
     pub clocks: IndexMap<String, Clock>,
     /// Frames beside the known ones, by name.
@@ -66,7 +69,14 @@ impl Declarations {
         let frames = frames(root)?;
         let names: Vec<&str> = frames.keys().map(String::as_str).collect();
         let cell = cell(root, &names)?;
-        Ok(Self { clocks: clocks(root)?, cell, marks: marks(root)?, segments: segments(root)?, frames })
+        Ok(Self {
+            jumps: ClockJumps::read(root)?,
+            clocks: clocks(root)?,
+            cell,
+            marks: marks(root)?,
+            segments: segments(root)?,
+            frames,
+        })
     }
 
     /// Names of the declared frames.

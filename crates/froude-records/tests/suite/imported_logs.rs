@@ -51,12 +51,17 @@ fn a_servo_log_becomes_a_run_of_axis_y_in_si() {
 #[test]
 fn uneven_time_steps_are_reported_and_nothing_is_resampled() {
     let folder = tempfile::tempdir().unwrap();
-    let times = (0..1000).map(|k| f64::from(k) * 1e-3 + f64::from(k % 2) * 1e-4);
+    let times = (0..1000).map(|k| f64::from(k) * 1e-3 + f64::from(k * 7 % 11) * 1e-5);
     let imported = import_run(&log(folder.path(), times), None).unwrap();
     assert_eq!(imported.log.len(), 1000);
     let finding = &imported.findings[0];
     assert_eq!((finding.severity, finding.code.as_str()), (Severity::Warning, "uneven-time-steps"));
-    assert!((imported.steps.shortest_s - 0.9e-3).abs() < 1e-12 && (imported.steps.longest_s - 1.1e-3).abs() < 1e-12);
+    assert!((imported.steps.shortest_s - 0.96e-3).abs() < 1e-12 && (imported.steps.longest_s - 1.07e-3).abs() < 1e-12);
+    assert!(
+        finding.message.contains("no even times lie within half the resolution of the stamps (0.01 ms)"),
+        "{}",
+        finding.message
+    );
 }
 
 #[test]
@@ -77,7 +82,8 @@ fn a_time_that_goes_back_or_is_not_there_is_reported_with_its_line() {
     assert_eq!(
         import_run(&path, None).unwrap_err().to_string(),
         format!(
-            "{}:4: `time` is 0.1 s after 0.1 s; it must increase: sort the rows, or delete doubled ones",
+            "{}:4: `time` is 0.1 s as in the row before, and the other stamps show no even rate that rounding would make this of: delete the row if it is there \
+             twice, or log the time with more digits",
             path.display()
         )
     );
@@ -132,4 +138,77 @@ fn an_entry_says_what_its_channel_is_and_else_its_name_does() {
         error(&format!("{entry}, frame = \"bodyy\"")),
         format!("{place}54: `frame` is \"bodyy\"; did you mean `body`?")
     );
+}
+
+/// Stamps in whole milliseconds of 60 Hz: the even times come back, and the sentence says so.
+#[test]
+fn rounded_stamps_give_the_even_times_and_lost_samples_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let stamp = |k: u32| (f64::from(k) / 60.0 * 1e3).round() / 1e3;
+    let whole = import_run(&log(folder.path(), (0..1440).map(stamp)), None).unwrap();
+    assert!(whole.log.time_s.iter().enumerate().all(|(k, t)| (t - k as f64 / 60.0).abs() < 2e-5));
+    assert_eq!((whole.findings[0].severity, whole.findings[0].code.as_str()), (Severity::Note, "uneven-time-steps"));
+    assert_eq!(
+        whole.findings[0].message,
+        "time steps have a median of 17.000000 ms, from 16.000000 ms to 17.000000 ms: the stamps are rounded to 1 ms and lie within half of that of even \
+         times 16.66667 ms apart, which are used in their place"
+    );
+    let kept = (0..1440).filter(|k| k % 40 != 7 && !(600..720).contains(k));
+    let lost = import_run(&log(folder.path(), kept.map(stamp)), None).unwrap();
+    let message = &lost.findings[0].message;
+    assert!(message.contains("2.5 % of the samples at this step (33) are missing, at most 1 in a row"), "{message}");
+    assert!(message.contains("120 ticks are missing in 1 gap, the longest of 2.017 s from 9.98333 s on"), "{message}");
+    assert_eq!((lost.findings[0].code.as_str(), lost.log.lost.len()), ("time-gaps", 1));
+}
+
+/// A counter of 16 bits of milliseconds, and a clock that was set back by a third of a second: each refusal says what to write, and what is written is done.
+#[test]
+fn a_clock_that_goes_back_says_what_it_may_be_and_what_to_declare() {
+    let folder = tempfile::tempdir().unwrap();
+    let wrapped = (0..1000).map(|k| f64::from((64_000 + 5 * k) % 65_536) / 1e3);
+    let path = log(folder.path(), wrapped);
+    assert_eq!(
+        import_run(&path, None).unwrap_err().to_string(),
+        format!(
+            "{}:310: `time` is 0.004 s after 65.535 s: a counter of 16 bits in milliseconds wraps around there, and goes on by 0.005 s as usual. Write \
+             clock_wraps = \"65.536 s\" at the head of its sidecar, {} (where there is none: schema = 1, this line, and [columns] with each header); do not sort the rows",
+            path.display(),
+            path.with_extension("toml").display()
+        )
+    );
+    let declare = |line: &str| {
+        std::fs::write(
+            folder.path().join("log.toml"),
+            SIDECAR.replace("schema = 1\n", &format!("schema = 1\n{line}\n")),
+        )
+        .unwrap();
+    };
+    declare("clock_wraps = \"65.536 s\"");
+    let found = import_run(&path, None).unwrap();
+    assert!((found.log.duration_s() - 4.995).abs() < 1e-9 && found.log.len() == 1000);
+    assert!(found.findings.iter().any(|f| f.code == "clock-unwrapped" && f.message.contains("1 wrap is undone")));
+    declare("clock_wraps = \"60 s\"");
+    let error = import_run(&path, None).unwrap_err().to_string();
+    assert!(error.contains("no wrap of the declared 60 s: that would be a step of −5.531 s"), "{error}");
+    declare("clock_wraps = \"60 s\"\nsplit_at_clock_jumps = true");
+    assert!(import_run(&path, None).unwrap_err().to_string().contains("exclude each other"));
+
+    let set_back = (0..1000).map(|k| f64::from(k) * 5e-3 - if k < 700 { 0.0 } else { 0.3 });
+    let path = log(folder.path(), set_back);
+    let error = import_run(&path, None).unwrap_err().to_string();
+    assert!(
+        error.contains("the clock was set back by 0.295 s") && error.contains("split_at_clock_jumps = true"),
+        "{error}"
+    );
+    assert!(!error.contains("sort the rows,"), "{error}");
+    declare("split_at_clock_jumps = true");
+    let found = import_run(&path, None).unwrap();
+    assert_eq!(found.log.len(), 700);
+    assert_eq!(found.log.channels["y/position"].values.len(), 700);
+    let split = found.findings.iter().find(|f| f.code == "clock-split").unwrap();
+    assert!(split.message.contains("of 2 stretches the longest is used, 700 of 1000 rows"), "{}", split.message);
+
+    let shuffled = (0..1000).map(|k| f64::from(k * 7 % 1000) * 5e-3);
+    let error = import_run(&log(folder.path(), shuffled), None).unwrap_err().to_string();
+    assert!(error.contains("the rows are not in the order of their times"), "{error}");
 }

@@ -36,8 +36,10 @@ const CLIPPED: f64 = 0.05;
 /// … where at rest no reading has more than this part of the samples.
 const REPEATS: f64 = 0.1;
 
-/// A step longer than this many medians has ticks missing in it.
+/// A step longer than this many medians has ticks missing in it …
 const MISSING: f64 = 1.5;
+/// … and one longer than this part of a window is a gap: over a shorter one the window's weights are still smooth.
+const GAP: f64 = 1.0 / 12.0;
 
 /// How a run moves, as it was logged.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,6 +116,12 @@ pub(crate) fn window(time_s: &[f64], middle_s: f64, window_s: f64) -> Window {
     let end = time_s.partition_point(|t| *t <= high);
     let at: Vec<f64> = time_s[from..end].iter().map(|t| t - middle_s).collect();
     let omega = TAU / window_s;
+    // Half of the time between the samples before and after: the sums are integrals at uneven steps too.
+    let last = time_s.len().saturating_sub(1);
+    let lasts_s = |i: usize| 0.5 * (time_s[(i + 1).min(last)] - time_s[i.saturating_sub(1)]);
+    let weighted = |shape: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        at.iter().enumerate().map(|(k, t)| shape(*t) * lasts_s(from + k)).collect()
+    };
     let scaled = |raw: Vec<f64>, moment: i32, factorial: f64| {
         let found: f64 = raw.iter().zip(&at).map(|(w, t)| w * t.powi(moment) / factorial).sum();
         raw.into_iter().map(|w| w / found).collect::<Vec<f64>>()
@@ -126,11 +134,11 @@ pub(crate) fn window(time_s: &[f64], middle_s: f64, window_s: f64) -> Window {
         }
         raw
     };
-    let value = scaled(at.iter().map(|t| (1.0 + (omega * t).cos()).powi(2)).collect(), 0, 1.0);
-    let slope = without(at.iter().map(|t| (1.0 + (omega * t).cos()) * (omega * t).sin()).collect(), &|_| 1.0);
+    let value = scaled(weighted(&|t| (1.0 + (omega * t).cos()).powi(2)), 0, 1.0);
+    let slope = without(weighted(&|t| (1.0 + (omega * t).cos()) * (omega * t).sin()), &|_| 1.0);
     // First the slope, then the mean: on even samples about the middle the two do not touch each other.
-    let shape = |t: &f64| -(omega * t).cos() - (2.0 * omega * t).cos();
-    let bend = without(without(at.iter().map(shape).collect(), &|t| t), &|_| 1.0);
+    let shape = |t: f64| -(omega * t).cos() - (2.0 * omega * t).cos();
+    let bend = without(without(weighted(&shape), &|t| t), &|_| 1.0);
     Window { from, value, slope: scaled(slope, 1, 1.0), bend: scaled(bend, 2, 2.0) }
 }
 
@@ -175,7 +183,8 @@ pub(crate) fn windows(run: &TowRun<'_>, window_s: f64) -> Result<Vec<(f64, Windo
         (0..=count).map(move |i| first + window_s * (0.5 + i as f64 / 3.0)).collect::<Vec<f64>>()
     };
     let is_free = |t: &f64| run.marks.iter().all(|mark| !mark.touches(t - 0.5 * window_s, t + 0.5 * window_s));
-    let parts = run.time_s.chunk_by(|a, b| b - a <= MISSING * step_s);
+    let longest_s = (MISSING * step_s).max(GAP * window_s);
+    let parts = run.time_s.chunk_by(|a, b| b - a <= longest_s);
     Ok(parts.flat_map(middles).filter(is_free).map(|t| (t, window(run.time_s, t, window_s))).collect())
 }
 

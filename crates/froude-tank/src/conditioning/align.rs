@@ -12,7 +12,7 @@ use froude_identify::method::MethodError;
 use froude_records::number::{percent, plain, significant};
 use froude_records::run::LOG;
 use froude_records::run::clocks::{Clock, is_own};
-use froude_records::run::marks::{Mark, SegmentKind};
+use froude_records::run::marks::SegmentKind;
 use froude_records::run::sensor::Filter;
 use froude_records::run::step::Step;
 use froude_records::text::counted;
@@ -198,15 +198,6 @@ pub fn resample(run: &mut TankLog, stamps: &Stamps) -> Result<(), MethodError> {
         channel.values = values;
         done.push(Step::new("resampled", name, "at the rows of the log, by a cubic spline"));
     }
-    let gaps = run.log.lost.iter().filter_map(|gap| Some((gap.from_s?, gap.to_s?)));
-    let dropped = gaps.map(|(from_s, to_s)| Mark {
-        from_s,
-        to_s,
-        why: "dropped".to_owned(),
-        by: "rule: ticks are missing".to_owned(),
-        note: "a spline was drawn across them".to_owned(),
-    });
-    run.declared.marks.extend(dropped);
     let n = time_s.len();
     if rows.len() < n {
         let (first, last) = (rows.start, n - rows.end);

@@ -4,12 +4,13 @@ use std::ops::Range;
 
 use crate::findings::warning;
 use crate::log::TankLog;
-use crate::names::{EXCITED_RESPONSE, FREE_DECAY};
+use crate::names::{EXCITED_RESPONSE, FREE_DECAY, WEIGHT_TOW};
 use froude_identify::method::MethodError;
 use froude_records::finding::Finding;
 use froude_records::number::plain;
 use froude_records::run::RunLog;
 use froude_records::run::marks::{Mark, Segment, SegmentKind};
+use froude_records::run::stamps::GAP;
 use froude_records::run::step::Step;
 use froude_records::text::counted;
 
@@ -17,6 +18,23 @@ use froude_records::text::counted;
 pub const MARK_UNAWARE: [&str; 2] = [FREE_DECAY, EXCITED_RESPONSE];
 /// Fewest samples that are a log.
 const FEWEST: usize = 4;
+
+/// Marks the gaps of a log, so that no window runs across them; missing ticks that are fewer than a gap are left. Where channels are read by a spline, the samples at
+/// either end of a gap are marked too. A weight tow has one motion, which is fitted to the samples on both sides.
+pub(super) fn mark_gaps(run: &mut TankLog, method: &str, is_resampled: bool) {
+    if method == WEIGHT_TOW && !is_resampled {
+        return;
+    }
+    let longest_s = GAP * run.steps.median_s;
+    let ends = run.log.lost.iter().filter_map(|gap| Some((gap.from_s?, gap.to_s?, gap.ticks)));
+    let marks = ends.filter(|(from_s, to_s, _)| to_s - from_s > longest_s).map(|(from_s, to_s, ticks)| {
+        let (from_s, to_s) = if is_resampled { (from_s, to_s) } else { (from_s.next_up(), to_s.next_down()) };
+        let ticks = ticks.map_or(0, |ticks| ticks as usize);
+        let by = format!("rule: {} missing", counted(ticks, "tick is", "ticks are"));
+        Mark { from_s, to_s, why: "dropped".to_owned(), by, note: String::new() }
+    });
+    run.declared.marks.extend(marks);
+}
 
 /// Cuts a log to its declared test and, where the method does not leave marks out itself, to its longest stretch without one.
 ///

@@ -50,6 +50,7 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
     let summary = |(run, swings): &(DecayRun<'_>, Swings)| {
         let [first, end] = swings.samples;
         let own: Vec<f64> = rows.iter().filter(|r| r.run == run.id).map(|r| r.residual).collect();
+        let [period_s, added] = RunSummary::period_and_added(swings, setup);
         RunSummary {
             id: run.id.to_owned(),
             samples: end - first,
@@ -57,6 +58,8 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
             from_s: run.time_s[first],
             start: [swings.passages[0].position, swings.passages[0].slope],
             rest: pooled.rest(swings, setup.restoring.stiffness()),
+            period_s,
+            added,
             noise: swings.noise,
             residual_rms: (own.iter().map(|r| r * r).sum::<f64>() / own.len() as f64).sqrt(),
             fitted: Vec::new(),

@@ -7,6 +7,7 @@ use froude_fit::budget::jackknife_of_one;
 use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::{Col, Mat};
 use froude_records::finding::Finding;
+use froude_records::run::median;
 use froude_records::text::counted;
 
 use super::fit::{DecayFit, HalfCycle};
@@ -36,6 +37,11 @@ const FEWEST_FIRST: usize = 4;
 /// … and doubted where what the fit leaves there is so many times that of the whole: of noise alone, four samples have that in one release of
 /// 50,000 (χ² with four degrees of freedom beyond 27).
 const FIRST_BEYOND: f64 = 2.6;
+/// A release that swings so many times as far as the others is in another unit.
+const ANOTHER_UNIT: f64 = 50.0;
+/// A moving inertia that differs by this part from the median of the others, and by so many of their median distances from it, is of another body.
+const MASS_OFF: f64 = 0.05;
+const MASS_SPREADS: f64 = 8.0;
 /// A second mode has at least this part of the residuals' power in one line.
 const LINE: f64 = 0.3;
 
@@ -53,6 +59,7 @@ pub(super) fn common(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) 
             ),
         ));
     }
+    out.extend(stands_out(fit));
     let [low, high] = fit.range.speed;
     if high < APART * low {
         out.push(warning(
@@ -83,6 +90,50 @@ pub(super) fn common(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) 
         out.extend(drifting(swings, run.id, setup));
     }
     out
+}
+
+/// A release whose period says that it is of another body, or whose size that it is in another unit.
+fn stands_out(fit: &DecayFit) -> Vec<Finding> {
+    if fit.runs.len() < FEWEST_RUNS {
+        return Vec::new();
+    }
+    let middle = |values: &mut [f64]| median(values).unwrap_or(f64::NAN);
+    let others =
+        |i: usize, of: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..fit.runs.len()).filter(|j| *j != i).map(of).collect() };
+    let reach = |i: usize| {
+        let of_run = fit.rows.iter().filter(|row| row.run == fit.runs[i].id);
+        of_run.map(|row| row.amplitude).fold(0.0_f64, f64::max)
+    };
+    let moving = |i: usize| fit.inertia.value + fit.runs[i].added;
+    let (unit, of_mass) = (fit.axis.position_unit(), fit.axis.decay_units()[0]);
+    let of = |i: usize| {
+        let (mut sizes, mut masses) = (others(i, &reach), others(i, &moving));
+        let (usual, usual_mass) = (middle(&mut sizes), middle(&mut masses));
+        let ratio = reach(i) / usual;
+        if ratio > ANOTHER_UNIT || ratio < 1.0 / ANOTHER_UNIT {
+            let text = format!(
+                "run {:?} swings by {:.3e} {unit} where the others swing by {usual:.3e} {unit}, {ratio:.3} times as far: check the unit of its position (mm under [m] is a factor of 1000)",
+                fit.runs[i].id,
+                reach(i)
+            );
+            return Some(warning("release-stands-out", text));
+        }
+        let mut off: Vec<f64> = masses.iter().map(|m| (m - usual_mass).abs()).collect();
+        let allowed = (MASS_OFF * usual_mass).max(MASS_SPREADS * middle(&mut off));
+        let found = moving(i);
+        ((found - usual_mass).abs() > allowed).then(|| {
+            let text = format!(
+                "run {:?} swings with a period of {:.4} s, which is a moving inertia of {found:.4} {of_mass} where the others have {usual_mass:.4} {of_mass} ({:+.1} %): another body, other springs, \
+                 or a wrong unit of time; {} by each release alone stands in the table of the releases",
+                fit.runs[i].id,
+                fit.runs[i].period_s,
+                100.0 * (found / usual_mass - 1.0),
+                fit.names[0]
+            );
+            warning("release-stands-out", text)
+        })
+    };
+    (0..fit.runs.len()).filter_map(of).collect()
 }
 
 fn negative(fit: &DecayFit, j: usize) -> Option<Finding> {
@@ -217,7 +268,7 @@ fn drifting(swings: &Swings, id: &str, setup: &DecaySetup) -> Option<Finding> {
 /// What the fitted motion leaves.
 pub(super) fn of_residuals(fit: &DecayFit, residuals: &[Vec<f64>], reduced: &Reduced<'_>) -> Vec<Finding> {
     let mut out = Vec::new();
-    for ((run, left), (record, _)) in fit.runs.iter().zip(residuals).zip(&reduced.runs) {
+    for ((run, left), (record, swings)) in fit.runs.iter().zip(residuals).zip(&reduced.runs) {
         let noise = run.noise.max(1e-9 * fit.range.amplitude[1]);
         // A hand that still holds is in the first samples, and hardly in the mean over all of them.
         let first = ((FIRST_PART * fit.range.period_s / record.step_s()) as usize).min(left.len());
@@ -241,7 +292,7 @@ pub(super) fn of_residuals(fit: &DecayFit, residuals: &[Vec<f64>], reduced: &Red
         }
         let rate = 1.0 / (left.len() as f64 * record.step_s());
         let natural = 1.0 / fit.range.period_s;
-        match line(left, record.step_s()) {
+        match line(left, &record.time_s[swings.samples[0]..swings.samples[1]]) {
             Some((frequency, amplitude, part)) if part > LINE && is_apart(frequency, natural, rate) => {
                 out.push(warning(
                     "second-mode",
@@ -274,14 +325,16 @@ fn is_apart(frequency: f64, natural: f64, resolution: f64) -> bool {
     [1.0, 3.0].iter().all(|k| (frequency - k * natural).abs() > 1.5 * resolution)
 }
 
-/// Strongest line of a series: frequency, amplitude, its part of the power.
-fn line(series: &[f64], step_s: f64) -> Option<(f64, f64, f64)> {
+/// Strongest line of a series at these times: frequency, amplitude, its part of the power.
+fn line(series: &[f64], time_s: &[f64]) -> Option<(f64, f64, f64)> {
     let n = series.len() as f64;
+    let start_s = *time_s.first()?;
+    let step_s = (time_s.last()? - start_s) / (n - 1.0).max(1.0);
     let power: f64 = series.iter().map(|x| x * x).sum();
     let at = |f: f64| {
         let (mut c, mut s) = (0.0, 0.0);
-        for (i, x) in series.iter().enumerate() {
-            let phase = TAU * f * step_s * i as f64;
+        for (t, x) in time_s.iter().zip(series) {
+            let phase = TAU * f * (t - start_s);
             c += x * phase.cos();
             s += x * phase.sin();
         }

@@ -6,6 +6,7 @@ use froude_fit::faer::Mat;
 use froude_records::finding::Finding;
 
 use super::run::{DecaySetup, Restoring};
+use super::swings::Swings;
 use crate::findings::warning;
 use crate::joint::{DeclaredError, part};
 
@@ -95,6 +96,10 @@ pub struct RunSummary {
     pub start: [f64; 2],
     /// Rest position q₀, m or rad.
     pub rest: f64,
+    /// Mean period of its swings, s.
+    pub period_s: f64,
+    /// Added mass by this release alone: fitted by the output error where each has its own, else by its period, C (T/2π)² − M, kg or kg m².
+    pub added: f64,
     /// Standard deviation of a sample's noise, from fourth differences, m or rad.
     pub noise: f64,
     /// Root mean square of what the fit leaves: of positions (output error) or of force amplitudes (envelope).
@@ -169,6 +174,15 @@ pub(super) fn declared(setup: &DecaySetup, [added, linear, quadratic]: [f64; 3])
     };
     let restoring = setup.restoring.parts().into_iter().map(|(name, u, by)| of(name, u, by_stiffness.map(|d| d * by)));
     std::iter::once(of("dry inertia", setup.inertia, [-1.0, 0.0, 0.0])).chain(restoring).collect()
+}
+
+impl RunSummary {
+    /// Mean period of swings, s, and the added mass that it is of.
+    pub(super) fn period_and_added(swings: &Swings, setup: &DecaySetup) -> [f64; 2] {
+        let (first, last) = (&swings.passages[0], &swings.passages[swings.passages.len() - 1]);
+        let period_s = 2.0 * (last.time_s - first.time_s) / (swings.passages.len() - 1).max(1) as f64;
+        [period_s, setup.restoring.stiffness() * (period_s / std::f64::consts::TAU).powi(2) - setup.inertia.value]
+    }
 }
 
 impl DecayFit {

@@ -127,7 +127,7 @@ impl Motion {
         }
     }
 
-    /// Steps that a sampling step is cut into.
+    /// Steps that the time between two samples is cut into.
     fn substeps(&self, step_s: f64) -> usize {
         (self.omega2.sqrt() * step_s / LONGEST_STEP_RAD).ceil().clamp(1.0, 1e4) as usize
     }
@@ -135,18 +135,18 @@ impl Motion {
     fn sampled<const K: usize, T>(
         &self,
         start: State<K>,
-        step_s: f64,
-        n: usize,
-        substeps: usize,
+        time_s: &[f64],
+        substeps: impl Fn(f64) -> usize,
         of: impl Fn(&State<K>) -> T,
     ) -> Option<Vec<T>> {
-        let h = step_s / substeps as f64;
         let mut state = start;
-        let mut out = Vec::with_capacity(n);
-        for i in 0..n {
+        let mut out = Vec::with_capacity(time_s.len());
+        for (i, t) in time_s.iter().enumerate() {
             if i > 0 {
-                for _ in 0..substeps {
-                    state = self.step(&state, h);
+                let step_s = t - time_s[i - 1];
+                let count = substeps(step_s);
+                for _ in 0..count {
+                    state = self.step(&state, step_s / count as f64);
                 }
             }
             if !(state.q.is_finite() && state.v.is_finite()) {
@@ -157,30 +157,34 @@ impl Motion {
         Some(out)
     }
 
-    /// Position and speed at `n` samples from a start; `None` where they grow beyond all numbers.
+    /// Position and speed at increasing times from a start at the first; `None` where they grow beyond all numbers.
     #[must_use]
-    pub fn path(&self, start: [f64; 2], step_s: f64, n: usize) -> Option<Vec<[f64; 2]>> {
-        self.path_by(start, step_s, n, self.substeps(step_s))
+    pub fn path(&self, start: [f64; 2], time_s: &[f64]) -> Option<Vec<[f64; 2]>> {
+        self.path_by(start, time_s, |step_s| self.substeps(step_s))
     }
 
-    /// The same with so many steps a sample.
-    fn path_by(&self, [q, v]: [f64; 2], step_s: f64, n: usize, substeps: usize) -> Option<Vec<[f64; 2]>> {
-        self.sampled(State::<0> { q, v, by: [] }, step_s, n, substeps, |s| [s.q, s.v])
+    /// The same with so many steps between two times.
+    fn path_by(&self, [q, v]: [f64; 2], time_s: &[f64], substeps: impl Fn(f64) -> usize) -> Option<Vec<[f64; 2]>> {
+        self.sampled(State::<0> { q, v, by: [] }, time_s, substeps, |s| [s.q, s.v])
     }
 
-    /// Position at `n` samples and its derivatives by ω², d₁, d₂, r, start position and start speed.
+    /// Position at these times and its derivatives by ω², d₁, d₂, r, start position and start speed.
     #[must_use]
-    pub fn path_and_derivatives(&self, [q, v]: [f64; 2], step_s: f64, n: usize) -> Option<Vec<(f64, [f64; BY])>> {
+    pub fn path_and_derivatives(&self, [q, v]: [f64; 2], time_s: &[f64]) -> Option<Vec<(f64, [f64; BY])>> {
         let mut by = [[0.0; 2]; BY];
         by[4][0] = 1.0;
         by[5][1] = 1.0;
-        self.sampled(State { q, v, by }, step_s, n, self.substeps(step_s), |s| (s.q, s.by.map(|b| b[0])))
+        self.sampled(State { q, v, by }, time_s, |step_s| self.substeps(step_s), |s| (s.q, s.by.map(|b| b[0])))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn even(step_s: f64, n: u32) -> Vec<f64> {
+        (0..n).map(|i| step_s * f64::from(i)).collect()
+    }
 
     const MOTION: Motion =
         Motion { omega2: 9.0, linear: 0.12, quadratic: 1.5, coulomb: 0.0, rest: 0.02, is_pendulum: false };
@@ -193,7 +197,7 @@ mod tests {
         let damped = (9.0_f64 - gamma * gamma).sqrt();
         let (a, b) = (0.1, (0.3 + gamma * 0.1) / damped);
         let step_s = 0.02;
-        for (i, [q, _]) in motion.path(start, step_s, 2100).unwrap().into_iter().enumerate() {
+        for (i, [q, _]) in motion.path(start, &even(step_s, 2100)).unwrap().into_iter().enumerate() {
             let t = step_s * i as f64;
             let exact = 0.02 + (-gamma * t).exp() * (a * (damped * t).cos() + b * (damped * t).sin());
             let phase = (3.0 * step_s).powi(4) / 120.0 * 3.0 * t;
@@ -205,7 +209,7 @@ mod tests {
     fn the_order_is_four_across_turning_points() {
         for coulomb in [0.0, 0.02] {
             let motion = Motion { coulomb, ..MOTION };
-            let end = |substeps: usize| motion.path_by([0.4, 0.0], 0.1, 90, substeps).unwrap()[89][0];
+            let end = |substeps: usize| motion.path_by([0.4, 0.0], &even(0.1, 90), |_| substeps).unwrap()[89][0];
             let (one, two, four) = (end(1), end(2), end(4));
             let order = ((one - two) / (two - four)).abs().log2();
             assert!((order - 4.0).abs() < 0.3, "coulomb {coulomb}: {order}");
@@ -222,12 +226,12 @@ mod tests {
 
     fn derivatives(motion: &Motion) {
         let (start, step_s, n) = ([0.5, -0.2], 0.03, 400);
-        let along = motion.path_and_derivatives(start, step_s, n).unwrap();
+        let along = motion.path_and_derivatives(start, &even(step_s, n)).unwrap();
         let moved = |k: usize, d: f64| {
             let (mut m, mut s) = (*motion, start);
             *[&mut m.omega2, &mut m.linear, &mut m.quadratic, &mut m.rest].into_iter().chain(&mut s).nth(k).unwrap() +=
                 d;
-            m.path(s, step_s, n).unwrap()
+            m.path(s, &even(step_s, n)).unwrap()
         };
         for k in 0..BY {
             let d = 1e-6;
@@ -244,7 +248,7 @@ mod tests {
     fn coulomb_friction_takes_the_same_from_every_swing_and_stops_the_body() {
         let motion = Motion { omega2: 4.0, linear: 0.0, quadratic: 0.0, coulomb: 0.05, ..MOTION };
         let motion = Motion { rest: 0.0, ..motion };
-        let path = motion.path([0.2, 0.0], 0.001, 20_000).unwrap();
+        let path = motion.path([0.2, 0.0], &even(0.001, 20_000)).unwrap();
         let furthest = |k: usize| {
             let centre = (std::f64::consts::FRAC_PI_2 * k as f64 / 0.001).round() as usize;
             path[centre][0].abs()
@@ -256,12 +260,24 @@ mod tests {
         assert!(v == 0.0 && q.abs() <= 0.0125 + 1e-9, "{q} {v}");
     }
 
+    /// Times with samples missing and with jitter: the same motion, as far as the steps promise.
+    #[test]
+    fn uneven_times_are_of_the_same_motion() {
+        let fine = MOTION.path([0.4, 0.0], &even(0.001, 4001)).unwrap();
+        let rows: Vec<usize> = (0..4001).filter(|i| i % 20 == i * 7 % 3 && !(1000..1300).contains(i)).collect();
+        let time_s: Vec<f64> =
+            std::iter::once(0.0).chain(rows.iter().map(|i| 0.001 * *i as f64).filter(|t| *t > 0.0)).collect();
+        for (t, [q, _]) in time_s.iter().zip(MOTION.path([0.4, 0.0], &time_s).unwrap()) {
+            assert!((q - fine[(t / 0.001).round() as usize][0]).abs() < 1e-5, "{t}: {q}");
+        }
+    }
+
     /// Reversing time turns damping round: forward, then back with the damping's sign changed, is where it began.
     #[test]
     fn time_runs_back_to_the_start() {
-        let [q, v] = MOTION.path([0.3, 0.1], 0.01, 1001).unwrap()[1000];
+        let [q, v] = MOTION.path([0.3, 0.1], &even(0.01, 1001)).unwrap()[1000];
         let back = Motion { linear: -MOTION.linear, quadratic: -MOTION.quadratic, ..MOTION };
-        let [q0, v0] = back.path([q, -v], 0.01, 1001).unwrap()[1000];
+        let [q0, v0] = back.path([q, -v], &even(0.01, 1001)).unwrap()[1000];
         assert!((q0 - 0.3).abs() < 1e-6 && (v0 + 0.1).abs() < 1e-6, "{q0} {v0}");
     }
 }

@@ -97,11 +97,11 @@ impl<'a> Releases<'a> {
         })
     }
 
-    /// Measured positions of a run.
-    fn measured(&self, run: usize) -> (&[f64], f64) {
+    /// Measured positions of a run, and their times.
+    fn measured(&self, run: usize) -> (&[f64], &[f64]) {
         let (run, swings) = &self.runs[run];
         let [first, end] = swings.samples;
-        (&run.position[first..end], run.step_s())
+        (&run.position[first..end], &run.time_s[first..end])
     }
 }
 
@@ -112,15 +112,15 @@ impl Model for Releases<'_> {
 
     fn residuals(&self, run: usize, theta: &[f64]) -> Option<Vec<f64>> {
         let (motion, start) = self.motion(run, theta)?;
-        let (measured, step_s) = self.measured(run);
-        let path = motion.path(start, step_s, measured.len())?;
+        let (measured, time_s) = self.measured(run);
+        let path = motion.path(start, time_s)?;
         Some(measured.iter().zip(path).map(|(q, [simulated, _])| q - simulated).collect())
     }
 
     fn derivatives(&self, run: usize, theta: &[f64]) -> Option<Vec<Vec<f64>>> {
         let (motion, start) = self.motion(run, theta)?;
-        let (measured, step_s) = self.measured(run);
-        let path = motion.path_and_derivatives(start, step_s, measured.len())?;
+        let (_, time_s) = self.measured(run);
+        let path = motion.path_and_derivatives(start, time_s)?;
         let [added, damping, own] = self.places(run);
         let moving = self.inertia + theta[added];
         let column = |of: &dyn Fn(&[f64; 6]) -> f64| path.iter().map(|(_, by)| -of(by)).collect::<Vec<f64>>();
@@ -153,6 +153,7 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
         let [first, end] = swings.samples;
         let [q, v, rest] = model.start(i, &found.values);
         let residuals = &found.residuals[i];
+        let [period_s, by_period] = RunSummary::period_and_added(swings, setup);
         RunSummary {
             id: run.id.to_owned(),
             samples: end - first,
@@ -160,6 +161,8 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
             from_s: run.time_s[first],
             start: [q, v],
             rest,
+            period_s,
+            added: if model.has_own { found.values[model.places(i)[0]] } else { by_period },
             noise: swings.noise,
             residual_rms: (residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64).sqrt(),
             fitted: run.position[first..end].iter().zip(residuals).map(|(q, r)| q - r).collect(),
@@ -195,9 +198,10 @@ fn reach_of_releases(fit: &mut DecayFit, reduced: &Reduced<'_>) {
             continue;
         }
         let [furthest, fastest] = [&mut fit.range.amplitude[1], &mut fit.range.speed[1]];
-        for pair in summary.fitted.windows(2) {
+        let time_s = &run.time_s[swings.samples[0]..swings.samples[1]];
+        for (pair, t) in summary.fitted.windows(2).zip(time_s.windows(2)) {
             *furthest = furthest.max((pair[0] - summary.rest).abs());
-            *fastest = fastest.max((pair[1] - pair[0]).abs() / run.step_s());
+            *fastest = fastest.max((pair[1] - pair[0]).abs() / (t[1] - t[0]));
         }
     }
 }

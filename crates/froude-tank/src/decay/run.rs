@@ -5,7 +5,7 @@ use froude_fit::budget::Uncertain;
 
 use crate::error::TankError;
 
-/// One release: columns of one length, time in even steps.
+/// One release: columns of one length, time increasing.
 #[derive(Debug, Clone, Copy)]
 pub struct DecayRun<'a> {
     /// Name of the run, for messages.
@@ -15,10 +15,6 @@ pub struct DecayRun<'a> {
     /// Position, m or rad; its zero is free.
     pub position: &'a [f64],
 }
-
-/// Part of a step by which a time stamp may be off the even clock: stamps printed in milliseconds at 50 a second are
-/// off by 2.5 %.
-const EVEN: f64 = 0.05;
 
 impl DecayRun<'_> {
     /// Mean step of time, s.
@@ -39,15 +35,17 @@ impl DecayRun<'_> {
                 return Err(TankError::of_run(self.id, format!("{column} at sample {index} is not finite")));
             }
         }
-        let step_s = self.step_s();
-        let late = |i: usize| self.time_s[i] - self.time_s[0] - i as f64 * step_s;
-        let worst = (0..n).max_by(|&a, &b| late(a).abs().total_cmp(&late(b).abs()));
-        if let Some(index) = worst.filter(|&i| step_s.is_nan() || step_s <= 0.0 || late(i).abs() > EVEN * step_s) {
+        if let Some(index) = self.time_s.windows(2).position(|w| w[1] <= w[0]) {
             let what = format!(
-                "sample {index} is {:.3e} s off an even step of {step_s:.3e} s; resample the log to even steps first",
-                late(index)
+                "the time at sample {} is {} s after {} s; it must increase",
+                index + 1,
+                self.time_s[index + 1],
+                self.time_s[index]
             );
             return Err(TankError::of_run(self.id, what));
+        }
+        if n < 2 {
+            return Err(TankError::of_run(self.id, format!("{n} samples are no log")));
         }
         Ok(())
     }

@@ -134,7 +134,7 @@ const DRAWN: usize = 6;
 /// The releases on the page: what was used of each, and the motion with that of the fit.
 fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> Section {
     let is_angle = fit.axis.is_rotation();
-    let unit = if is_angle { "rad" } else { "m" };
+    let (unit, added) = if is_angle { ("rad", "kg_m2") } else { ("m", "kg") };
     let left = match (fit.method, is_angle) {
         (DecayMethod::OutputError, true) => ["residual_rms_rad", "residual of the position, rms [rad]"],
         (DecayMethod::OutputError, false) => ["residual_rms_m", "residual of the position, rms [m]"],
@@ -149,6 +149,13 @@ fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> Section {
     let table = t.build(vec![
         t.text("release", "release", |r| r.id.clone()),
         t.count("half_cycles", "half cycles", |r| r.half_cycles),
+        t.number("period_s", "period [s]", |r| r.period_s).significant(5),
+        t.number(
+            &format!("added_{added}"),
+            &format!("{} by it alone [{}]", fit.names[0], fit.axis.decay_units()[0]),
+            |r| r.added,
+        )
+        .significant(4),
         t.number("from_s", "fit starts at [s]", |r| r.from_s).plain(4),
         of("position", "initial position", |r| r.start[0]).plain(4),
         t.number(&format!("speed_{unit}_s"), &format!("initial speed [{unit}/s]"), |r| r.start[1]).plain(3),

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use froude_records::run::{EVEN, GAP, Gap, TimeSteps, gap, median, not_increasing, time_column};
+use froude_records::finding::Severity;
+use froude_records::run::clock_jumps::{clock_back, twice};
+use froude_records::run::stamps::{GAP, LACKS, usual_step_s};
+use froude_records::run::{EVEN, Gap, LogTimes, Missing, TimeSteps, gap, median, steps_finding, time_column};
 use froude_records::table::Table;
 use froude_records::{Place, RecordError};
 
@@ -14,11 +17,18 @@ const MOST_GAPS: usize = 10_000;
 /// What is known of the times that went by.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ticks {
+    first_s: f64,
     last_s: Option<f64>,
-    /// Median step of the first rows: what gaps are told by while the log goes by.
+    /// Usual step of the first rows: what gaps are told by while the log goes by.
     usual_s: Option<f64>,
     shortest_s: f64,
     longest_s: f64,
+    /// The shortest that is longer than nothing, and the longest that lacks no samples.
+    least_s: f64,
+    longest_whole_s: f64,
+    missing: Missing,
+    /// The first row with the time of the row before.
+    equal: Option<(Place, f64)>,
     steps: usize,
     /// Every so many steps one is kept.
     every: usize,
@@ -29,10 +39,15 @@ pub(crate) struct Ticks {
 impl Default for Ticks {
     fn default() -> Self {
         Self {
+            first_s: 0.0,
             last_s: None,
             usual_s: None,
             shortest_s: f64::INFINITY,
             longest_s: 0.0,
+            least_s: f64::INFINITY,
+            longest_whole_s: 0.0,
+            missing: Missing::default(),
+            equal: None,
             steps: 0,
             every: 1,
             kept: Vec::new(),
@@ -46,22 +61,33 @@ impl Ticks {
     ///
     /// # Errors
     ///
-    /// A time column that is missing or does not increase; more gaps than a log has.
+    /// A time column that is missing or goes back; more gaps than a log has.
     pub(crate) fn push<'t>(&mut self, part: &'t Table) -> Result<(&'t [f64], Vec<usize>), RecordError> {
         let time_s = time_column(part)?;
         if self.usual_s.is_none() && time_s.len() > 1 {
-            self.usual_s = median(&mut time_s.windows(2).map(|w| w[1] - w[0]).collect::<Vec<_>>());
+            self.usual_s = usual_step_s(time_s);
+            self.first_s = time_s[0];
         }
+        self.missing.samples += time_s.len();
         let mut gaps = Vec::new();
         for (row, &now) in time_s.iter().enumerate() {
             let Some(before) = self.last_s.replace(now) else { continue };
-            if now <= before {
-                return Err(not_increasing(part.place_of_row(row), before, now));
+            if now < before {
+                return Err(clock_back(part.place_of_row(row), before, now, self.usual_s.unwrap_or(0.0)));
             }
             let step_s = now - before;
-            if self.usual_s.is_some_and(|usual| step_s > GAP * usual) {
-                gaps.push(row);
-                self.long.push([before, now]);
+            if step_s == 0.0 {
+                self.equal.get_or_insert_with(|| (part.place_of_row(row), now));
+            } else {
+                self.least_s = self.least_s.min(step_s);
+            }
+            match self.usual_s.map(|usual| step_s / usual) {
+                Some(steps) if steps > GAP => {
+                    gaps.push(row);
+                    self.long.push([before, now]);
+                }
+                Some(steps) if steps > LACKS => self.missing.add((steps.round() as usize).saturating_sub(1)),
+                _ => self.longest_whole_s = self.longest_whole_s.max(step_s),
             }
             (self.shortest_s, self.longest_s) = (self.shortest_s.min(step_s), self.longest_s.max(step_s));
             if self.steps.is_multiple_of(self.every) {
@@ -85,26 +111,38 @@ impl Ticks {
         Ok((time_s, gaps))
     }
 
-    /// The steps, and where ticks are missing.
+    /// The steps, and where ticks are missing; rows and times are left to the caller.
     ///
     /// # Errors
     ///
-    /// Steps whose median is not that of the first rows: what lies between would be averaged over unequal times.
-    pub(crate) fn finish(mut self, path: &Path) -> Result<(TimeSteps, Vec<Gap>), RecordError> {
+    /// Steps that are not those of the first rows: what lies between would be averaged over unequal times. Equal times that no rounding explains.
+    pub(crate) fn finish(mut self, path: &Path) -> Result<LogTimes, RecordError> {
         let refuse = |problem: String| RecordError::value(Place::whole(path), "time", problem);
-        let (Some(median_s), Some(usual_s)) = (median(&mut self.kept), self.usual_s) else {
+        let (Some(median_s), Some(usual_s)) = (median(&mut self.kept.clone()), self.usual_s) else {
             return Err(refuse("has one value; a log needs two ticks at least".to_owned()));
         };
-        if (median_s / usual_s - 1.0).abs() > EVEN {
+        let mean_s = (self.last_s.unwrap_or(self.first_s) - self.first_s) / self.steps.max(1) as f64;
+        if let Some((place, time_s)) = self.equal.take().filter(|_| mean_s > (1.0 + EVEN) * self.least_s) {
+            return Err(twice(place, time_s));
+        }
+        self.kept.retain(|step| *step <= LACKS * usual_s);
+        let later_s = self.kept.iter().sum::<f64>() / self.kept.len().max(1) as f64;
+        if (later_s / usual_s - 1.0).abs() > EVEN {
             return Err(refuse(format!(
-                "steps by {:.6} ms at first and by {:.6} ms in the median of all; a log of so many rows is averaged in blocks while it is read, and \
-                 needs even steps: resample it, or cut it into runs",
+                "steps by {:.6} ms at first and by {:.6} ms in the mean of all; a log of so many rows is averaged in blocks while it is read, and \
+                 needs one rate: cut it into runs where the rate changes",
                 1e3 * usual_s,
-                1e3 * median_s
+                1e3 * later_s
             )));
         }
         let steps = TimeSteps { median_s, shortest_s: self.shortest_s, longest_s: self.longest_s };
-        Ok((steps, self.long.into_iter().map(|[from_s, to_s]| gap(from_s, to_s, median_s)).collect()))
+        let lost: Vec<Gap> = self.long.into_iter().map(|[from_s, to_s]| gap(from_s, to_s, usual_s)).collect();
+        let off_s = (self.longest_whole_s - usual_s).max(usual_s - self.shortest_s);
+        let words =
+            "blocks have the mean of their times and of all channels alike, so that no step is assumed to be even";
+        let even = (off_s > EVEN * usual_s).then(|| (Severity::Note, words.to_owned()));
+        let findings = vec![steps_finding(steps, even, &self.missing, &lost, &path.display().to_string())];
+        Ok(LogTimes { steps, lost, findings, ..LogTimes::default() })
     }
 }
 
@@ -137,7 +175,7 @@ mod tests {
             let gaps = ticks.push(&table(part, 1000 * k))?.1;
             rows.extend(gaps.iter().map(|row| 1000 * k + row));
         }
-        let (steps, lost) = ticks.finish(Path::new("a.parquet"))?;
+        let LogTimes { steps, lost, .. } = ticks.finish(Path::new("a.parquet"))?;
         Ok((steps, lost, rows))
     }
 
@@ -145,14 +183,14 @@ mod tests {
     #[test]
     fn steps_and_gaps_are_those_of_the_log_in_memory() {
         let time: Vec<f64> = (0..9_000)
-            .filter(|i| !(500..510).contains(i) && !(1006..1010).contains(i))
+            .filter(|i| !(500..510).contains(i) && !(1006..1030).contains(i) && *i != 4000)
             .map(|i| 1e-4 * (f64::from(i) + 1e-4 * f64::from(i * 7 % 11)))
             .collect();
         let whole = run_of_table(&table(&time, 0), None).unwrap();
         let (steps, lost, rows) = through(&time).unwrap();
         assert_eq!((steps, &lost), (whole.steps, &whole.log.lost));
         assert_eq!((lost.len(), rows), (2, vec![500, 996]));
-        assert_eq!(lost.iter().filter_map(|gap| gap.ticks).sum::<u64>(), 14);
+        assert_eq!(lost.iter().filter_map(|gap| gap.ticks).sum::<u64>(), 34, "one missing tick is no gap");
     }
 
     #[test]
@@ -167,12 +205,12 @@ mod tests {
     #[test]
     fn a_rate_that_changes_is_refused_and_the_median_of_a_long_log_is_kept_in_little() {
         let time: Vec<f64> = (0..4_000).map(|i| f64::from(i) + f64::from((i - 1000).max(0)) * 0.2).collect();
-        assert!(through(&time).unwrap_err().to_string().contains("1000.000000 ms at first and by 1200.000000 ms"));
+        assert!(through(&time).unwrap_err().to_string().contains("1000.000000 ms at first and by 1150.0"));
         let time: Vec<f64> = (0..300_000).map(|i| f64::from(i) * 0.25).collect();
         let mut ticks = Ticks::default();
         ticks.push(&table(&time, 0)).unwrap();
         assert!(ticks.kept.len() < MOST_STEPS && ticks.every == 8, "{}", ticks.every);
-        let often: Vec<f64> = (0..30_000).map(|i| f64::from(i) + f64::from(i / 2)).collect();
+        let often: Vec<f64> = (0..30_000).map(|i| f64::from(i) + 20.0 * f64::from(i / 2)).collect();
         assert!(through(&often).unwrap_err().to_string().contains("at 10"), "gaps after every second row");
     }
 }

@@ -87,9 +87,10 @@ impl Scenario {
         // The release lies anywhere between two samples.
         let early_s = step_s * rng.random::<f64>();
         let at_release = [self.rest + displacement, 0.0];
-        let first = motion.path(at_release, early_s, 2).map_or(at_release, |p| p[1]);
+        let first = motion.path(at_release, &[0.0, early_s]).map_or(at_release, |p| p[1]);
         let free = (self.free_s * self.rate_hz).round() as usize;
-        let path = motion.path(first, step_s, free).unwrap_or_default();
+        let after_s: Vec<f64> = (0..free).map(|i| step_s * i as f64).collect();
+        let path = motion.path(first, &after_s).unwrap_or_default();
         let held = (self.held_s * self.rate_hz).round() as usize;
         let (part, second_hz) = self.second_mode;
         let positions = std::iter::repeat_n(at_release, held).chain(path);
