@@ -141,6 +141,7 @@ impl Means {
             line_of_row: Vec::new(),
             sidecar: part.sidecar.clone(),
             left_out: part.left_out.clone(),
+            understood: part.understood.clone(),
             blank: Vec::new(),
         });
         self.blocks.resize(table.columns.len(), BlockMean::of(self.block_rows));
