@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use froude_records::manifest::MANIFEST;
 use froude_records::run::{CAMPAIGN_COPY, RunMeta, RunReader, TOW, read_run_meta};
+use froude_records::sidecar_file::{is_list, sidecar_path};
 use froude_records::text::counted;
 
 use crate::method::MethodError;
@@ -59,6 +60,9 @@ fn log_of(file: PathBuf) -> Option<PathBuf> {
     }
 }
 
+/// Endings of tables of other programs.
+const OTHER_ENDINGS: [&str; 12] = ["txt", "dat", "tsv", "out", "exp", "xlsx", "xls", "ods", "mat", "h5", "tdms", "ulg"];
+
 /// The logs of other programs in a folder, in the order of their names; none in a folder of results, whose tables are Froude's.
 ///
 /// # Errors
@@ -68,8 +72,13 @@ pub fn logs_in(folder: &Path) -> Result<Vec<PathBuf>, MethodError> {
     if folder.join(MANIFEST).exists() {
         return Ok(Vec::new());
     }
+    let has_ending = |path: &PathBuf, endings: &[&str]| {
+        path.extension().is_some_and(|e| endings.iter().any(|known| e.eq_ignore_ascii_case(known)))
+    };
+    // Notes and workbooks lie among logs: what is no plain table counts where a sidecar says what it is.
     let is_log = |path: &PathBuf| {
-        path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known)))
+        (has_ending(path, &["csv", "parquet"]) && !is_list(path))
+            || (has_ending(path, &OTHER_ENDINGS) && matches!(sidecar_path(path), Ok(Some(_))))
     };
     let mut paths: Vec<PathBuf> = listed(folder)?.into_iter().filter(is_log).collect();
     paths.sort();

@@ -23,8 +23,9 @@ use crate::read::utf8;
 use crate::reading::Reading;
 use crate::records::{Records, Skipped};
 use crate::sidecar::Sidecar;
+use crate::sidecar_file::sidecar_of;
 use crate::table::Table;
-use crate::table_file::{Format, read_table, sidecar_of};
+use crate::table_file::{Format, read_table};
 
 /// Bytes of CSV read at a time: some 10,000 rows, whose columns stay in the caches.
 const CHUNK_BYTES: usize = 1 << 20;

@@ -35,6 +35,10 @@ const LARGEST_BYTES: u64 = 1 << 20;
 pub struct Sidecar {
     /// The file.
     pub path: PathBuf,
+    /// The tables that it serves, by their names as `run_*.csv`; none where it serves the one of its own name.
+    pub files: Option<String>,
+    /// A table with a row for each of them: `file`, and what differs from file to file.
+    pub list: Option<PathBuf>,
     /// How the file is written.
     pub file: FileWords,
     /// Where the table is the log of a run: what that is.
@@ -115,7 +119,7 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     root.schema("sidecar")?;
     root.only(
         &[
-            &["schema", "file", "method", "role", "mounted", "conditions", "constants", "columns"],
+            &["schema", "files", "list", "file", "method", "role", "mounted", "conditions", "constants", "columns"],
             &declarations::KEYS[..],
             &clock_jumps::KEYS[..],
         ]
@@ -152,7 +156,14 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     if let Some(cell) = &run.declared.cell {
         bridges(&root, cell, &columns)?;
     }
-    Ok(Sidecar { path: path.to_owned(), file, run, constants, columns })
+    let files = root.text("files")?.map(str::to_owned);
+    let list = root.text("list")?.map(|list| source.relative(list));
+    root.refuse(
+        "list",
+        list.is_some() && files.is_none(),
+        "lists tables; name them with files = \"run_*.csv\", for example",
+    )?;
+    Ok(Sidecar { path: path.to_owned(), files, list, file, run, constants, columns })
 }
 
 /// What is done to the data of a run is done by the methods of runs: a table's is read as it stands.

@@ -6,10 +6,10 @@ use froude_foreign::{Contents, ForeignError, hdf5, mat5, tdms, ulog};
 
 use crate::csv_table::Blanks;
 use crate::error::{Place, RecordError};
-use crate::sidecar::Sidecar;
+use crate::sidecar_file::sidecar_of;
 use crate::table::Table;
 use crate::write::Prepared;
-use crate::{container_table, csv_table, parquet_table, parquet_write, read, sheet_table, sidecar};
+use crate::{container_table, csv_table, parquet_table, parquet_write, read, sheet_table};
 
 /// Reads a table, `.csv` or `.parquet`, through `sidecar` or the `.toml` of the same name beside it.
 ///
@@ -70,20 +70,6 @@ pub fn contents(path: &Path) -> Result<Contents, RecordError> {
         _ => hdf5::read(bytes),
     }
     .map_err(refuse)
-}
-
-/// The sidecar of a table: the one given, or the `.toml` of the same name beside it.
-///
-/// # Errors
-///
-/// A sidecar that cannot be read.
-pub fn sidecar_of(path: &Path, sidecar: Option<&Path>) -> Result<Option<Sidecar>, RecordError> {
-    let beside = path.with_extension("toml");
-    match sidecar {
-        Some(given) => sidecar::read_sidecar(given).map(Some),
-        None if beside.is_file() && sidecar::is_sidecar(&beside) => sidecar::read_sidecar(&beside).map(Some),
-        None => Ok(None),
-    }
 }
 
 /// Endings of tables of text.

@@ -4,8 +4,8 @@
 
 use froude_records::block::{Block, Cells, LaidOut, ResultColumn, ResultTable, TableBuilder, laid_out};
 use froude_records::csv_table::quoted;
-use froude_records::guard::guarded;
 use froude_records::estimate::{Coefficient, Estimate, EstimateFile};
+use froude_records::guard::guarded;
 use froude_records::outcome::Outcome;
 
 /// The coefficients of its records, and every table that a program can read, in order; where there is none, the tables as people see them.

@@ -16,6 +16,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::run::clocks::is_own;
 use froude_records::run::step::Step;
 use froude_records::run::{Channel, Role, RunReader, RunStatus, read_run_meta};
+use froude_records::sidecar_file::sidecar_path;
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
@@ -129,7 +130,8 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
 
 /// A log with its steps, and its sidecar where there is one.
 pub(crate) fn files_of(path: PathBuf, role: &str, log: &TankLog) -> impl Iterator<Item = ReadFile> {
-    let sidecar = Some(path.with_extension("toml")).filter(|sidecar| sidecar.exists());
+    let own = Some(path.with_extension("toml")).filter(|sidecar| sidecar.exists());
+    let sidecar = own.or_else(|| sidecar_path(&path).ok().flatten());
     let log = ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role) };
     std::iter::once(log).chain(sidecar.map(|sidecar| ReadFile::new(sidecar, "sidecar")))
 }

@@ -16,9 +16,8 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::run::clock_jumps::{Wraps, twice};
 use froude_records::run::{LogTimes, channel_name, import_run, run_of, time_column};
-use froude_records::sidecar::read_sidecar;
+use froude_records::sidecar_file::sidecar_of;
 use froude_records::table::{Column, ColumnData, Table};
-use froude_records::table_file::sidecar_of;
 use froude_records::units::Dimension;
 use froude_records::{Place, RecordError};
 use froude_signal::block_mean::{BlockMean, gain, noise_bandwidth_hz};
@@ -185,7 +184,7 @@ impl Means {
             return Err(MethodError::input(path, what));
         }
         let averaged = Averaged { rows: self.rows, block_rows: self.block_rows, left_out: self.left_out };
-        let sidecar = table.sidecar.as_deref().map(read_sidecar).transpose()?;
+        let sidecar = sidecar_of(&table.path, table.sidecar.as_deref())?;
         let found = self.ticks.finish(&table.path)?;
         let time_s = time_column(&table)?.to_vec();
         if let Some(row) = time_s.windows(2).position(|w| w[1] <= w[0]) {

@@ -19,8 +19,8 @@ use froude_records::number;
 use froude_records::run::clock_jumps::{ClockJumps, Wraps, clock_back};
 use froude_records::run::stamps::{GAP, LACKS, usual_step_s};
 use froude_records::run::{LogTimes, Missing, TimeSteps, steps_finding};
+use froude_records::sidecar_file::sidecar_of;
 use froude_records::table::Table;
-use froude_records::table_file::sidecar_of;
 use froude_records::units::Dimension;
 
 use super::page::{Pieces, coefficient_table, with_declared};

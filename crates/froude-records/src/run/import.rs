@@ -33,10 +33,10 @@ use crate::run::layout::AXIS;
 use crate::run::log::{Channel, Gap, GapCause, RunLog, median};
 use crate::run::meta::{Role, RunMeta, RunStatus};
 use crate::run::stamps::{LACKS, even_times, gaps, resolution, timer_step, usual_step_s};
-use crate::sidecar::{Mapping, Sidecar, read_sidecar};
+use crate::sidecar::{Mapping, Sidecar};
+use crate::sidecar_file::sidecar_of;
 use crate::table::{ColumnData, Table};
 use crate::table_file::read_table;
-use crate::table_file::sidecar_of;
 use crate::text::counted;
 use crate::units::{Dimension, Unit};
 
@@ -93,7 +93,7 @@ pub fn is_servo_log(table: &Path, sidecar: Option<&Path>) -> Result<bool, Record
 /// See [`RecordError`]; a time column that is missing or does not increase names its line.
 pub fn import_run(path: &Path, sidecar: Option<&Path>) -> Result<ImportedRun, RecordError> {
     let table = read_table(path, sidecar)?;
-    let own = table.sidecar.as_deref().map(read_sidecar).transpose()?;
+    let own = sidecar_of(path, sidecar)?;
     run_of_table(&table, own.as_ref())
 }
 

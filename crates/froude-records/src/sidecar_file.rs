@@ -1,0 +1,156 @@
+//! Which sidecar a table has: the one of its own name, or one that serves several tables of its folder.
+//!
+//! ```toml
+//! # logs.toml
+//! schema = 1
+//! files = "run_*.csv"
+//! list = "runs.csv"      # columns: file, role, configuration, and conditions such as `speed [m/s]`
+//! method = "steady"
+//! [columns]
+//! "t (ms)" = { name = "time" }
+//! ```
+
+use std::path::{Path, PathBuf};
+
+use wildmatch::WildMatch;
+
+use crate::csv_table::read_csv;
+use crate::error::{Place, RecordError};
+use crate::measured::Measured;
+use crate::nearest::suggestion;
+use crate::run::meta::Role;
+use crate::sidecar::{Sidecar, is_sidecar, read_sidecar};
+use crate::table::{ColumnData, Table};
+
+/// Most files of a folder that are looked at.
+const MOST_FILES: usize = 10_000;
+
+/// The sidecar of a table: the one given, the `.toml` of the same name beside it, or the one of its folder whose `files` it fits; with what its list says of the
+/// table.
+///
+/// # Errors
+///
+/// A sidecar or a list that cannot be read, two sidecars that fit, a table that is not in the list.
+pub fn sidecar_of(table: &Path, given: Option<&Path>) -> Result<Option<Sidecar>, RecordError> {
+    let Some(path) = given.map_or_else(|| sidecar_path(table), |given| Ok(Some(given.to_owned())))? else {
+        return Ok(None);
+    };
+    let sidecar = read_sidecar(&path)?;
+    match sidecar.list.clone() {
+        Some(list) => listed(sidecar, &list, table).map(Some),
+        None => Ok(Some(sidecar)),
+    }
+}
+
+/// The file of the sidecar that a table has, if it has one.
+///
+/// # Errors
+///
+/// Two sidecars that fit, or one that cannot be read.
+pub fn sidecar_path(table: &Path) -> Result<Option<PathBuf>, RecordError> {
+    let beside = table.with_extension("toml");
+    if beside.is_file() && is_sidecar(&beside) {
+        return Ok(Some(beside));
+    }
+    let folder = table.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = table.file_name().unwrap_or_default().to_string_lossy();
+    let mut found: Vec<PathBuf> = Vec::new();
+    for file in std::fs::read_dir(folder).into_iter().flatten().flatten().take(MOST_FILES).map(|entry| entry.path()) {
+        if file.extension().is_some_and(|e| e == "toml") && is_sidecar(&file) {
+            let pattern = read_sidecar(&file)?.files;
+            found.extend(pattern.filter(|pattern| WildMatch::new(pattern).matches(&name)).map(|_| file));
+        }
+    }
+    found.sort();
+    match found.as_slice() {
+        [one, other, ..] => Err(RecordError::Refused(format!(
+            "{}: the `files` of {} and of {} both fit it; make one of them narrower",
+            table.display(),
+            one.display(),
+            other.display()
+        ))),
+        found => Ok(found.first().cloned()),
+    }
+}
+
+/// Whether a table is the list of a sidecar in its folder, and no log itself.
+#[must_use]
+pub fn is_list(table: &Path) -> bool {
+    let Some(folder) = table.parent() else { return false };
+    let names = |file: PathBuf| {
+        file.extension().is_some_and(|e| e == "toml")
+            && is_sidecar(&file)
+            && read_sidecar(&file).ok().and_then(|sidecar| sidecar.list).is_some_and(|list| list == table)
+    };
+    std::fs::read_dir(folder).into_iter().flatten().flatten().take(MOST_FILES).any(|entry| names(entry.path()))
+}
+
+/// A sidecar with what its list says of a table.
+fn listed(mut sidecar: Sidecar, list: &Path, table: &Path) -> Result<Sidecar, RecordError> {
+    let rows = read_csv(list, None)?;
+    let name = table.file_name().unwrap_or_default().to_string_lossy();
+    let files = rows.text("file")?;
+    let is_row = |row: &usize| files.get(*row).is_some_and(|file| Path::new(file).file_name() == table.file_name());
+    let Some(row) = (0..rows.n_rows).find(is_row) else {
+        let near = suggestion(&name, files.iter().map(String::as_str));
+        let problem = format!("has no row for {name}; {near}");
+        return Err(RecordError::value(Place::whole(list), "file", problem));
+    };
+    for column in &rows.columns {
+        match (&column.data, column.name.as_str()) {
+            (ColumnData::Number { si, dimension, .. }, name) => {
+                let value = si.get(row).copied().unwrap_or(f64::NAN);
+                sidecar.run.conditions.insert(name.to_owned(), Measured::of(value, dimension.to_string()));
+            }
+            (ColumnData::Text(texts), "configuration") => {
+                sidecar.run.configuration = texts.get(row).cloned().unwrap_or_default();
+            }
+            (ColumnData::Text(texts), "role") => {
+                sidecar.run.role = Some(role(&rows, row, texts.get(row).map_or("", String::as_str))?);
+            }
+            (ColumnData::Text(_), _) => {}
+        }
+    }
+    Ok(sidecar)
+}
+
+/// The role of a row of a list.
+fn role(list: &Table, row: usize, word: &str) -> Result<Role, RecordError> {
+    Role::ALL.into_iter().find(|role| role.name() == word).ok_or_else(|| {
+        let near = suggestion(word, Role::ALL.iter().map(|role| role.name()));
+        RecordError::value(list.place_of_row(row), "role", format!("is {word:?}; {near}"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table_file::read_table;
+
+    #[test]
+    fn one_sidecar_serves_the_tables_that_it_names_each_with_its_row_of_the_list() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        write("run_1.csv", "t (ms),F (N)\n0,1\n10,2\n");
+        write("run_2.csv", "t (ms),F (N)\n0,3\n10,4\n");
+        write("other.csv", "time [s],f_x [N]\n0,3\n");
+        write("runs.csv", "file,speed [m/s],role,who\nrun_1.csv,0.5,test,me\nrun_2.csv,1,zero,you\n");
+        write(
+            "logs.toml",
+            "schema = 1\nfiles = \"run_*.csv\"\nlist = \"runs.csv\"\nmethod = \"steady\"\n[columns]\n\
+             \"t (ms)\" = { name = \"time\" }\n\"F (N)\" = { name = \"f_x\", sign = -1 }\n",
+        );
+        let of = |name: &str| sidecar_of(&folder.path().join(name), None);
+        let second = of("run_2.csv").unwrap().unwrap();
+        assert_eq!((second.run.conditions["speed"].value, second.run.role), (1.0, Some(Role::Zero)));
+        let table = read_table(&folder.path().join("run_1.csv"), None).unwrap();
+        assert_eq!(table.number("time", crate::units::Dimension::TIME).unwrap(), [0.0, 0.01]);
+        assert_eq!(table.number("f_x", crate::units::Dimension::FORCE).unwrap(), [-1.0, -2.0]);
+        assert!(of("other.csv").unwrap().is_none());
+        assert!(is_list(&folder.path().join("runs.csv")) && !is_list(&folder.path().join("run_1.csv")));
+        write("run_3.csv", "t (ms),F (N)\n0,3\n10,4\n");
+        assert!(of("run_3.csv").unwrap_err().to_string().contains("has no row for run_3.csv"));
+        write("more.toml", "schema = 1\nfiles = \"run_3*\"\n[columns]\n\"t (ms)\" = { name = \"time\" }\n");
+        assert!(of("run_3.csv").unwrap_err().to_string().contains("both fit it"));
+    }
+}
