@@ -215,3 +215,89 @@ fn endings_of_text_are_read_alike() {
         assert!(is_the_table(&read_table(&path, None).unwrap()), "{ending}");
     }
 }
+
+/// Headers as instruments, towing tanks and students write them, and the line of the sidecar that is proposed for each; one that begins with `#` has to be filled in.
+const HEADERS: [(&str, &str); 66] = [
+    ("Carriage Speed (m/s)", "{ name = \"speed\", unit = \"m/s\" }"),
+    ("Towing speed [m/s]", "{ name = \"speed\", unit = \"m/s\" }"),
+    ("U / m/s", "{ name = \"speed\", unit = \"m/s\" }"),
+    ("Vm (m/s)", "{ name = \"speed\", unit = \"m/s\" }"),
+    ("Geschwindigkeit in m/s", "{ name = \"speed\", unit = \"m/s\" }"),
+    ("Schleppgeschwindigkeit [m/s]", "{ name = \"speed\", unit = \"m/s\" }"),
+    ("Vitesse du chariot (m/s)", "{ name = \"speed\", unit = \"m/s\" }"),
+    ("Velocidad, km/h", "{ name = \"speed\", unit = \"km/h\" }"),
+    ("Hastighet (m/s)", "{ name = \"speed\", unit = \"m/s\" }"),
+    ("曳航速度 [m/s]", "{ name = \"speed\", unit = \"m/s\" }"),
+    ("Drag (N)", "{ name = \"f_x\", unit = \"N\", sign = -1 }"),
+    ("Total Resistance [N]", "{ name = \"f_x\", unit = \"N\", sign = -1 }"),
+    ("RT (N)", "{ name = \"f_x\", unit = \"N\", sign = -1 }"),
+    ("Widerstand / N", "{ name = \"f_x\", unit = \"N\", sign = -1 }"),
+    ("Gesamtwiderstand [N]", "{ name = \"f_x\", unit = \"N\", sign = -1 }"),
+    ("Résistance totale (N)", "{ name = \"f_x\", unit = \"N\", sign = -1 }"),
+    ("Traînée (mN)", "{ name = \"f_x\", unit = \"mN\", sign = -1 }"),
+    ("Arrastre [N]", "{ name = \"f_x\", unit = \"N\", sign = -1 }"),
+    ("Motstand (N)", "{ name = \"f_x\", unit = \"N\", sign = -1 }"),
+    ("抵抗 [N]", "{ name = \"f_x\", unit = \"N\", sign = -1 }"),
+    ("Fx (N)", "{ name = \"f_x\", unit = \"N\" }"),
+    ("FX [N]", "{ name = \"f_x\", unit = \"N\" }"),
+    ("F_y (N)", "{ name = \"f_y\", unit = \"N\" }"),
+    ("Side force (N)", "{ name = \"f_y\", unit = \"N\" }"),
+    ("Seitenkraft [N]", "{ name = \"f_y\", unit = \"N\" }"),
+    ("Querkraft in N", "{ name = \"f_y\", unit = \"N\" }"),
+    ("Effort latéral (N)", "{ name = \"f_y\", unit = \"N\" }"),
+    ("Fuerza lateral (N)", "{ name = \"f_y\", unit = \"N\" }"),
+    ("Sidekraft [N]", "{ name = \"f_y\", unit = \"N\" }"),
+    ("横力 [N]", "{ name = \"f_y\", unit = \"N\" }"),
+    ("Fz (N)", "{ name = \"f_z\", unit = \"N\" }"),
+    ("Mx (N m)", "{ name = \"m_x\", unit = \"N m\" }"),
+    ("Pitch moment (N m)", "{ name = \"m_y\", unit = \"N m\" }"),
+    ("Yaw Moment [Nm]", "{ name = \"m_z\", unit = \"Nm\" }"),
+    ("Giermoment [Nm]", "{ name = \"m_z\", unit = \"Nm\" }"),
+    ("Moment de lacet (N m)", "{ name = \"m_z\", unit = \"N m\" }"),
+    ("回頭モーメント [Nm]", "{ name = \"m_z\", unit = \"Nm\" }"),
+    ("Beta (deg)", "{ name = \"angle\", unit = \"deg\" }"),
+    ("Drift angle (°)", "{ name = \"angle\", unit = \"°\" }"),
+    ("Driftwinkel [°]", "{ name = \"angle\", unit = \"°\" }"),
+    ("Angle de dérive (°)", "{ name = \"angle\", unit = \"°\" }"),
+    ("斜航角 [deg]", "{ name = \"angle\", unit = \"deg\" }"),
+    ("Yaw rate (rad/s)", "{ name = \"w_z\", unit = \"rad/s\" }"),
+    ("Gierrate [deg/s]", "{ name = \"w_z\", unit = \"deg/s\" }"),
+    ("Water temp (degC)", "{ name = \"temperature\", unit = \"degC\" }"),
+    ("Wassertemperatur [°C]", "{ name = \"temperature\", unit = \"°C\" }"),
+    ("Température (°C)", "{ name = \"temperature\", unit = \"°C\" }"),
+    ("水温 [°C]", "{ name = \"temperature\", unit = \"°C\" }"),
+    ("Density (kg/m^3)", "{ name = \"density\", unit = \"kg/m^3\" }"),
+    ("Dichte [kg/m³]", "{ name = \"density\", unit = \"kg/m³\" }"),
+    ("t (s)", "{ name = \"time\", unit = \"s\" }"),
+    ("Time [ms]", "{ name = \"time\", unit = \"ms\" }"),
+    ("Zeit / s", "{ name = \"time\", unit = \"s\" }"),
+    ("Temps (s)", "{ name = \"time\", unit = \"s\" }"),
+    ("時間 [s]", "{ name = \"time\", unit = \"s\" }"),
+    ("Position (mm)", "{ name = \"position\", unit = \"mm\" }"),
+    ("Weg [mm]", "{ name = \"position\", unit = \"mm\" }"),
+    ("Spannung [V]", "{ name = \"command\", unit = \"V\" }"),
+    ("Motor current (A)", "{ name = \"current\", unit = \"A\" }"),
+    ("Thrust (N)", "{ name = \"thrust\", unit = \"N\" }"),
+    ("Run No.", "{ name = \"run\" }"),
+    ("Lauf", "{ name = \"run\" }"),
+    ("Drag", "# { name = \"f_x\", unit = \"\", sign = -1 }"),
+    ("Geschwindigkeit", "# { name = \"speed\", unit = \"\" }"),
+    ("enc", "# { name = \"enc\", unit = \"\" }"),
+    ("Strain (N) raw", "# { name = \"Strain (N) raw\", unit = \"\" }"),
+];
+
+#[test]
+fn headers_of_six_languages_are_proposed_and_none_is_proposed_wrongly() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.txt");
+    for (header, expected) in HEADERS {
+        // Tabs: some headers hold commas.
+        std::fs::write(&path, format!("{header}\tother (m)\n1.5\t2.5\n2.5\t3.5\n")).unwrap();
+        let proposed = proposal::sidecar(&path).unwrap();
+        let key = proposed.lines().find(|line| line.contains(header)).unwrap_or_else(|| panic!("{header}\n{proposed}"));
+        let is_open = key.starts_with('#');
+        let value = key.split_once(" = {").map(|(_, value)| value).unwrap();
+        let value = format!("{}{{{}", if is_open { "# " } else { "" }, value.split_once('}').unwrap().0) + "}";
+        assert_eq!(value, expected, "{header}");
+    }
+}
