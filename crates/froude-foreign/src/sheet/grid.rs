@@ -168,16 +168,29 @@ impl<'a> Cells<'a> {
     ///
     /// If the rectangle around the cells becomes too large.
     pub(crate) fn push(&mut self, row: usize, column: usize, cell: Cell) -> Result<(), ForeignError> {
-        if cell == Cell::Empty || !self.wants(row, column) {
+        self.repeat(Region { first: (row, column), last: (row, column) }, cell)
+    }
+
+    /// Adds one cell at all places of a region that are asked for.
+    ///
+    /// # Errors
+    ///
+    /// If the rectangle around the cells becomes too large; nothing is added then.
+    pub(crate) fn repeat(&mut self, region: Region, cell: Cell) -> Result<(), ForeignError> {
+        if cell == Cell::Empty || !self.wants_any(region) {
             return Ok(());
         }
-        let old = self.used.unwrap_or(Region { first: (row, column), last: (row, column) });
+        let region = self.range.map_or(region, |range| Region {
+            first: (region.first.0.max(range.first.0), region.first.1.max(range.first.1)),
+            last: (region.last.0.min(range.last.0), region.last.1.min(range.last.1)),
+        });
+        let old = self.used.unwrap_or(region);
         let new = Region {
-            first: (old.first.0.min(row), old.first.1.min(column)),
-            last: (old.last.0.max(row), old.last.1.max(column)),
+            first: (old.first.0.min(region.first.0), old.first.1.min(region.first.1)),
+            last: (old.last.0.max(region.last.0), old.last.1.max(region.last.1)),
         };
         if new.n_cells() > MAX_CELLS || self.found.len() >= MAX_CELLS {
-            let (name, place) = (self.sheet, cell_name(row, column));
+            let (name, place) = (self.sheet, cell_name(region.last.0, region.last.1));
             return Err(ForeignError(format!(
                 "sheet {name:?}: with cell {place} the cells with content span {new}, more than the limit of {} million; \
                  name the range that holds the table, as in B3:H40",
@@ -185,7 +198,9 @@ impl<'a> Cells<'a> {
             )));
         }
         self.used = Some(new);
-        self.found.push((row, column, cell));
+        for row in region.first.0..=region.last.0 {
+            self.found.extend((region.first.1..=region.last.1).map(|column| (row, column, cell.clone())));
+        }
         Ok(())
     }
 
