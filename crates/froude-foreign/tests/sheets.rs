@@ -327,6 +327,11 @@ book.save("t.xlsx")
 from msoffcrypto.format.ooxml import OOXMLFile
 with open("t.xlsx", "rb") as plain, open("locked.xlsx", "wb") as locked:
     OOXMLFile(plain).encrypt("secret", locked)
+import zipfile
+with zipfile.ZipFile("locked.ods", "w") as book:
+    book.writestr("content.xml", b"encrypted")
+    book.writestr("META-INF/manifest.xml", """<manifest:manifest xmlns:manifest="urn:oasis:names:tc:opendocument:xmlns:manifest:1.0">
+        <manifest:file-entry manifest:full-path="content.xml"><manifest:encryption-data/></manifest:file-entry></manifest:manifest>""")
 "#,
     );
     let error = sheet(folder.path(), "locked.xlsx", "s", None).unwrap_err();
@@ -335,6 +340,8 @@ with open("t.xlsx", "rb") as plain, open("locked.xlsx", "wb") as locked:
         "the workbook is protected by a password; open it in Excel, remove the password (File, Info, Protect Workbook, Encrypt with \
          Password) and save it"
     );
+    let error = sheet(folder.path(), "locked.ods", "s", None).unwrap_err();
+    assert!(error.starts_with("the workbook is protected by a password; open it in LibreOffice"), "{error}");
 }
 
 #[test]
@@ -412,4 +419,61 @@ for name, part in [("b.xlsb", "xl/workbook.bin"), ("z.zip", "readme.md")]:
     assert!(of(&ole).contains("its table of sectors is damaged"));
     ole.resize(4096, 0xFF);
     assert!(of(&ole).contains("its table of sectors is damaged"));
+}
+
+#[test]
+fn random_sheets_read_as_their_writers_read_them() {
+    // Place, kind and content of each cell; numbers as bits.
+    let folder = written(
+        r#"
+import json, random, string, struct, datetime as d, openpyxl, xlwt
+random.seed(46)
+LETTERS = string.printable.replace("\x0b", "").replace("\x0c", "").replace("\r", "") + "äß€Ω漢字😀\u00a0"
+def content():
+    kind = random.choice("nnnnitbd")
+    # openpyxl writes 16 digits, of which a number may need 17.
+    if kind == "n": return float("%.14g" % (random.gauss(0, 1) * 10 ** random.randint(-12, 12)))
+    if kind == "i": return random.randint(-10**9, 10**9)
+    if kind == "b": return random.random() < 0.5
+    if kind == "d": return d.datetime(1901, 1, 1) + d.timedelta(seconds=random.randint(0, 6 * 10**9))
+    text = "".join(random.choice(LETTERS) for _ in range(random.randint(1, 30)))
+    return text.lstrip("=") or "x"
+def expected(value):
+    if isinstance(value, bool): return ["b", value]
+    if isinstance(value, (int, float)): return ["n", struct.unpack("<Q", struct.pack("<d", value))[0]]
+    if isinstance(value, d.datetime): return ["d", value.isoformat() if value.time() != d.time() else value.date().isoformat()]
+    return ["t", value]
+out = []
+for i in range(20):
+    places = {(random.randint(1, 60) + random.choice([0, 0, 0, 3000]), random.randint(1, 40)): content() for _ in range(150)}
+    book, old = openpyxl.Workbook(), xlwt.Workbook()
+    old_sheet, stamp = old.add_sheet("Sheet"), xlwt.easyxf(num_format_str="yyyy-mm-dd hh:mm:ss")
+    for (row, column), value in places.items():
+        book.active.cell(row, column).value = value
+        old_sheet.write(row - 1, column - 1, value, *([stamp] if isinstance(value, d.datetime) else []))
+    book.save(f"{i}.xlsx")
+    old.save(f"{i}.xls")
+    out.append([[*place, *expected(value)] for place, value in places.items()])
+json.dump(out, open("expected.json", "w"))
+"#,
+    );
+    let expected: Vec<Vec<(usize, usize, String, serde_json::Value)>> =
+        serde_json::from_slice(&bytes(folder.path(), "expected.json")).unwrap();
+    for (i, cells) in expected.iter().enumerate() {
+        for ending in ["xlsx", "xls"] {
+            let read = sheet(folder.path(), &format!("{i}.{ending}"), "Sheet", None).unwrap();
+            for (row, column, kind, content) in cells {
+                let found = &read.rows[row - read.first_row][column - read.first_column];
+                let expected = match (&**kind, content) {
+                    ("b", is) => Cell::Bool(is.as_bool().unwrap()),
+                    ("n", bits) => Cell::Number(f64::from_bits(bits.as_u64().unwrap())),
+                    ("d", day) => date(day.as_str().unwrap()),
+                    (_, letters) => text(letters.as_str().unwrap()),
+                };
+                assert_eq!(*found, expected, "{i}.{ending}, row {row}, column {column}");
+            }
+            let n_found = read.rows.iter().flatten().filter(|cell| **cell != Cell::Empty).count();
+            assert_eq!(n_found, cells.len(), "{i}.{ending}");
+        }
+    }
 }
