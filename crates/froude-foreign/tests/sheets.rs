@@ -371,6 +371,12 @@ def stated(name, size_stated):
     open(name, "wb").write(out)
 stated("more.xlsx", size - 1)
 stated("huge.xlsx", 3 << 30)
+import xlwt
+book = xlwt.Workbook()
+sheet = book.add_sheet("s")
+sheet.write(0, 0, 1)
+sheet.write(65535, 255, 2)
+book.save("far.xls")
 book = OpenDocumentSpreadsheet()
 sheet = Table(name="s")
 line = TableRow(numberrowsrepeated=1048576)
@@ -385,6 +391,10 @@ book.save("far.ods")
                range that holds the table, as in B3:H40";
     assert_eq!(error("far.xlsx"), far);
     assert_eq!(sheet(folder.path(), "far.xlsx", "s", Some("A1:B9")).unwrap().rows, [[Cell::Number(1.0)]]);
+    assert_eq!(
+        error("far.xls"),
+        "2 cells with content of a sheet are spread over A1:IV65536; delete what lies far from the tables, or save the workbook as .xlsx"
+    );
     assert!(error("far.ods").contains("more than the limit of 50 million"), "{}", error("far.ods"));
     assert_eq!(
         error("texts.xlsx"),

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::excel::is_percent;
-use super::grid::Region;
+use super::grid::{Region, is_too_loose};
 use super::ole::{Ole, u16_at, u32_at};
 use crate::{ForeignError, MAX_CELLS};
 
@@ -139,6 +139,7 @@ impl Globals {
     fn sheet(&self, stream: &[u8]) -> Result<(SheetNotes, usize), ForeignError> {
         let mut notes = SheetNotes::default();
         let (mut first, mut last) = ((u32::MAX, u32::MAX), (0, 0));
+        let mut n_written = 0_usize;
         let mut depth = 0_usize;
         for record in records(stream) {
             let (kind, content) = record?;
@@ -174,6 +175,7 @@ impl Globals {
                     let (row, column, last_column) = (u32::from(row), u32::from(column), u32::from(last_column));
                     first = (first.0.min(row), first.1.min(column));
                     last = (last.0.max(row), last.1.max(last_column));
+                    n_written += (last_column + 1 - column) as usize;
                     // MulRk has a format and a number of four bytes for each cell.
                     let formats = (column..=last_column).zip((4..).step_by(6));
                     notes.percent.extend(formats.filter_map(|(column, at)| {
@@ -198,6 +200,15 @@ impl Globals {
             }
         }
         let size = if first.0 > last.0 { 0 } else { (last.0 + 1 - first.0) as usize * (last.1 + 1 - first.1) as usize };
+        // The reader fills the whole rectangle.
+        if is_too_loose(size, n_written) {
+            let (first, last) = ((first.0 as usize, first.1 as usize), (last.0 as usize, last.1 as usize));
+            let used = Region { first: (first.0 + 1, first.1 + 1), last: (last.0 + 1, last.1 + 1) };
+            return Err(ForeignError(format!(
+                "{n_written} cells with content of a sheet are spread over {used}; delete what lies far from the tables, or save the \
+                 workbook as .xlsx"
+            )));
+        }
         Ok((notes, size))
     }
 

@@ -134,6 +134,11 @@ impl Sheet {
     }
 }
 
+/// Whether a rectangle is too large for the cells with content in it: a few far cells would fill the memory with blanks.
+pub(crate) fn is_too_loose(n_cells: usize, n_written: usize) -> bool {
+    n_cells > 1_000_000 + 1000 * n_written
+}
+
 /// Collects the cells of a sheet that have content and lie in a range, and watches their number.
 pub(crate) struct Cells<'a> {
     sheet: &'a str,
@@ -208,13 +213,20 @@ impl<'a> Cells<'a> {
     ///
     /// # Errors
     ///
-    /// If one cell occurs twice.
+    /// If one cell occurs twice, or few cells lie far from each other.
     pub(crate) fn finish(self, merged: Vec<Region>) -> Result<Sheet, ForeignError> {
         let merged = merged.into_iter().filter(|region| region.n_cells() > 1).collect();
         let name = self.sheet.to_owned();
         let Some(Region { first: (first_row, first_column), last }) = self.used else {
             return Ok(Sheet { name, first_row: 1, first_column: 1, rows: Vec::new(), merged });
         };
+        let used = Region { first: (first_row, first_column), last };
+        if is_too_loose(used.n_cells(), self.found.len()) {
+            let n = self.found.len();
+            return Err(ForeignError(format!(
+                "sheet {name:?}: {n} cells with content are spread over {used}; name the range that holds the table, as in B3:H40"
+            )));
+        }
         let mut rows = vec![vec![Cell::Empty; last.1 + 1 - first_column]; last.0 + 1 - first_row];
         for (row, column, cell) in self.found {
             match rows.get_mut(row - first_row).and_then(|cells| cells.get_mut(column - first_column)) {
@@ -266,6 +278,18 @@ mod tests {
             error,
             "sheet \"drift\": with cell XFD1048576 the cells with content span A1:XFD1048576, more than the limit of 50 million; \
              name the range that holds the table, as in B3:H40"
+        );
+    }
+
+    #[test]
+    fn few_cells_far_from_each_other_are_no_table() {
+        let mut cells = Cells::new("drift", None);
+        cells.push(1, 1, Cell::Number(1.0)).unwrap();
+        cells.push(50_000, 900, Cell::Number(1.0)).unwrap();
+        let error = cells.finish(Vec::new()).unwrap_err().0;
+        assert_eq!(
+            error,
+            "sheet \"drift\": 2 cells with content are spread over A1:AHP50000; name the range that holds the table, as in B3:H40"
         );
     }
 
