@@ -264,8 +264,9 @@ const LINK: &str = "sheet \"s\": cell CELL is a formula that reads another file,
 /// A formula with a stored value as Excel writes it: XlsxWriter asks Excel to compute all formulas again.
 const COMPUTED: &str = r#"
 import xlsxwriter, zipfile
-def write(name, cells, is_computed=True):
+def write(name, cells, is_computed=True, names=()):
     book = xlsxwriter.Workbook("raw.xlsx")
+    for pair in names: book.define_name(*pair)
     sheet = book.add_worksheet("s")
     for place, formula, value in cells:
         sheet.write_formula(place, formula, None, value) if formula else sheet.write(place, value)
@@ -286,6 +287,8 @@ cells = [("A1", "=1+1", 2), ("B1", '=IF(1,"","x")', ""), ("C1", "=1/0", "#DIV/0!
 write("computed.xlsx", cells)
 write("stale.xlsx", cells, False)
 write("link.xlsx", [("A1", None, 1), ("B2", "='C:\\tank\\[runs.xlsx]Sheet1'!$A$1", 3)])
+names = [("tare", "='C:\tank\[runs.xlsx]Sheet1'!$A$1"), ("gain", "=s!$A$1")]
+write("named.xlsx", [("A1", None, 1), ("B1", "=2*gain", 2), ("B3", "=2*Tare", 3)], names=names)
 import openpyxl, xlwt
 book = openpyxl.Workbook()
 book.active.title = "s"
@@ -310,6 +313,8 @@ open("password.xls", "wb").write(raw[:532] + b"\x2f\x00" + raw[534:])
     assert_eq!(error("none.xlsx"), NO_VALUE.replace("CELL", "B3"));
     assert_eq!(error("stale.xlsx"), NO_VALUE.replace("CELL", "A1"));
     assert_eq!(error("link.xlsx"), LINK.replace("CELL", "B2"));
+    assert_eq!(error("named.xlsx"), LINK.replace("CELL", "B3"));
+    assert_eq!(sheet(folder.path(), "named.xlsx", "s", Some("A1:B2")).unwrap().rows[0], [1.0, 2.0].map(Cell::Number));
     assert_eq!(error("link.xls"), LINK.replace("CELL", "A2"));
     // xlwt stores 0 for a formula, as a computed value; nothing in the file tells it from one.
     assert_eq!(sheet(folder.path(), "inner.xls", "s", None).unwrap().rows[0], [Cell::Number(1.5)]);

@@ -76,6 +76,8 @@ struct Globals {
     is_percent: Vec<bool>,
     /// For each reference to sheets whether they lie in another file.
     is_elsewhere: Vec<bool>,
+    /// For each name of a range or formula whether it reads another file.
+    is_name_elsewhere: Vec<bool>,
 }
 
 impl Globals {
@@ -86,6 +88,7 @@ impl Globals {
         let mut is_other_file = Vec::new();
         let mut references: Vec<&[u8; 6]> = Vec::new();
         let mut is_excel_95 = false;
+        let mut names = Vec::new();
         for record in records(stream) {
             let (kind, content) = record?;
             match kind {
@@ -124,6 +127,8 @@ impl Globals {
                 }
                 // ExternSheet: groups of three numbers, the first is the SupBook
                 0x0017 => references.extend(content.get(2..).unwrap_or_default().as_chunks::<6>().0),
+                // Lbl
+                0x0018 => names.push(content),
                 // Eof
                 0x000A => break,
                 _ => {}
@@ -132,6 +137,13 @@ impl Globals {
         globals.is_percent = cell_formats.iter().map(|id| formats.get(id) == Some(&true)).collect();
         let elsewhere = references.iter().map(|[low, high, ..]| usize::from(u16::from_le_bytes([*low, *high])));
         globals.is_elsewhere = elsewhere.map(|book| is_other_file.get(book) == Some(&true)).collect();
+        // Length of the name and of its formula, then ten bytes on the name and the formula.
+        let is_external = |lbl: &&[u8]| {
+            let letters = usize::from(*lbl.get(3)?) * (1 + usize::from(lbl.get(14)? & 1));
+            let formula = [lbl.get(4..6)?, lbl.get(15 + letters..)?].concat();
+            Some(globals.is_external(&formula))
+        };
+        globals.is_name_elsewhere = names.iter().map(|lbl| is_external(lbl).unwrap_or(true)).collect();
         Ok(globals)
     }
 
@@ -222,6 +234,11 @@ impl Globals {
         while let [token, after @ ..] = rest {
             // Tokens from 0x20 on occur in three classes with one meaning.
             let token = if *token >= 0x20 { *token & 0x1F | 0x20 } else { *token };
+            // A name counts from 1.
+            let name = u16_at(after, 0).map_or(0, usize::from).checked_sub(1);
+            if token == 0x23 && name.and_then(|name| self.is_name_elsewhere.get(name)) == Some(&true) {
+                return true;
+            }
             let length = match token {
                 0x01 | 0x02 | 0x23 | 0x24 | 0x2A | 0x2C => 4,
                 0x03..=0x16 => 0,
