@@ -46,6 +46,11 @@ pub fn read(bytes: &[u8]) -> Result<Contents, ForeignError> {
             MAX_BYTES >> 20
         )));
     }
+    if bytes.starts_with(b"# Created by Octave") || bytes.starts_with(b"Octave-1") {
+        return Err(ForeignError(
+            "is in Octave's own format, which Octave alone reads; in Octave, load it and save it with save -v7 NAME.mat".into(),
+        ));
+    }
     if !is_mat5(bytes) {
         return Err(ForeignError(
             "is not a MAT file of level 5: its bytes 125 to 128 are not its version; in MATLAB load it and save it with save(\"NAME.mat\", \

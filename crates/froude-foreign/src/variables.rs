@@ -245,6 +245,20 @@ mod tests {
     }
 
     #[test]
+    fn a_structure_with_time_of_simulink_is_one_table() {
+        let signal = |label: &str, columns| {
+            let label = ("label".to_owned(), Value::Texts(vec![label.to_owned()]));
+            vec![("values".to_owned(), numbers(4, columns)), ("dimensions".to_owned(), numbers(1, 1)), label]
+        };
+        let signals = Value::Elements(vec![signal("force", 2), signal("", 1)]);
+        let run = |n| Value::Fields(vec![("time".to_owned(), numbers(n, 1)), ("signals".to_owned(), signals.clone())]);
+        let names = ["time", "force_1", "force_2", "signal_2"].map(str::to_owned).to_vec();
+        assert_eq!(shape(&read(vec![("run", run(4))]).unwrap()), [("run".into(), names)]);
+        // Another length: nothing is put side by side.
+        assert_eq!(read(vec![("run", run(3))]).unwrap().parts.len(), 5);
+    }
+
+    #[test]
     fn what_is_not_read_is_named() {
         let unread = || Value::Unread("is complex".to_owned());
         let some = read(vec![("z", unread()), ("t", numbers(4, 1)), ("none", numbers(0, 0))]).unwrap();

@@ -172,6 +172,8 @@ fn a_damaged_file_is_named_with_its_byte() {
     );
     let error = mat5::read(b"time,force\n").unwrap_err().0;
     assert!(error.starts_with("is not a MAT file of level 5"), "{error}");
+    let error = mat5::read(b"# Created by Octave 8.4.0, Mon Nov 30\n# name: t\n").unwrap_err().0;
+    assert!(error.contains("save it with save -v7 NAME.mat"), "{error}");
 }
 
 #[test]

@@ -212,6 +212,11 @@ spaced.addElement(P(text="c"))
 note = Annotation()
 note.addElement(P(text="a remark"))
 spaced.addElement(note)
+from odf.draw import Frame, TextBox
+frame, box = Frame(), TextBox()
+box.addElement(P(text="a text box"))
+frame.addElement(box)
+spaced.addElement(frame)
 line.addElement(spaced)
 line.addElement(TableCell(valuetype="time", timevalue="PT00H01M30.5S"))
 wrong = TableCell(valuetype="string", stringvalue="")
@@ -259,8 +264,9 @@ const LINK: &str = "sheet \"s\": cell CELL is a formula that reads another file,
 /// A formula with a stored value as Excel writes it: XlsxWriter asks Excel to compute all formulas again.
 const COMPUTED: &str = r#"
 import xlsxwriter, zipfile
-def write(name, cells, is_computed=True):
+def write(name, cells, is_computed=True, names=()):
     book = xlsxwriter.Workbook("raw.xlsx")
+    for pair in names: book.define_name(*pair)
     sheet = book.add_worksheet("s")
     for place, formula, value in cells:
         sheet.write_formula(place, formula, None, value) if formula else sheet.write(place, value)
@@ -281,6 +287,8 @@ cells = [("A1", "=1+1", 2), ("B1", '=IF(1,"","x")', ""), ("C1", "=1/0", "#DIV/0!
 write("computed.xlsx", cells)
 write("stale.xlsx", cells, False)
 write("link.xlsx", [("A1", None, 1), ("B2", "='C:\\tank\\[runs.xlsx]Sheet1'!$A$1", 3)])
+names = [("tare", "='C:\tank\[runs.xlsx]Sheet1'!$A$1"), ("gain", "=s!$A$1")]
+write("named.xlsx", [("A1", None, 1), ("B1", "=2*gain", 2), ("B3", "=2*Tare", 3)], names=names)
 import openpyxl, xlwt
 book = openpyxl.Workbook()
 book.active.title = "s"
@@ -305,6 +313,8 @@ open("password.xls", "wb").write(raw[:532] + b"\x2f\x00" + raw[534:])
     assert_eq!(error("none.xlsx"), NO_VALUE.replace("CELL", "B3"));
     assert_eq!(error("stale.xlsx"), NO_VALUE.replace("CELL", "A1"));
     assert_eq!(error("link.xlsx"), LINK.replace("CELL", "B2"));
+    assert_eq!(error("named.xlsx"), LINK.replace("CELL", "B3"));
+    assert_eq!(sheet(folder.path(), "named.xlsx", "s", Some("A1:B2")).unwrap().rows[0], [1.0, 2.0].map(Cell::Number));
     assert_eq!(error("link.xls"), LINK.replace("CELL", "A2"));
     // xlwt stores 0 for a formula, as a computed value; nothing in the file tells it from one.
     assert_eq!(sheet(folder.path(), "inner.xls", "s", None).unwrap().rows[0], [Cell::Number(1.5)]);
@@ -322,6 +332,11 @@ book.save("t.xlsx")
 from msoffcrypto.format.ooxml import OOXMLFile
 with open("t.xlsx", "rb") as plain, open("locked.xlsx", "wb") as locked:
     OOXMLFile(plain).encrypt("secret", locked)
+import zipfile
+with zipfile.ZipFile("locked.ods", "w") as book:
+    book.writestr("content.xml", b"encrypted")
+    book.writestr("META-INF/manifest.xml", """<manifest:manifest xmlns:manifest="urn:oasis:names:tc:opendocument:xmlns:manifest:1.0">
+        <manifest:file-entry manifest:full-path="content.xml"><manifest:encryption-data/></manifest:file-entry></manifest:manifest>""")
 "#,
     );
     let error = sheet(folder.path(), "locked.xlsx", "s", None).unwrap_err();
@@ -330,6 +345,8 @@ with open("t.xlsx", "rb") as plain, open("locked.xlsx", "wb") as locked:
         "the workbook is protected by a password; open it in Excel, remove the password (File, Info, Protect Workbook, Encrypt with \
          Password) and save it"
     );
+    let error = sheet(folder.path(), "locked.ods", "s", None).unwrap_err();
+    assert!(error.starts_with("the workbook is protected by a password; open it in LibreOffice"), "{error}");
 }
 
 #[test]
@@ -359,6 +376,12 @@ def stated(name, size_stated):
     open(name, "wb").write(out)
 stated("more.xlsx", size - 1)
 stated("huge.xlsx", 3 << 30)
+import xlwt
+book = xlwt.Workbook()
+sheet = book.add_sheet("s")
+sheet.write(0, 0, 1)
+sheet.write(65535, 255, 2)
+book.save("far.xls")
 book = OpenDocumentSpreadsheet()
 sheet = Table(name="s")
 line = TableRow(numberrowsrepeated=1048576)
@@ -373,6 +396,10 @@ book.save("far.ods")
                range that holds the table, as in B3:H40";
     assert_eq!(error("far.xlsx"), far);
     assert_eq!(sheet(folder.path(), "far.xlsx", "s", Some("A1:B9")).unwrap().rows, [[Cell::Number(1.0)]]);
+    assert_eq!(
+        error("far.xls"),
+        "2 cells with content of a sheet are spread over A1:IV65536; delete what lies far from the tables, or save the workbook as .xlsx"
+    );
     assert!(error("far.ods").contains("more than the limit of 50 million"), "{}", error("far.ods"));
     assert_eq!(
         error("texts.xlsx"),
@@ -407,4 +434,61 @@ for name, part in [("b.xlsb", "xl/workbook.bin"), ("z.zip", "readme.md")]:
     assert!(of(&ole).contains("its table of sectors is damaged"));
     ole.resize(4096, 0xFF);
     assert!(of(&ole).contains("its table of sectors is damaged"));
+}
+
+#[test]
+fn random_sheets_read_as_their_writers_read_them() {
+    // Place, kind and content of each cell; numbers as bits.
+    let folder = written(
+        r#"
+import json, random, string, struct, datetime as d, openpyxl, xlwt
+random.seed(46)
+LETTERS = string.printable.replace("\x0b", "").replace("\x0c", "").replace("\r", "") + "äß€Ω漢字😀\u00a0"
+def content():
+    kind = random.choice("nnnnitbd")
+    # openpyxl writes 16 digits, of which a number may need 17.
+    if kind == "n": return float("%.14g" % (random.gauss(0, 1) * 10 ** random.randint(-12, 12)))
+    if kind == "i": return random.randint(-10**9, 10**9)
+    if kind == "b": return random.random() < 0.5
+    if kind == "d": return d.datetime(1901, 1, 1) + d.timedelta(seconds=random.randint(0, 6 * 10**9))
+    text = "".join(random.choice(LETTERS) for _ in range(random.randint(1, 30)))
+    return text.lstrip("=") or "x"
+def expected(value):
+    if isinstance(value, bool): return ["b", value]
+    if isinstance(value, (int, float)): return ["n", struct.unpack("<Q", struct.pack("<d", value))[0]]
+    if isinstance(value, d.datetime): return ["d", value.isoformat() if value.time() != d.time() else value.date().isoformat()]
+    return ["t", value]
+out = []
+for i in range(20):
+    places = {(random.randint(1, 60) + random.choice([0, 0, 0, 3000]), random.randint(1, 40)): content() for _ in range(150)}
+    book, old = openpyxl.Workbook(), xlwt.Workbook()
+    old_sheet, stamp = old.add_sheet("Sheet"), xlwt.easyxf(num_format_str="yyyy-mm-dd hh:mm:ss")
+    for (row, column), value in places.items():
+        book.active.cell(row, column).value = value
+        old_sheet.write(row - 1, column - 1, value, *([stamp] if isinstance(value, d.datetime) else []))
+    book.save(f"{i}.xlsx")
+    old.save(f"{i}.xls")
+    out.append([[*place, *expected(value)] for place, value in places.items()])
+json.dump(out, open("expected.json", "w"))
+"#,
+    );
+    let expected: Vec<Vec<(usize, usize, String, serde_json::Value)>> =
+        serde_json::from_slice(&bytes(folder.path(), "expected.json")).unwrap();
+    for (i, cells) in expected.iter().enumerate() {
+        for ending in ["xlsx", "xls"] {
+            let read = sheet(folder.path(), &format!("{i}.{ending}"), "Sheet", None).unwrap();
+            for (row, column, kind, content) in cells {
+                let found = &read.rows[row - read.first_row][column - read.first_column];
+                let expected = match (&**kind, content) {
+                    ("b", is) => Cell::Bool(is.as_bool().unwrap()),
+                    ("n", bits) => Cell::Number(f64::from_bits(bits.as_u64().unwrap())),
+                    ("d", day) => date(day.as_str().unwrap()),
+                    (_, letters) => text(letters.as_str().unwrap()),
+                };
+                assert_eq!(*found, expected, "{i}.{ending}, row {row}, column {column}");
+            }
+            let n_found = read.rows.iter().flatten().filter(|cell| **cell != Cell::Empty).count();
+            assert_eq!(n_found, cells.len(), "{i}.{ending}");
+        }
+    }
 }

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::excel::is_percent;
-use super::grid::Region;
+use super::grid::{Region, is_too_loose};
 use super::ole::{Ole, u16_at, u32_at};
 use crate::{ForeignError, MAX_CELLS};
 
@@ -76,6 +76,8 @@ struct Globals {
     is_percent: Vec<bool>,
     /// For each reference to sheets whether they lie in another file.
     is_elsewhere: Vec<bool>,
+    /// For each name of a range or formula whether it reads another file.
+    is_name_elsewhere: Vec<bool>,
 }
 
 impl Globals {
@@ -86,6 +88,7 @@ impl Globals {
         let mut is_other_file = Vec::new();
         let mut references: Vec<&[u8; 6]> = Vec::new();
         let mut is_excel_95 = false;
+        let mut names = Vec::new();
         for record in records(stream) {
             let (kind, content) = record?;
             match kind {
@@ -124,6 +127,8 @@ impl Globals {
                 }
                 // ExternSheet: groups of three numbers, the first is the SupBook
                 0x0017 => references.extend(content.get(2..).unwrap_or_default().as_chunks::<6>().0),
+                // Lbl
+                0x0018 => names.push(content),
                 // Eof
                 0x000A => break,
                 _ => {}
@@ -132,6 +137,13 @@ impl Globals {
         globals.is_percent = cell_formats.iter().map(|id| formats.get(id) == Some(&true)).collect();
         let elsewhere = references.iter().map(|[low, high, ..]| usize::from(u16::from_le_bytes([*low, *high])));
         globals.is_elsewhere = elsewhere.map(|book| is_other_file.get(book) == Some(&true)).collect();
+        // Length of the name and of its formula, then ten bytes on the name and the formula.
+        let is_external = |lbl: &&[u8]| {
+            let letters = usize::from(*lbl.get(3)?) * (1 + usize::from(lbl.get(14)? & 1));
+            let formula = [lbl.get(4..6)?, lbl.get(15 + letters..)?].concat();
+            Some(globals.is_external(&formula))
+        };
+        globals.is_name_elsewhere = names.iter().map(|lbl| is_external(lbl).unwrap_or(true)).collect();
         Ok(globals)
     }
 
@@ -139,6 +151,7 @@ impl Globals {
     fn sheet(&self, stream: &[u8]) -> Result<(SheetNotes, usize), ForeignError> {
         let mut notes = SheetNotes::default();
         let (mut first, mut last) = ((u32::MAX, u32::MAX), (0, 0));
+        let mut n_written = 0_usize;
         let mut depth = 0_usize;
         for record in records(stream) {
             let (kind, content) = record?;
@@ -174,6 +187,7 @@ impl Globals {
                     let (row, column, last_column) = (u32::from(row), u32::from(column), u32::from(last_column));
                     first = (first.0.min(row), first.1.min(column));
                     last = (last.0.max(row), last.1.max(last_column));
+                    n_written += (last_column + 1 - column) as usize;
                     // MulRk has a format and a number of four bytes for each cell.
                     let formats = (column..=last_column).zip((4..).step_by(6));
                     notes.percent.extend(formats.filter_map(|(column, at)| {
@@ -198,6 +212,15 @@ impl Globals {
             }
         }
         let size = if first.0 > last.0 { 0 } else { (last.0 + 1 - first.0) as usize * (last.1 + 1 - first.1) as usize };
+        // The reader fills the whole rectangle.
+        if is_too_loose(size, n_written) {
+            let (first, last) = ((first.0 as usize, first.1 as usize), (last.0 as usize, last.1 as usize));
+            let used = Region { first: (first.0 + 1, first.1 + 1), last: (last.0 + 1, last.1 + 1) };
+            return Err(ForeignError(format!(
+                "{n_written} cells with content of a sheet are spread over {used}; delete what lies far from the tables, or save the \
+                 workbook as .xlsx"
+            )));
+        }
         Ok((notes, size))
     }
 
@@ -211,6 +234,11 @@ impl Globals {
         while let [token, after @ ..] = rest {
             // Tokens from 0x20 on occur in three classes with one meaning.
             let token = if *token >= 0x20 { *token & 0x1F | 0x20 } else { *token };
+            // A name counts from 1.
+            let name = u16_at(after, 0).map_or(0, usize::from).checked_sub(1);
+            if token == 0x23 && name.and_then(|name| self.is_name_elsewhere.get(name)) == Some(&true) {
+                return true;
+            }
             let length = match token {
                 0x01 | 0x02 | 0x23 | 0x24 | 0x2A | 0x2C => 4,
                 0x03..=0x16 => 0,

@@ -63,6 +63,12 @@ pub(crate) fn no_date(sheet: &str, row: usize, column: usize, number: f64) -> Fo
     ))
 }
 
+/// Whether a formula uses one of some names, whatever their case. Names inside of texts count, too.
+pub(crate) fn uses(formula: &str, names: &[String]) -> bool {
+    let mut words = formula.split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | '\\')));
+    !names.is_empty() && words.any(|word| names.iter().any(|name| name.eq_ignore_ascii_case(word)))
+}
+
 /// The value of a formula was not stored, or is not that of its program.
 pub(crate) fn no_cached_value(sheet: &str, row: usize, column: usize) -> ForeignError {
     ForeignError(format!(
@@ -116,5 +122,7 @@ mod tests {
         for formula in ["A1*2", "Runs[speed]", "SUM(Runs[[#This Row],[speed]:[force]])", "\"[1]\"&A1", "Run.1[a]"] {
             assert!(!is_external(formula), "{formula}");
         }
+        let names = ["Tare".to_owned()];
+        assert_eq!(["2*tare+A1", "2*Tare_2", "A1"].map(|formula| uses(formula, &names)), [true, false, false]);
     }
 }

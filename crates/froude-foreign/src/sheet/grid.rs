@@ -134,6 +134,11 @@ impl Sheet {
     }
 }
 
+/// Whether a rectangle is too large for the cells with content in it: a few far cells would fill the memory with blanks.
+pub(crate) fn is_too_loose(n_cells: usize, n_written: usize) -> bool {
+    n_cells > 1_000_000 + 1000 * n_written
+}
+
 /// Collects the cells of a sheet that have content and lie in a range, and watches their number.
 pub(crate) struct Cells<'a> {
     sheet: &'a str,
@@ -168,16 +173,29 @@ impl<'a> Cells<'a> {
     ///
     /// If the rectangle around the cells becomes too large.
     pub(crate) fn push(&mut self, row: usize, column: usize, cell: Cell) -> Result<(), ForeignError> {
-        if cell == Cell::Empty || !self.wants(row, column) {
+        self.repeat(Region { first: (row, column), last: (row, column) }, cell)
+    }
+
+    /// Adds one cell at all places of a region that are asked for.
+    ///
+    /// # Errors
+    ///
+    /// If the rectangle around the cells becomes too large; nothing is added then.
+    pub(crate) fn repeat(&mut self, region: Region, cell: Cell) -> Result<(), ForeignError> {
+        if cell == Cell::Empty || !self.wants_any(region) {
             return Ok(());
         }
-        let old = self.used.unwrap_or(Region { first: (row, column), last: (row, column) });
+        let region = self.range.map_or(region, |range| Region {
+            first: (region.first.0.max(range.first.0), region.first.1.max(range.first.1)),
+            last: (region.last.0.min(range.last.0), region.last.1.min(range.last.1)),
+        });
+        let old = self.used.unwrap_or(region);
         let new = Region {
-            first: (old.first.0.min(row), old.first.1.min(column)),
-            last: (old.last.0.max(row), old.last.1.max(column)),
+            first: (old.first.0.min(region.first.0), old.first.1.min(region.first.1)),
+            last: (old.last.0.max(region.last.0), old.last.1.max(region.last.1)),
         };
         if new.n_cells() > MAX_CELLS || self.found.len() >= MAX_CELLS {
-            let (name, place) = (self.sheet, cell_name(row, column));
+            let (name, place) = (self.sheet, cell_name(region.last.0, region.last.1));
             return Err(ForeignError(format!(
                 "sheet {name:?}: with cell {place} the cells with content span {new}, more than the limit of {} million; \
                  name the range that holds the table, as in B3:H40",
@@ -185,7 +203,9 @@ impl<'a> Cells<'a> {
             )));
         }
         self.used = Some(new);
-        self.found.push((row, column, cell));
+        for row in region.first.0..=region.last.0 {
+            self.found.extend((region.first.1..=region.last.1).map(|column| (row, column, cell.clone())));
+        }
         Ok(())
     }
 
@@ -193,13 +213,20 @@ impl<'a> Cells<'a> {
     ///
     /// # Errors
     ///
-    /// If one cell occurs twice.
+    /// If one cell occurs twice, or few cells lie far from each other.
     pub(crate) fn finish(self, merged: Vec<Region>) -> Result<Sheet, ForeignError> {
         let merged = merged.into_iter().filter(|region| region.n_cells() > 1).collect();
         let name = self.sheet.to_owned();
         let Some(Region { first: (first_row, first_column), last }) = self.used else {
             return Ok(Sheet { name, first_row: 1, first_column: 1, rows: Vec::new(), merged });
         };
+        let used = Region { first: (first_row, first_column), last };
+        if is_too_loose(used.n_cells(), self.found.len()) {
+            let n = self.found.len();
+            return Err(ForeignError(format!(
+                "sheet {name:?}: {n} cells with content are spread over {used}; name the range that holds the table, as in B3:H40"
+            )));
+        }
         let mut rows = vec![vec![Cell::Empty; last.1 + 1 - first_column]; last.0 + 1 - first_row];
         for (row, column, cell) in self.found {
             match rows.get_mut(row - first_row).and_then(|cells| cells.get_mut(column - first_column)) {
@@ -251,6 +278,18 @@ mod tests {
             error,
             "sheet \"drift\": with cell XFD1048576 the cells with content span A1:XFD1048576, more than the limit of 50 million; \
              name the range that holds the table, as in B3:H40"
+        );
+    }
+
+    #[test]
+    fn few_cells_far_from_each_other_are_no_table() {
+        let mut cells = Cells::new("drift", None);
+        cells.push(1, 1, Cell::Number(1.0)).unwrap();
+        cells.push(50_000, 900, Cell::Number(1.0)).unwrap();
+        let error = cells.finish(Vec::new()).unwrap_err().0;
+        assert_eq!(
+            error,
+            "sheet \"drift\": 2 cells with content are spread over A1:AHP50000; name the range that holds the table, as in B3:H40"
         );
     }
 

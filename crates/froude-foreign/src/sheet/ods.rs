@@ -71,8 +71,9 @@ impl<'a> Book<'a> {
                     "table:table" => {
                         let is_hidden =
                             attribute(&tag, "table:style-name").is_some_and(|style| hidden.contains(&style));
-                        let name = attribute(&tag, "table:name").unwrap_or_default();
-                        self.sheets.push(SheetName { name, is_hidden });
+                        if let Some(name) = attribute(&tag, "table:name") {
+                            self.sheets.push(SheetName { name, is_hidden });
+                        }
                     }
                     // What LibreOffice keeps of sheets of other files.
                     "table:table-source" => {
@@ -127,12 +128,9 @@ impl<'a> Book<'a> {
                 }
                 Event::End(tag) if tag.name().as_ref() == "table:table-row" => {
                     for (first, n, cell) in content.drain(..) {
-                        place(name, row + row_repeats - 1, first + n - 1)?;
-                        for row in row..row + row_repeats {
-                            for column in first..first + n {
-                                cells.push(row, column, cell.clone())?;
-                            }
-                        }
+                        let last = (row + row_repeats - 1, first + n - 1);
+                        place(name, last.0, last.1)?;
+                        cells.repeat(Region { first: (row, first), last }, cell)?;
                     }
                     row = (row + row_repeats).min(MAX_ROWS + 1);
                 }
@@ -197,6 +195,11 @@ fn place(sheet: &str, row: usize, column: usize) -> Result<(), ForeignError> {
     )))
 }
 
+/// Whether a tag begins what lies on a cell and is no part of it: a note, a picture, a text box.
+fn is_beside(tag: &str) -> bool {
+    tag == "office:annotation" || tag.starts_with("draw:")
+}
+
 /// A cell while it is read.
 struct Open {
     repeats: usize,
@@ -206,7 +209,7 @@ struct Open {
     is_error: bool,
     text: String,
     n_paragraphs: usize,
-    /// Depth inside of a note, whose text is not the cell's.
+    /// Depth inside of a note or picture, whose text is not the cell's.
     note: usize,
     is_paragraph: bool,
 }
@@ -241,8 +244,8 @@ impl Open {
     /// Collects the text of the cell.
     fn event(&mut self, event: &Event<'_>) -> Result<(), String> {
         match event {
-            Event::Start(tag) if tag.name().as_ref() == "office:annotation" => self.note += 1,
-            Event::End(tag) if tag.name().as_ref() == "office:annotation" => self.note = self.note.saturating_sub(1),
+            Event::Start(tag) if is_beside(tag.name().as_ref()) => self.note += 1,
+            Event::End(tag) if is_beside(tag.name().as_ref()) => self.note = self.note.saturating_sub(1),
             _ if self.note > 0 => {}
             Event::Start(tag) => match tag.name().as_ref() {
                 "text:p" => {

@@ -6,16 +6,18 @@ use std::io::Cursor;
 use calamine::{DataRef, Reader, SheetType, SheetVisible, Xlsx, XlsxError, XlsxFormulaMetadata};
 
 use super::SheetName;
-use super::excel::{is_external, is_percent, iso, no_cached_value, no_date, refers_elsewhere};
+use super::excel::{is_external, is_percent, iso, no_cached_value, no_date, refers_elsewhere, uses};
 use super::grid::{Cell, Cells, Region, Sheet};
 use super::package::{self, Archive, attribute, damaged};
 use crate::{ForeignError, MAX_CELLS};
 
 /// An open `.xlsx` file.
 pub(crate) struct Book<'a> {
-    book: Xlsx<Cursor<&'a [u8]>>,
+    xlsx: Xlsx<Cursor<&'a [u8]>>,
     /// Its values were not computed by the program that wrote the file, or not to the end.
     is_stale: bool,
+    /// Names that stand for cells of other files.
+    elsewhere: Vec<String>,
 }
 
 impl<'a> Book<'a> {
@@ -43,13 +45,15 @@ impl<'a> Book<'a> {
             .unwrap_or(false),
             None => false,
         };
-        let book = Xlsx::new(Cursor::new(bytes)).map_err(|e| damaged("", &e))?;
-        Ok(Self { book, is_stale })
+        let xlsx = Xlsx::new(Cursor::new(bytes)).map_err(|e| damaged("", &e))?;
+        let elsewhere = xlsx.defined_names().iter().filter(|(_, formula)| is_external(formula));
+        let elsewhere = elsewhere.map(|(name, _)| name.clone()).collect();
+        Ok(Self { xlsx, is_stale, elsewhere })
     }
 
     /// Its sheets with cells.
     pub(crate) fn names(&self) -> Vec<SheetName> {
-        let sheets = self.book.sheets_metadata().iter().filter(|sheet| sheet.typ == SheetType::WorkSheet);
+        let sheets = self.xlsx.sheets_metadata().iter().filter(|sheet| sheet.typ == SheetType::WorkSheet);
         sheets
             .map(|sheet| SheetName { name: sheet.name.clone(), is_hidden: sheet.visible != SheetVisible::Visible })
             .collect()
@@ -57,7 +61,7 @@ impl<'a> Book<'a> {
 
     /// Names of ranges, and what they stand for.
     pub(crate) fn defined_names(&self) -> &[(String, String)] {
-        self.book.defined_names()
+        self.xlsx.defined_names()
     }
 
     /// Reads a sheet.
@@ -68,7 +72,7 @@ impl<'a> Book<'a> {
     pub(crate) fn sheet(&mut self, name: &str, range: Option<Region>) -> Result<Sheet, ForeignError> {
         let broken = |e: XlsxError| damaged(&format!("sheet {name}"), &e);
         let percent = self.percent(name)?;
-        let merged = self.book.merge_cells_by_sheet_name(name).map_err(broken)?;
+        let merged = self.xlsx.merge_cells_by_sheet_name(name).map_err(broken)?;
         let merged = merged.iter().map(|d| Region {
             first: (d.start.0 as usize + 1, d.start.1 as usize + 1),
             last: (d.end.0 as usize + 1, d.end.1 as usize + 1),
@@ -76,7 +80,9 @@ impl<'a> Book<'a> {
         let merged: Vec<Region> = merged.collect();
         let mut cells = Cells::new(name, range);
         let mut external_shared = BTreeSet::new();
-        let mut reader = self.book.worksheet_cells_reader(name).map_err(broken)?;
+        let elsewhere = self.elsewhere.clone();
+        let is_external = |formula: &str| is_external(formula) || uses(formula, &elsewhere);
+        let mut reader = self.xlsx.worksheet_cells_reader(name).map_err(broken)?;
         while let Some(record) = reader.next_cell_with_formula_metadata().map_err(broken)? {
             let (row, column) = (record.pos.0 as usize + 1, record.pos.1 as usize + 1);
             let is_external = match &record.formula {
@@ -123,7 +129,7 @@ impl<'a> Book<'a> {
     /// Cells that are shown in percent; rows and columns from 0. Read apart from the values: the reader gives either styles or formulas.
     fn percent(&mut self, name: &str) -> Result<BTreeSet<(u32, u32)>, ForeignError> {
         let broken = |e: XlsxError| damaged(&format!("sheet {name}"), &e);
-        let mut reader = self.book.worksheet_cells_reader(name).map_err(broken)?;
+        let mut reader = self.xlsx.worksheet_cells_reader(name).map_err(broken)?;
         let formats = reader.styles().iter().map(|style| style.number_format.as_ref());
         let is_percent: Vec<bool> =
             formats.map(|format| format.is_some_and(|format| is_percent(&format.format_code))).collect();
