@@ -89,7 +89,10 @@ impl FileColumn {
             (Some(own), _) if !is_that(unit, self.time_unit) => {
                 let advice = match want {
                     Want::Mapped(mapping) => format!("write unit = \"{}\" in {}", own.symbol(), mapping.place),
-                    _ => format!("head the column `name [{}]`, or `name` alone", own.symbol()),
+                    Want::Number { name, .. } if is_time => {
+                        format!("head the column `{name} [{}]`, or `{name}` alone", own.symbol())
+                    }
+                    _ => "write it as numbers in that unit, or as text".to_owned(),
                 };
                 Err(refuse(format!(" is of the type {}, and {} is stated; {advice}", kind.name(), stated())))
             }

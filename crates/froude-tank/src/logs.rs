@@ -11,6 +11,7 @@ use froude_identify::method::MethodError;
 use froude_identify::runs::{files, logs_in, recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
 use froude_identify::wild;
+use froude_records::RecordError;
 use froude_records::campaign::{BudgetEntry, Shared, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::clocks::is_own;
@@ -235,7 +236,7 @@ pub(crate) fn is_of_all_runs(entry: &BudgetEntry) -> Result<(), MethodError> {
 pub(crate) fn paths_in(folder: &Path, method: &str) -> Result<Vec<PathBuf>, MethodError> {
     let mut out = logs_in(folder)?;
     for path in files(&[folder.to_owned()])? {
-        if path.is_file() && recorded_of(&path).is_some_and(|of| of == method) {
+        if path.is_file() && recorded_of(&path)?.is_some_and(|of| of == method) {
             out.push(path);
         }
     }
@@ -250,15 +251,18 @@ pub(crate) fn paths_in(folder: &Path, method: &str) -> Result<Vec<PathBuf>, Meth
     Ok(out)
 }
 
-/// The method that a recorded run says it is of.
-fn recorded_of(log: &Path) -> Option<String> {
+/// The method that a recorded run says it is of; an error where another program recorded it.
+fn recorded_of(log: &Path) -> Result<Option<String>, MethodError> {
     let sidecar = log.with_extension("toml");
     let meta = if sidecar.exists() {
         read_run_meta(&sidecar).ok()
     } else {
-        RunReader::open(log).ok()?.read_all().ok().map(|log| log.meta)
+        match RunReader::open(log) {
+            Err(error @ RecordError::ForeignLog { .. }) => return Err(error.into()),
+            read => read.and_then(RunReader::read_all).ok().map(|log| log.meta),
+        }
     };
-    meta.map(|meta| meta.method)
+    Ok(meta.map(|meta| meta.method))
 }
 
 /// Reads a log of any kind; one that Froude recorded as it is.

@@ -149,13 +149,15 @@ pub fn folder(path: &Path) -> Result<Inspection, MethodError> {
     let is_towed = metas.iter().any(|meta| meta.method == TOW);
     let together =
         if is_towed { format!("froude carriage drag {shown} reduces them together; ") } else { String::new() };
-    let facts = vec![
+    let mut facts = vec![
         ("campaign".to_owned(), each(&|meta| format!("of {:?}", meta.campaign))),
         ("runs".to_owned(), each(&|meta| meta.status.name().to_owned()) + &aside),
         ("methods".to_owned(), each(&|meta| named(&meta.method).to_owned())),
         ("roles".to_owned(), each(&|meta| meta.role.name().to_owned())),
         ("next".to_owned(), format!("{together}froude inspect {} shows one", first.display())),
     ];
+    // Of files that cannot be read, nothing is known.
+    facts.retain(|(_, value)| !value.is_empty());
     Ok(Inspection::new("runs", facts, findings))
 }
 

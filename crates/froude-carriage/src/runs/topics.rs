@@ -49,3 +49,26 @@ fn described(part: &Part) -> String {
         part.columns.iter().map(|column| column.name.as_str()).filter(|name| *name != "time").collect();
     format!("{}{duration}: {}", counted(times.len(), "message", "messages"), fields.join(", "))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn topics_are_listed_with_their_rates_and_nothing_is_invented() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/foreign_logs/json.mcap");
+        let found = inspect(&path).unwrap();
+        let fact = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+        assert_eq!(found.kind, "topics");
+        assert_eq!(
+            found.facts[..2],
+            [
+                fact("log", "of another program, with 2 topics that can be read"),
+                fact("/force", "10 messages at 100.0 Hz, 0.090 s: f.x, f.y, raw_0, raw_1"),
+            ]
+        );
+        assert!(
+            found.findings.iter().any(|finding| finding.message.starts_with("topic /proto is not read (1 message): "))
+        );
+    }
+}

@@ -28,7 +28,7 @@ fn numbers<'a>(table: &'a Table, name: &str) -> &'a [f64] {
 fn texts(table: &Table, name: &str) -> Vec<String> {
     let column = table.columns.iter().find(|column| column.name == name).unwrap();
     let ColumnData::Text(cells) = &column.data else { panic!("{name} is numbers") };
-    cells.iter().map(|cell| cell.to_string()).collect()
+    cells.iter().map(ToString::to_string).collect()
 }
 
 /// Without the folder.
@@ -115,12 +115,12 @@ fn types_that_are_not_what_is_stated_are_refused_with_both() {
         (
             "contradiction",
             "contradiction.parquet: column `time [ms]` is of the type duration[us], and the unit ms is stated; head the column \
-             `name [us]`, or `name` alone",
+             `time [us]`, or `time` alone",
         ),
         (
             "stamp_for_force",
-            "stamp_for_force.parquet: column `f_x [N]` is of the type timestamp[us], and the unit N is stated; head the column \
-             `name [us]`, or `name` alone",
+            "stamp_for_force.parquet: column `f_x [N]` is of the type timestamp[us], and the unit N is stated; write it as numbers in that \
+             unit, or as text",
         ),
         (
             "dates_for_time",
@@ -230,6 +230,46 @@ fn the_older_annotations_mean_the_same() {
         writer.close().unwrap();
         let table = read_table(&path, None).unwrap();
         assert_eq!(numbers(&table, name.split(' ').next().unwrap()), expected, "{converted}");
+    }
+}
+
+/// Arrow has durations and Parquet has none: without Arrow's schema nobody knows what an integer of 64 bits is.
+#[test]
+fn integers_whose_type_cannot_be_read_are_no_times() {
+    use parquet::file::metadata::KeyValue;
+    use parquet::file::properties::WriterProperties;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.parquet");
+    for (header, is_read) in [("time [us]", false), ("n [1]", true)] {
+        let field = Type::primitive_type_builder(header, parquet::basic::Type::INT64)
+            .with_repetition(parquet::basic::Repetition::REQUIRED)
+            .build()
+            .unwrap();
+        let schema = Type::group_type_builder("schema").with_fields(vec![Arc::new(field)]).build().unwrap();
+        let entry = KeyValue::new("ARROW:schema".to_owned(), "/////zAA".to_owned());
+        let properties = WriterProperties::builder().set_key_value_metadata(Some(vec![entry])).build();
+        let file = std::fs::File::create(&path).unwrap();
+        let mut writer = SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties)).unwrap();
+        let mut group = writer.next_row_group().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<Int64Type>().write_batch(&[1, 2], None, None).unwrap();
+        column.close().unwrap();
+        group.close().unwrap();
+        writer.close().unwrap();
+        match read_table(&path, None) {
+            Ok(table) => assert!(is_read && numbers(&table, "n") == [1.0, 2.0]),
+            Err(error) => assert_eq!(
+                (is_read, error.to_string()),
+                (
+                    false,
+                    format!(
+                        "{}: column `time [us]` holds integers that may be durations: the unit of such a type stands in the file's \
+                         ARROW:schema, which cannot be read; write the column as double",
+                        path.display()
+                    )
+                )
+            ),
+        }
     }
 }
 
