@@ -1,4 +1,8 @@
 //! Files of other programs as named columns. Nothing is interpreted here: names, units and numbers are those of the file.
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod openfast;
+pub mod refused;
 
 /// A table in a file: a sheet, a group of channels, a topic, a structure.
 #[derive(Debug, Clone, PartialEq, Default)]
