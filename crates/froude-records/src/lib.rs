@@ -61,6 +61,7 @@ pub mod schema;
 pub mod section;
 pub mod section_values;
 pub mod sidecar;
+pub mod starter;
 pub mod table;
 pub mod table_file;
 pub mod text;
