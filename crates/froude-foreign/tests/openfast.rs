@@ -1,4 +1,5 @@
 //! Output of OpenFAST as the program lays it out.
+#![allow(clippy::panic, clippy::unwrap_used)]
 
 use froude_foreign::{Cells, openfast};
 

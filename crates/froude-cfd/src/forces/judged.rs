@@ -37,7 +37,7 @@ pub(super) struct Even {
     samples: Vec<Sample>,
     /// Rows that they are made of.
     pub(super) rows: usize,
-    /// Whether the steps were uneven, and the loads taken at even times by straight lines.
+    /// Whether the steps were uneven, and the samples are means over even stretches.
     pub(super) is_resampled: bool,
 }
 
@@ -105,7 +105,7 @@ pub(super) fn norm(loads: &Loads) -> f64 {
     loads[..3].iter().map(|f| f * f).sum::<f64>().sqrt()
 }
 
-/// Samples at even times: as they are where they are so already and few enough, else by straight lines between them. Means are those of time, and a solver that adapts its step has more samples where it is shorter.
+/// Samples at even times: as they are where they are so already and few enough, else means over even stretches. Means of loads are those over time, and a solver that adapts its step has more samples where it is shorter.
 ///
 /// # Errors
 ///
@@ -123,23 +123,28 @@ pub(super) fn even(samples: Vec<Sample>) -> Result<Even, String> {
     if is_even && rows <= MAX_SAMPLES {
         return Ok(Even { samples, rows, is_resampled: false });
     }
+    // Means over stretches of one length each, of straight lines between the samples: they have the mean over time exactly.
     let count = rows.min(MAX_SAMPLES);
-    let step = (last.time - first.time) / (count - 1).max(1) as f64;
-    let mut even = Vec::with_capacity(count);
-    let mut at = 0;
+    let length = (last.time - first.time) / count as f64;
+    let (mut even, mut at, mut before) = (Vec::with_capacity(count), 0, [0.0; 6]);
+    let mut passed = [0.0; 6];
     for i in 0..count {
-        let time = first.time + step * i as f64;
-        while samples.get(at + 1).is_some_and(|next| next.time < time) && at + 2 < rows {
+        let end = first.time + length * (i + 1) as f64;
+        while let (Some(a), Some(b)) = (samples.get(at), samples.get(at + 1))
+            && b.time <= end
+            && at + 2 < rows
+        {
+            let (own, next) = (a.total(), b.total());
+            passed = std::array::from_fn(|k| passed[k] + 0.5 * (b.time - a.time) * (own[k] + next[k]));
             at += 1;
         }
         let (Some(a), Some(b)) = (samples.get(at), samples.get(at + 1)) else { break };
-        let part = ((time - a.time) / (b.time - a.time)).clamp(0.0, 1.0);
-        let between = |a: &Loads, b: &Loads| std::array::from_fn(|k| a[k] + part * (b[k] - a[k]));
-        even.push(Sample {
-            time,
-            pressure: between(&a.pressure, &b.pressure),
-            viscous: between(&a.viscous, &b.viscous),
-        });
+        let (own, next, since) = (a.total(), b.total(), end - a.time);
+        let part = since / (b.time - a.time);
+        let until: Loads = std::array::from_fn(|k| passed[k] + since * (own[k] + 0.5 * part * (next[k] - own[k])));
+        let mean = std::array::from_fn(|k| (until[k] - before[k]) / length);
+        even.push(Sample { time: end - 0.5 * length, pressure: mean, viscous: [0.0; 6] });
+        before = until;
     }
     Ok(Even { samples: even, rows, is_resampled: !is_even })
 }
@@ -200,6 +205,6 @@ mod tests {
         assert!(even(samples.clone()).unwrap().is_resampled);
         let found = judged(samples, None).unwrap();
         assert_eq!(found.status, Status::Oscillating);
-        assert!((found.window.mean[0] - 1.3).abs() < 0.05, "{}", found.window.mean[0]);
+        assert!((found.window.mean[0] - 1.3).abs() < 0.01, "{}", found.window.mean[0]);
     }
 }

@@ -194,7 +194,12 @@ fn by_inflow(folder: &Path, spec: &ForcesSpec) -> Result<Settings, MethodError> 
         if w.abs() > LEVEL * speed_m_s {
             return Err(refuse("the inflow in 0/U has a part along the body's vertical, which is not read"));
         }
-        let angle_rad = if v.abs() <= LEVEL * speed_m_s { (-0.0_f64).atan2(u).abs() } else { (-v).atan2(u) };
+        // Straight ahead and astern exactly: the rounding of an inflow is no drift.
+        let angle_rad = match v.abs() <= LEVEL * speed_m_s {
+            true if u >= 0.0 => 0.0,
+            true => std::f64::consts::PI,
+            false => (-v).atan2(u),
+        };
         out.cases.push(Setting { name, folder: path.clone(), speed_m_s, angle_rad, configuration: String::new() });
     }
     Ok(out)
