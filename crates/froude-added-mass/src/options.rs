@@ -239,6 +239,20 @@ fn axes(text: &str) -> Result<Axes, String> {
     }
 }
 
+/// What to write instead of options under their former names `--z` and `--origin`, with the values that they were given; `None` of neither.
+#[must_use]
+pub fn renamed(z: Option<&str>, origin: Option<&str>) -> Option<String> {
+    if let Some(z) = z {
+        let up = if z == "down" { "--up -z" } else { "--up z" };
+        return Some(format!(
+            "--z is now --up: write {up} for how the mesh lies, and --axes ned or enu for the axes of the result"
+        ));
+    }
+    let origin = origin?;
+    let at = if origin.trim() == "buoyancy" { "cb".to_owned() } else { format!("{origin:?}") };
+    Some(format!("--origin is now --at: write --at {at}"))
+}
+
 fn direction(text: &str) -> Result<Direction, String> {
     let axis = ["x", "y", "z"].iter().position(|letter| text.trim_start_matches('-') == *letter);
     axis.filter(|_| !text.starts_with("--"))

@@ -19,6 +19,7 @@
 //! | [`flow_field`] | pressure and velocity of a solved case, on its mesh |
 //! | [`foam_case`] | a case's folder as OpenFOAM wants it, with its [start and boundary](foam_fields), its [schemes](foam_system), its [mesh](foam_mesh) |
 //! | [`foam_solver`] | OpenFOAM as the solver of a campaign |
+//! | [`forces`] | force files of cases that others computed, as a source |
 //! | [`grid_error`] | how far a result is from that of infinitely many cells |
 //! | [`history`] | forces and moments of each iteration, read |
 //! | [`judge`] | converged, oscillating, diverged or failed: on forces, over a [`window`] |
@@ -153,6 +154,22 @@ mod workers {
     pub mod work;
 }
 
+// Force files of cases that others computed.
+pub mod forces {
+    //! Force files of OpenFOAM cases of others: read, joined and judged, as a source of `froude identify` ([`source`]).
+
+    mod coefficients;
+    mod convert;
+    mod dat;
+    mod files;
+    pub mod inspect;
+    mod judged;
+    pub mod keys;
+    mod page;
+    mod pattern;
+    mod settings;
+    pub mod source;
+}
 pub mod verb;
 
 pub use fields::*;

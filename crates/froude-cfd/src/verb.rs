@@ -26,7 +26,9 @@ use self::collect::collected;
 use crate::store::Store;
 
 pub use self::computed::Computed;
+pub(crate) use self::computed::is_of_a_rig;
 pub use self::error::VerbError;
+pub(crate) use self::loads::{LOADS, unit};
 pub use self::plan::plan;
 pub use self::report::report;
 pub use self::run::{Engine, Job, Running, SlurmOptions, run, run_case};

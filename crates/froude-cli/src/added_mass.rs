@@ -1,6 +1,6 @@
 //! `froude added-mass`: parse, call, print.
 
-use froude::methods::added_mass::options::{Asked, weld_m};
+use froude::methods::added_mass::options::{Asked, renamed, weld_m};
 use froude::methods::added_mass::record::{place_in, replaces_another_frame};
 use froude::methods::added_mass::verb::{check, put_right};
 use froude::pipeline::{Input, Job};
@@ -11,7 +11,9 @@ use crate::out::{note, say};
 use crate::print::{self, Form};
 
 pub fn added_mass(args: AddedMassArgs, form: Form) -> Result<(), Failure> {
-    renamed(&args)?;
+    if let Some(why) = renamed(args.z.as_deref(), args.origin.as_deref()) {
+        return Err(Failure::refused(why));
+    }
     if let Some(target) = &args.repair {
         let asked = Asked::read(&args.input, &args.options.0)?;
         let weld_m = args.weld.as_deref().map(weld_m).transpose()?;
@@ -35,19 +37,4 @@ pub fn added_mass(args: AddedMassArgs, form: Form) -> Result<(), Failure> {
         None => {}
     }
     print::answer(&outcome.outcome(), form)
-}
-
-/// What an option was called before says what it is called now.
-fn renamed(args: &AddedMassArgs) -> Result<(), Failure> {
-    if let Some(z) = &args.z {
-        let up = if z == "down" { "--up -z" } else { "--up z" };
-        return Err(Failure::refused(format_args!(
-            "--z is now --up: write {up} for how the mesh lies, and --axes ned or enu for the axes of the result"
-        )));
-    }
-    if let Some(origin) = &args.origin {
-        let at = if origin.trim() == "buoyancy" { "cb".to_owned() } else { format!("{origin:?}") };
-        return Err(Failure::refused(format_args!("--origin is now --at: write --at {at}")));
-    }
-    Ok(())
 }

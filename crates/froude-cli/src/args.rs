@@ -87,6 +87,16 @@ pub enum Verb {
         #[arg(long)]
         sidecar: Option<PathBuf>,
     },
+    /// Write a commented campaign of one kind, with only the keys that matter, to be filled in.
+    #[command(after_help = froude::records::starter::help())]
+    New {
+        /// What the campaign is of.
+        #[arg(value_parser = froude::records::starter::kinds())]
+        kind: String,
+        /// Folder to write into; nothing in it is replaced.
+        #[arg(long, default_value = ".")]
+        out: PathBuf,
+    },
     /// Show the run matrix of a campaign, its time in the tank, and the interval to expect of each coefficient.
     #[command(after_help = "Example: froude plan campaign.toml")]
     Plan {

@@ -9,8 +9,8 @@ use froude::fit::budget::Uncertain;
 use froude::methods::carriage::{axis::source::Servo, drag::calibration::source::KnownWeights};
 use froude::pipeline::{Input, Job};
 use froude::records::block::Block;
+use froude::records::given_option::length_m;
 use froude::records::outcome::Outcome;
-use froude::records::units::{Dimension, parse_quantity};
 use froude::rig::carriage::plan::Step;
 
 use crate::args::{CarriageJob, Experiment};
@@ -99,14 +99,8 @@ fn servo(input: &[PathBuf], out: Option<PathBuf>) -> Result<Job, Failure> {
     })
 }
 
-/// A length as somebody typed it, m.
-fn length(option: &str, text: &str) -> Result<f64, Failure> {
-    parse_quantity(text)
-        .and_then(|q| q.expect(Dimension::LENGTH))
-        .map_err(|error| Failure::refused(format_args!("{option} {text:?}: {error}; write a length, \"2.000 m\"")))
-}
-
 fn encoder_scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) -> Result<Block, Failure> {
+    let length = |option, text: &str| length_m(option, text).map_err(Failure::refused);
     let known = Uncertain::new(length("--measured", measured)?, length("--measured-standard", standard)?);
     let counted_m = counted.iter().map(|text| length("--counted", text)).collect::<Result<Vec<_>, _>>()?;
     scale(paths, known, &counted_m)?.ok_or_else(|| Failure::refused("the runs do not state which rig they come from"))

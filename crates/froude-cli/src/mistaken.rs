@@ -5,6 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
+use froude::cfd::forces::inspect::{DatFile, dat_file};
+
 use crate::failure::Failure;
 
 /// What a file or a folder is, by its name and its first words.
@@ -194,7 +196,8 @@ fn kind_of(path: &Path) -> Option<Kind> {
         "csv" | "parquet" => Some(Kind::Table),
         "json" => Some(Kind::Record),
         "mcap" => Some(Kind::Run),
-        "stl" | "obj" | "ply" | "gdf" | "dat" | "msh" => Some(Kind::Mesh),
+        "stl" | "obj" | "ply" | "gdf" | "msh" => Some(Kind::Mesh),
+        "dat" => (dat_file(path)? == DatFile::Mesh).then_some(Kind::Mesh),
         "urdf" => Some(Kind::Robot),
         "toml" => kind_of_toml(path),
         _ => None,

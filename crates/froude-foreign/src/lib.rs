@@ -13,6 +13,7 @@
 //! than 50 million cells are rejected, and no file makes a reader panic or allocate what its size does not justify.
 //!
 //! Not covered: writing, and what a column means.
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod compound;
 mod guard;
@@ -33,6 +34,8 @@ pub mod decode;
 pub mod layout;
 pub mod marks;
 pub mod split;
+
+pub mod refused;
 
 /// A table in a file: a sheet, a group of channels, a topic, a structure.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -44,6 +44,16 @@ fn listed(folder: &Path) -> Result<Vec<PathBuf>, MethodError> {
     Ok(entries.filter_map(Result::ok).map(|e| e.path()).collect())
 }
 
+/// A file of a folder that `is_known` does not know by its name; `None` where the folder is empty or not there.
+///
+/// # Errors
+///
+/// A folder that cannot be listed.
+pub fn first_other(folder: &Path, is_known: impl Fn(&str) -> bool) -> Result<Option<PathBuf>, MethodError> {
+    let is_other = |path: &PathBuf| path.file_name().is_none_or(|name| !is_known(&name.to_string_lossy()));
+    Ok(if folder.exists() { listed(folder)?.into_iter().find(is_other) } else { None })
+}
+
 /// The log that a sidecar belongs to; `None` for any other file.
 fn log_of_sidecar(file: &Path) -> Option<PathBuf> {
     let log = file.with_extension("mcap");

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use froude_foreign::{Cells, Contents, Part};
+use froude_foreign::{Cells, Contents, ForeignError, Part, hdf5, mat5, mcap, tdms, ulog};
 
 use crate::assemble::{Room, Want, assemble, plan};
 use crate::csv_table::Blanks;
@@ -10,23 +10,18 @@ use crate::error::{Place, RecordError};
 use crate::file_words::{FileWords, sidecar_name};
 use crate::heading::{Heading, rename_sname};
 use crate::raw_column::Raw;
+use crate::read;
+use crate::reading::Reading;
+use crate::records::Dialect;
 use crate::sidecar::Sidecar;
 use crate::table::Table;
 use crate::text::counted;
 
-/// The table that is meant of a file's contents; numbers that are not there are an error without a place for them.
-pub(crate) fn table(
-    path: &Path,
-    contents: Contents,
-    sidecar: Option<&Sidecar>,
-    mut blank: Option<&mut Blanks>,
-) -> Result<Table, RecordError> {
-    let unstated = FileWords::default();
-    let file = sidecar.map_or(&unstated, |sidecar| &sidecar.file);
+/// The part of a file that is meant, its headings, and what is to be said of the file.
+fn meant(path: &Path, contents: Contents, file: &FileWords) -> Result<(Part, Vec<Heading>, Vec<String>), RecordError> {
     let several = contents.parts.len() > 1;
-    let mut words: Vec<String> =
-        contents.left_out.iter().map(|left| format!("{} left out: {}", left.name, left.reason)).collect();
-    words.extend(contents.notes.iter().cloned());
+    let left_out = contents.left_out.iter().map(|left| format!("{} left out: {}", left.name, left.reason));
+    let mut words: Vec<String> = left_out.chain(contents.notes.iter().cloned()).collect();
     let part = chosen(path, contents.parts, file)?;
     if several {
         words.insert(0, format!("part {:?}", part.name));
@@ -35,6 +30,57 @@ pub(crate) fn table(
         part.columns.iter().map(|column| Heading::stated(&column.name, &column.unit)).collect();
     let sname = rename_sname(&mut headings);
     words.extend(sname.iter().map(|(letter, name)| format!("{letter} by SNAME as {name}")));
+    Ok((part, headings, words))
+}
+
+/// How a file of named columns is understood.
+pub(crate) fn look(path: &Path, file: &FileWords) -> Result<Reading, RecordError> {
+    let (part, headings, words) = meant(path, contents(path)?, file)?;
+    let is_number = part.columns.iter().map(|column| matches!(column.cells, Cells::Numbers(_))).collect();
+    Ok(Reading {
+        dialect: Dialect::own(),
+        headings,
+        is_number,
+        place: Place::whole(path),
+        at: 0,
+        line: 1,
+        words,
+        undecided: None,
+    })
+}
+
+/// The tables of a file of named columns.
+///
+/// # Errors
+///
+/// Whatever the reader of the format finds.
+fn contents(path: &Path) -> Result<Contents, RecordError> {
+    let refuse = |error: ForeignError| RecordError::syntax(Place::whole(path), format!("the file {error}"));
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if ending == "mcap" {
+        let mut file = read::open(path)?;
+        let bytes = file.metadata().map_or(0, |data| data.len());
+        return mcap::read(&mut file, bytes).map_err(refuse);
+    }
+    let bytes = read::whole(path, froude_foreign::MAX_BYTES, "a file of named columns")?;
+    match ending.as_str() {
+        "mat" if mat5::is_mat5(&bytes) => mat5::read(&bytes),
+        "tdms" => tdms::read(&bytes),
+        "ulg" => ulog::read(&bytes),
+        _ => hdf5::read(bytes),
+    }
+    .map_err(refuse)
+}
+
+/// Reads the table that is meant of a file; numbers that are not there are an error without a place for them.
+pub(crate) fn read_columns(
+    path: &Path,
+    sidecar: Option<&Sidecar>,
+    mut blank: Option<&mut Blanks>,
+) -> Result<Table, RecordError> {
+    let unstated = FileWords::default();
+    let file = sidecar.map_or(&unstated, |sidecar| &sidecar.file);
+    let (part, headings, words) = meant(path, contents(path)?, file)?;
     let place = Place::whole(path);
     let header: Vec<String> = headings.iter().map(Heading::header).collect();
     let fitted = sidecar.map(|sidecar| sidecar.fitted(&headings)).transpose()?;

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::error::Place;
+use crate::units::{Dimension, parse_quantity};
 
 /// An option as it was given.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,4 +24,15 @@ impl fmt::Display for GivenOption {
             None => write!(f, "--{} {:?}", self.name.replace('_', "-"), self.text),
         }
     }
+}
+
+/// A length that was typed as the value of an option, m.
+///
+/// # Errors
+///
+/// It is not a length; the message has the option, what was typed, and what to write.
+pub fn length_m(option: &str, text: &str) -> Result<f64, String> {
+    parse_quantity(text)
+        .and_then(|quantity| quantity.expect(Dimension::LENGTH))
+        .map_err(|error| format!("{option} {text:?}: {error}; write a length, \"2.000 m\""))
 }

@@ -76,6 +76,7 @@ pub mod section_values;
 mod sheet_table;
 pub mod sidecar;
 pub mod sidecar_file;
+pub mod starter;
 pub mod table;
 pub mod table_file;
 pub mod text;

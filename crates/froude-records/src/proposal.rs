@@ -3,20 +3,21 @@
 use std::path::{Path, PathBuf};
 
 use froude_foreign::layout::is_missing;
-use froude_foreign::split::rows;
+use froude_foreign::split::{Row, rows};
 
 use crate::csv_table::text;
-use crate::error::RecordError;
+use crate::error::{Place, RecordError};
 use crate::file_words::{FileWords, is_summary, sentinel};
 use crate::foreign_names::meant_without_unit;
 use crate::heading::Heading;
 use crate::known_columns::{is_text_column, usual_unit};
-use crate::read;
 use crate::reading::Reading;
 use crate::records::Skipped;
+use crate::table_file::Format;
 use crate::toml_text::{key_word, quoted};
 use crate::units::parse_unit;
 use crate::write::Prepared;
+use crate::{container_table, read, sheet_table};
 
 /// The largest file that is looked at for a proposal.
 const LARGEST_BYTES: u64 = 2 << 30;
@@ -40,16 +41,32 @@ pub fn write_sidecar(table: &Path) -> Result<PathBuf, RecordError> {
     Ok(path)
 }
 
-/// The proposal for a table of text.
+/// The proposal for a table.
 ///
 /// # Errors
 ///
 /// A table that cannot be looked at.
 pub fn sidecar(table: &Path) -> Result<String, RecordError> {
-    let bytes = read::whole(table, LARGEST_BYTES, "a table")?;
     let unstated = FileWords::default();
-    let decoded = text(table, &bytes, &unstated)?;
-    let reading = Reading::of(table, &decoded, &unstated)?;
+    match Format::of(table)? {
+        Format::Text => {
+            let bytes = read::whole(table, LARGEST_BYTES, "a table")?;
+            let decoded = text(table, &bytes, &unstated)?;
+            let reading = Reading::of(table, &decoded, &unstated)?;
+            let end = decoded.text.floor_char_boundary(SAMPLE_BYTES);
+            let rows = rows(&decoded.text[..end], reading.dialect.separator);
+            Ok(proposed(table, &reading, &rows))
+        }
+        Format::Sheet => sheet_table::look(table, &unstated).map(|(rows, reading)| proposed(table, &reading, &rows)),
+        Format::Columns => container_table::look(table, &unstated).map(|reading| proposed(table, &reading, &[])),
+        Format::Parquet => {
+            let problem = "a sidecar is proposed for text, spreadsheets and logs; name the columns of a Parquet file as `speed [m/s]`";
+            Err(RecordError::syntax(Place::whole(table), problem))
+        }
+    }
+}
+
+fn proposed(table: &Path, reading: &Reading, rows: &[Row<'_>]) -> String {
     let name = table.file_name().unwrap_or_default().to_string_lossy();
     let mut out = format!(
         "# What the columns of {name} are: a proposal. Check every line, correct it, and delete what you do not need.\n"
@@ -61,18 +78,16 @@ pub fn sidecar(table: &Path) -> Result<String, RecordError> {
     if reading.headings.iter().any(|heading| target(heading) == Some("time")) {
         out += "# Where this is the log of a run: which method it belongs to and what it is for there.\n# method = \"free-decay\"\n# role = \"test\"\n";
     }
-    out += &of_file(&reading, &decoded.text);
+    out += &of_file(reading, rows);
     out += "\n[columns]\n# name: what Froude calls it; unit: of the numbers in the file; sign = -1 where the file counts against Froude's axes\n# (x forward, y to starboard, z down; loads are those of the water on the body).\n";
     for heading in &reading.headings {
-        out += &line(heading, &reading);
+        out += &line(heading, reading);
     }
-    Ok(out)
+    out
 }
 
 /// `[file]`, where something about it has to be stated.
-fn of_file(reading: &Reading, text: &str) -> String {
-    let end = text.floor_char_boundary(SAMPLE_BYTES);
-    let rows = rows(&text[..end], reading.dialect.separator);
+fn of_file(reading: &Reading, rows: &[Row<'_>]) -> String {
     let data = || rows.iter().filter(|row| !row.is_comment && row.line >= reading.line);
     let (mut missing, mut sums) = (Vec::<String>::new(), Vec::<String>::new());
     for row in data() {
@@ -81,9 +96,7 @@ fn of_file(reading: &Reading, text: &str) -> String {
             sums.push(first);
         }
     }
-    let is_sum = |row: &froude_foreign::split::Row<'_>| {
-        row.cells.iter().find(|cell| !cell.is_empty()).is_some_and(|cell| is_summary(cell))
-    };
+    let is_sum = |row: &Row<'_>| row.cells.iter().find(|cell| !cell.is_empty()).is_some_and(|cell| is_summary(cell));
     for at in (0..reading.headings.len()).filter(|at| reading.is_number.get(*at) == Some(&true)) {
         let cells: Vec<_> = data().filter(|row| !is_sum(row)).filter_map(|row| row.cells.get(at)).collect();
         let words = cells.iter().filter(|cell| !cell.is_empty() && is_missing(cell)).map(ToString::to_string);

@@ -6,7 +6,7 @@ pub const ESTIMATE_JSON_SCHEMA: &str = include_str!("../schemas/estimate-2.schem
 pub const ESTIMATE_1_JSON_SCHEMA: &str = include_str!("../schemas/estimate-1.schema.json");
 
 /// What each verb prints with `--json`, by its name: the record, or the JSON Schema of its blocks.
-pub const RESULTS: [(&str, &str); 17] = [
+pub const RESULTS: [(&str, &str); 18] = [
     ("identify", ESTIMATE_JSON_SCHEMA),
     ("added-mass-check", include_str!("../schemas/results/added-mass-check.json")),
     ("cfd-collect", include_str!("../schemas/results/cfd-collect.json")),
@@ -18,6 +18,7 @@ pub const RESULTS: [(&str, &str); 17] = [
     ("cfd-suggest", include_str!("../schemas/results/cfd-suggest.json")),
     ("cfd-swing", include_str!("../schemas/results/cfd-swing.json")),
     ("inspect", include_str!("../schemas/results/inspect.json")),
+    ("new", include_str!("../schemas/results/new.json")),
     ("plan", include_str!("../schemas/results/plan.json")),
     ("predict", include_str!("../schemas/results/predict.json")),
     ("robot-inspect", include_str!("../schemas/results/robot-inspect.json")),

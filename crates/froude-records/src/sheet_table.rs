@@ -35,9 +35,9 @@ pub(crate) fn read_sheet(
         let columns = sidecar.map(|sidecar| sidecar.fitted(&reading.headings)).transpose()?;
         let head = Head::of(path, &reading, columns.as_ref(), file)?;
         let mut below =
-            Below { rows: rows.iter().filter(|row| row.line >= reading.line), skipped: Skipped::default(), pending: 0 };
+            Below { rows: rows.iter().filter(|row| row.line >= reading.line) };
         let found = head.rows(&mut below, blank)?;
-        let understood = reading.understood(below.skipped, found.left_out());
+        let understood = reading.understood(Skipped::default(), found.left_out());
         Ok(Table { understood, sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..head.table(found)? })
     };
     parse().map_err(|first| obstacles::of(path, &rows, &reading, sidecar, first))
@@ -138,8 +138,6 @@ const MOST_HEADS: usize = 20;
 /// The rows below the names.
 struct Below<I> {
     rows: I,
-    skipped: Skipped,
-    pending: usize,
 }
 
 impl<'a, I: Iterator<Item = &'a Row<'static>>> NextRow<'a> for Below<I> {
@@ -147,7 +145,6 @@ impl<'a, I: Iterator<Item = &'a Row<'static>>> NextRow<'a> for Below<I> {
         let Some(row) = self.rows.next() else { return Ok(None) };
         cells.clear();
         cells.extend(row.cells.iter().map(|cell| Cow::Borrowed(cell.as_ref())));
-        self.skipped.blank += std::mem::take(&mut self.pending);
         Ok(Some(row.line))
     }
 }

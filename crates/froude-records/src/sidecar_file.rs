@@ -134,7 +134,7 @@ mod tests {
         write("run_1.csv", "t (ms),F (N)\n0,1\n10,2\n");
         write("run_2.csv", "t (ms),F (N)\n0,3\n10,4\n");
         write("other.csv", "time [s],f_x [N]\n0,3\n");
-        write("runs.csv", "file,speed [m/s],role,who\nrun_1.csv,0.5,test,me\nrun_2.csv,1,zero,you\n");
+        write("runs.csv", "file,speed [m/s],role,who\nrun_1.csv,0.5,test,me\nrun_2.csv,1,still,you\n");
         write(
             "logs.toml",
             "schema = 1\nfiles = \"run_*.csv\"\nlist = \"runs.csv\"\nmethod = \"steady\"\n[columns]\n\
@@ -142,7 +142,7 @@ mod tests {
         );
         let of = |name: &str| sidecar_of(&folder.path().join(name), None);
         let second = of("run_2.csv").unwrap().unwrap();
-        assert_eq!((second.run.conditions["speed"].value, second.run.role), (1.0, Some(Role::Zero)));
+        assert_eq!((second.run.conditions["speed"].value, second.run.role), (1.0, Some(Role::Still)));
         let table = read_table(&folder.path().join("run_1.csv"), None).unwrap();
         assert_eq!(table.number("time", crate::units::Dimension::TIME).unwrap(), [0.0, 0.01]);
         assert_eq!(table.number("f_x", crate::units::Dimension::FORCE).unwrap(), [-1.0, -2.0]);

@@ -1,11 +1,12 @@
 //! Tables by the ending of their file.
 
+use std::io::Read as _;
 use std::path::Path;
 
-use froude_foreign::{Contents, ForeignError, hdf5, mat5, tdms, ulog};
+use froude_foreign::refused::refusal_for;
 
 use crate::csv_table::Blanks;
-use crate::error::{Place, RecordError};
+use crate::error::RecordError;
 use crate::sidecar_file::sidecar_of;
 use crate::table::Table;
 use crate::write::Prepared;
@@ -45,31 +46,17 @@ fn read(path: &Path, sidecar: Option<&Path>, blank: Option<&mut Blanks>) -> Resu
             }
         },
         Format::Sheet => sheet_table::read_sheet(path, mapping, blank),
-        Format::Columns => container_table::table(path, contents(path)?, mapping, blank),
+        Format::Columns => container_table::read_columns(path, mapping, blank),
     }
 }
 
-/// The tables of a file of named columns.
-///
-/// # Errors
-///
-/// Another ending, and whatever the reader of the format finds.
-pub fn contents(path: &Path) -> Result<Contents, RecordError> {
-    let refuse = |error: ForeignError| RecordError::syntax(Place::whole(path), format!("the file {error}"));
-    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if ending == "mcap" {
-        let mut file = read::open(path)?;
-        let bytes = file.metadata().map_or(0, |data| data.len());
-        return froude_foreign::mcap::read(&mut file, bytes).map_err(refuse);
+/// The beginning of a file; nothing where it cannot be read.
+fn first_bytes(path: &Path) -> Vec<u8> {
+    let mut first = Vec::new();
+    if let Ok(file) = read::open(path) {
+        let _ = file.take(64).read_to_end(&mut first);
     }
-    let bytes = read::whole(path, froude_foreign::MAX_BYTES, "a file of named columns")?;
-    match ending.as_str() {
-        "mat" if mat5::is_mat5(&bytes) => mat5::read(&bytes),
-        "tdms" => tdms::read(&bytes),
-        "ulg" => ulog::read(&bytes),
-        _ => hdf5::read(bytes),
-    }
-    .map_err(refuse)
+    first
 }
 
 /// Endings of tables of text.
@@ -94,10 +81,13 @@ impl Format {
             Some("parquet") => Ok(Self::Parquet),
             Some("xlsx" | "xlsm" | "xls" | "ods") => Ok(Self::Sheet),
             Some("mat" | "h5" | "hdf5" | "tdms" | "ulg" | "mcap") => Ok(Self::Columns),
-            _ => Err(RecordError::Refused(format!(
-                "{}: tables are read from text (.csv, .txt, .dat, .tsv, .out), .parquet, spreadsheets (.xlsx, .xls, .ods), .mat, .h5, .tdms, .ulg and .mcap files",
-                path.display()
-            ))),
+            ending => {
+                let first = first_bytes(path);
+                let what = refusal_for(ending.unwrap_or_default(), &first).unwrap_or_else(|| {
+                    "tables are read from text (.csv, .txt, .dat, .tsv, .out), .parquet, spreadsheets (.xlsx, .xls, .ods), .mat, .h5, .tdms, .ulg and .mcap files".to_owned()
+                });
+                Err(RecordError::Refused(format!("{}: {what}", path.display())))
+            }
         }
     }
 }

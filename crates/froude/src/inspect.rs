@@ -20,6 +20,9 @@ use crate::{Error, method};
 ///
 /// Whatever the reader of the format finds.
 pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error> {
+    if let Some(found) = froude_cfd::forces::inspect::inspect(path)? {
+        return Ok(found);
+    }
     if path.is_dir() {
         return Ok(folder(path)?);
     }

@@ -4,10 +4,11 @@ use froude_carriage::axis::source::Servo;
 use froude_carriage::drag::calibration::source::KnownWeights;
 use froude_carriage::source::Carriage;
 use froude_carriage::tuning::source::{Resonance, Tuning};
+use froude_cfd::forces::source::OpenFoamForces;
 use froude_identify::method::Method;
 use froude_tank::{accelerated_tow, decay, excited_response, oscillation, rotation, steady, sway, weight_tow};
 
-pub(crate) const METHODS: [&dyn Method; 13] = [
+pub(crate) const METHODS: [&dyn Method; 14] = [
     &Carriage,
     &Servo,
     &KnownWeights,
@@ -21,4 +22,5 @@ pub(crate) const METHODS: [&dyn Method; 13] = [
     &weight_tow::PULLED,
     &accelerated_tow::source::ACCELERATED,
     &excited_response::source::EXCITED,
+    &OpenFoamForces,
 ];

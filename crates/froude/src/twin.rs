@@ -6,6 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use froude_identify::method::MethodError;
+use froude_identify::runs::first_other;
 use froude_identify::simulate::tables::{self, SimulateError};
 use froude_records::RecordError;
 use froude_records::block::{Block, TableBuilder};
@@ -103,15 +104,4 @@ fn inside<'a>(campaign: &Campaign, source: &'a Source) -> Result<&'a Path, Error
     let path = source.input.path();
     output::inside(&campaign.path, path, &source.place, "runs", "froude simulate")?;
     Ok(path)
-}
-
-/// A file of a folder that `is_known` does not know; `None` where the folder is empty or not there.
-fn first_other(folder: &Path, is_known: impl Fn(&str) -> bool) -> Result<Option<PathBuf>, Error> {
-    if !folder.exists() {
-        return Ok(None);
-    }
-    let failed = |source| Error::Method(MethodError::Folder { path: folder.to_owned(), source });
-    let entries = std::fs::read_dir(folder).map_err(failed)?;
-    let names = entries.filter_map(Result::ok).map(|e| e.path());
-    Ok(names.into_iter().find(|p| p.file_name().is_none_or(|name| !is_known(&name.to_string_lossy()))))
 }

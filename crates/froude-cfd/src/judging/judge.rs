@@ -10,7 +10,7 @@
 //! | drift beyond that, residuals that rise, a speed beyond 3 U, forces that are no numbers, a floating-point trap | diverged |
 //! | an error of the solver, or fewer iterations than the window | failed |
 
-use crate::case::Case;
+use crate::case::{Case, Stop};
 use crate::history::Sample;
 use crate::openfoam::End;
 use crate::outcome::{Loads, Status};
@@ -99,8 +99,9 @@ pub fn judge(case: &Case, evidence: Evidence) -> Judgement {
         return without_loads(Status::Failed, false, reason);
     }
 
-    let (standing, found) = standing(case, samples);
-    let (drift, spread) = (largest(case, &found.drift, &|_| true), largest(case, &found.spread, &|_| true));
+    let scales = case.load_scales();
+    let (standing, found) = standing(case.stop, &scales, samples);
+    let (drift, spread) = (largest(&scales, &found.drift, &|_| true), largest(&scales, &found.spread, &|_| true));
     let words = format!(
         "over {} iterations the mean force changes by {drift:.1e} of ½ρU²A and a force is at most {spread:.1e} from it",
         found.length
@@ -127,28 +128,28 @@ pub fn judge(case: &Case, evidence: Evidence) -> Judgement {
 
 /// How forces are over a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Standing {
+pub(crate) enum Standing {
     Still,
     /// They swing about a mean that stands still.
     Swings,
     Drifts,
 }
 
-/// How the forces stand, and over which window: the case's, or that doubled, and doubled again, up to half of the iterations. A cycle drifts within a window shorter than its period, and is one in a window of several. The first is that of forces that drift in all of them.
-fn standing(case: &Case, samples: &[Sample]) -> (Standing, Window) {
+/// How the forces stand over `scales`, and over which window: that of `stop`, or that doubled, and doubled again, up to half of the iterations. A cycle drifts within a window shorter than its period, and is one in a window of several. The first is that of forces that drift in all of them.
+pub(crate) fn standing(stop: Stop, scales: &Loads, samples: &[Sample]) -> (Standing, Window) {
     let of = |length: usize| {
         let found = Window::of(samples, length);
-        let (drift, spread) = (largest(case, &found.drift, &|_| true), largest(case, &found.spread, &|_| true));
-        let standing = if drift <= case.stop.drift && spread <= case.stop.spread {
+        let (drift, spread) = (largest(scales, &found.drift, &|_| true), largest(scales, &found.spread, &|_| true));
+        let standing = if drift <= stop.drift && spread <= stop.spread {
             Standing::Still
-        } else if largest(case, &found.drift, &|load| !found.is_cycle[load]) <= case.stop.drift {
+        } else if largest(scales, &found.drift, &|load| !found.is_cycle[load]) <= stop.drift {
             Standing::Swings
         } else {
             Standing::Drifts
         };
         (standing, found)
     };
-    let first = of(case.stop.window.max(4));
+    let first = of(stop.window.max(4));
     let longer = std::iter::successors(Some(2 * first.1.length), |n| Some(2 * n));
     let mut all = std::iter::once(first).chain(longer.take_while(|n| *n > 0 && 2 * n <= samples.len()).map(of));
     all.find(|(standing, _)| *standing != Standing::Drifts).unwrap_or(first)
@@ -157,13 +158,12 @@ fn standing(case: &Case, samples: &[Sample]) -> (Standing, Window) {
 /// The window that the forces of a case were judged over; `None` where there are fewer than it takes.
 #[must_use]
 pub fn judged_window(case: &Case, samples: &[Sample]) -> Option<Window> {
-    (samples.len() >= case.stop.window.max(4)).then(|| standing(case, samples).1)
+    (samples.len() >= case.stop.window.max(4)).then(|| standing(case.stop, &case.load_scales(), samples).1)
 }
 
-/// Largest of the loads that count, over ½ρU²A and, of moments, the body's length.
-fn largest(case: &Case, loads: &Loads, counts: &dyn Fn(usize) -> bool) -> f64 {
-    let scales = case.load_scales();
-    let parts = loads.iter().zip(&scales).enumerate().filter(|(load, _)| counts(*load));
+/// Largest of the loads that count, each over its scale.
+pub(crate) fn largest(scales: &Loads, loads: &Loads, counts: &dyn Fn(usize) -> bool) -> f64 {
+    let parts = loads.iter().zip(scales).enumerate().filter(|(load, _)| counts(*load));
     parts.map(|(_, (load, scale))| load.abs() / scale).fold(0.0, f64::max)
 }
 

@@ -16,6 +16,8 @@ pub struct Window {
     pub drift: Loads,
     /// Largest distance from the mean.
     pub spread: Loads,
+    /// How far the mean still has to go: the part of its error that has a sign.
+    pub still_to_go: Loads,
     /// Standard deviation of the iterative error of the mean: what its neighbours' likeness leaves of the window's scatter, and what the mean still has to go. Of forces that swing and settle at many rates, 97 in 100 are within twice as much.
     pub std_of_mean: Loads,
     /// Whether it goes to and fro about a mean that stands still: it crosses its mean four times and more, and drifts no further than such a cycle does by chance.
@@ -49,6 +51,7 @@ impl Window {
             } else {
                 still_to_go(mean(first) - mean(half_before), window.drift[load])
             };
+            window.still_to_go[load] = still_to_go;
             window.std_of_mean[load] = std.hypot(still_to_go);
         }
         window

@@ -99,7 +99,7 @@ impl Method for Computed {
 }
 
 /// Whether a finding is about the mounting of a sensor, of which a computation has none: one sign of the angle is enough, and suction at the nose pushes a body forward at large angles. That all rows point along the motion is an error whatever made them.
-fn is_of_a_rig(finding: &Finding) -> bool {
+pub(crate) fn is_of_a_rig(finding: &Finding) -> bool {
     finding.code == "one-sign-of-angle" || (finding.code == "force-along-motion" && finding.severity < Severity::Error)
 }
 

@@ -1,7 +1,7 @@
 //! Names and units of the loads of a case, and those that its domain determines.
 
 /// Loads in the order of [`Loads`].
-pub(super) const LOADS: [&str; 6] = ["f_x", "f_y", "f_z", "m_x", "m_y", "m_z"];
+pub(crate) const LOADS: [&str; 6] = ["f_x", "f_y", "f_z", "m_x", "m_y", "m_z"];
 /// Those that half a domain determines; the others are zero by its symmetry.
 const OF_HALF: [usize; 3] = [0, 1, 5];
 
@@ -11,6 +11,6 @@ pub(super) fn loads_of(is_half: bool) -> Vec<usize> {
 }
 
 /// Of a load.
-pub(super) fn unit(load: usize) -> &'static str {
+pub(crate) fn unit(load: usize) -> &'static str {
     if load < 3 { "N" } else { "N m" }
 }

@@ -7,6 +7,7 @@ mod common;
 mod cylinder_mesh;
 #[cfg(target_os = "linux")]
 mod foam_campaign;
+mod forces;
 #[cfg(unix)]
 mod kills;
 mod o_grid;

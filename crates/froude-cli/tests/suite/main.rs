@@ -38,6 +38,7 @@ mod same_drag;
 mod schema;
 mod sidecars;
 mod small_disk;
+mod starters;
 mod steady;
 mod sway;
 mod swim;

@@ -301,3 +301,44 @@ fn headers_of_six_languages_are_proposed_and_none_is_proposed_wrongly() {
         assert_eq!(value, expected, "{header}");
     }
 }
+
+#[test]
+fn exports_of_openfast_orcaflex_and_wec_sim_are_read() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../froude-foreign/tests/data");
+    let proposed = |name: &str| proposal::sidecar(&data.join(name)).unwrap();
+    let openfast = proposed("openfast.out");
+    for line in ["Time = { name = \"time\", unit = \"s\" }", "HydroFxi = { name = \"HydroFxi\", unit = \"kN\" }"] {
+        assert!(openfast.lines().any(|own| own == line), "{openfast}");
+    }
+    let multiple = proposed("orcaflex-multiple.csv");
+    assert!(
+        multiple.contains("\"Towfish Declination\" = { name = \"Towfish Declination\", unit = \"deg\" }"),
+        "{multiple}"
+    );
+    let history = proposed("orcaflex-history.csv");
+    assert!(history.contains("\"Time (s)\" = { name = \"time\", unit = \"s\" }"), "{history}");
+    // Nothing in the file says what its numbers are in.
+    let body = proposed("wec-sim-body.txt");
+    assert!(body.contains("# time = { name = \"time\", unit = \"\" }  # state the unit"), "{body}");
+    let table = read_table(&data.join("openfast.out"), None);
+    let said = table.unwrap_err().to_string();
+    assert!(said.contains("openfast.out:8: column `Time [s]` would not be used; is it time?"), "{said}");
+}
+
+#[test]
+fn a_workbook_is_read_as_the_same_table_of_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drift.xlsx");
+    std::fs::write(&path, include_bytes!("../golden/drift.xlsx")).unwrap();
+    let said = read_table(&path, None).unwrap_err().to_string();
+    assert!(
+        said.contains("drift.xlsx, row 1: column `Geschwindigkeit [m/s]` would not be used; is it speed?"),
+        "{said}"
+    );
+    proposal::write_sidecar(&path).unwrap();
+    let table = read_table(&path, None).unwrap();
+    assert_eq!(table.n_rows, 90);
+    assert_eq!(table.understood.as_deref(), Some("units in line 2"));
+    let drag = si(&table, "f_x");
+    assert!(drag.iter().all(|f| *f < 0.0) && (drag[0] + 1.05).abs() < 0.1, "{}", drag[0]);
+}
