@@ -70,7 +70,7 @@ fn gcd(mut a: u64, mut b: u64) -> u64 {
 #[must_use]
 pub fn even_times(stamps_s: &[f64], resolution_s: f64) -> Option<EvenTimes> {
     let n = stamps_s.len();
-    if n < FEWEST || !(resolution_s > 0.0) {
+    if n < FEWEST || resolution_s.is_nan() || resolution_s <= 0.0 {
         return None;
     }
     let of = |ticks: Vec<f64>| fitted(stamps_s, ticks, resolution_s);

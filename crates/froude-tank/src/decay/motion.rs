@@ -236,7 +236,7 @@ mod tests {
         for k in 0..BY {
             let d = 1e-6;
             let (up, down) = (moved(k, d), moved(k, -d));
-            for i in 0..n {
+            for i in 0..along.len() {
                 let difference = (up[i][0] - down[i][0]) / (2.0 * d);
                 assert!((along[i].1[k] - difference).abs() < 1e-6, "{k} {i}: {} {difference}", along[i].1[k]);
             }
