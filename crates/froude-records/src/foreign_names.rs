@@ -263,7 +263,7 @@ const KNOWN: [Known; 32] = [
             "driftwinkelβ",
             "driftwinkelbeta",
             "schräganströmwinkel",
-            "angledederive",
+            "angledederive", "anglededérive",
             "angledérive",
             "dérive",
             "ángulodederiva",

@@ -136,7 +136,7 @@ fn line(heading: &Heading, reading: &Reading) -> String {
     let is_number = reading.is_number.get(at).copied().unwrap_or(true);
     // Of two columns that seem the same neither is renamed: somebody has to say which is which.
     let is_alone = |name: &str| {
-        reading.headings.iter().filter(|other| target(other) == Some(name) || other.name == name).count() == 1
+        reading.headings.iter().filter(|other| target(other) == Some(name) || other.name == name).count() <= 1
     };
     let dimension = heading.dimension();
     let meant = heading.meant().filter(|meant| is_alone(meant.name));
