@@ -224,7 +224,10 @@ fn a_unit_is_suggested_of_the_kind_that_belongs_there() {
             "`temperature` is 18.9; expected a quantity with its unit in quotes, such as \"18.9 degC\"",
         ),
         ("temperature = \"18.9\"", "`temperature` cannot be read: `18.9` has no unit; write for example `18.9 degC`"),
-        ("temperature = \"18.9 C\"", "`temperature` cannot be read: unknown unit `C`; did you mean `degC`?"),
+        (
+            "temperature = \"18.9 C\"",
+            "`temperature` cannot be read: unknown unit `C`; did you mean `degC` (degree Celsius, a temperature)?",
+        ),
         ("temperature = \"18.9 degc\"", "`temperature` cannot be read: unknown unit `degc`; did you mean `degC`?"),
         ("temperature = \"18.9 grad\"", "`temperature` cannot be read: unknown unit `grad`; write for example `degC`"),
         (

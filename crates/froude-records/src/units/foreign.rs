@@ -50,6 +50,7 @@ const FOREIGN: &[(&[&str], Meanings)] = &[
             ("ton_short", "short ton (US), 907.18474 kg"),
             ("ton_long", "long ton (UK), 1016.0469 kg"),
             ("tf", "tonne-force, 9806.65 N"),
+            ("kip", "1000 lbf: a short ton-force is 2 of it"),
         ],
     ),
     (
@@ -133,13 +134,10 @@ pub(super) fn advice(symbol: &str, dimension: Option<Dimension>) -> String {
             .to_owned();
     }
     if let Some((_, meanings)) = FOREIGN.iter().find(|(spellings, _)| spellings.contains(&symbol)) {
-        let wanted: Vec<_> = meanings.iter().filter(|(unit, _)| of(unit).is_some_and(is_wanted)).collect();
-        let shown = if wanted.is_empty() { meanings.iter().collect() } else { wanted };
+        // Of another kind than is asked for, none of them is meant.
+        let shown: Vec<_> = meanings.iter().filter(|(unit, _)| of(unit).is_some_and(is_wanted)).collect();
         return match shown.as_slice() {
-            // The only one of a table's that is of the wanted kind needs no explanation.
-            [(unit, _)] if dimension.is_some() && of(unit).is_some_and(is_wanted) => {
-                format!("; did you mean `{unit}`?")
-            }
+            [] => String::new(),
             [(unit, "")] => format!("; did you mean `{unit}`?"),
             all => {
                 let all: Vec<String> = all.iter().map(|(unit, what)| format!("`{unit}` ({what})")).collect();

@@ -93,7 +93,7 @@ fn spellings_with_several_meanings_are_asked_about() {
         (
             "ton",
             "; did you mean `t` (tonne, 1000 kg) or `ton_short` (short ton (US), 907.18474 kg) or `ton_long` (long ton (UK), 1016.0469 kg) \
-             or `tf` (tonne-force, 9806.65 N)?",
+             or `tf` (tonne-force, 9806.65 N) or `kip` (1000 lbf: a short ton-force is 2 of it)?",
         ),
         ("gpm", "; did you mean `gal_US/min` (3.785411784 l/min) or `gal_imp/min` (4.54609 l/min)?"),
         ("mile", "; did you mean `mi` (statute mile, 1609.344 m) or `nmi` (nautical mile, 1852 m)?"),
@@ -119,11 +119,10 @@ fn nothing_is_proposed_by_letters_alone() {
     let said = |text, dimension| parse_unit_for(text, dimension).unwrap_err().to_string();
     assert_eq!(said("kntos", Dimension::SPEED), "unknown unit `kntos`; did you mean `knots`?");
     assert_eq!(said("degc", Dimension::TEMPERATURE), "unknown unit `degc`; did you mean `degC`?");
-    assert_eq!(said("S", Dimension::TIME), "unknown unit `S`; did you mean `s`?");
-    assert_eq!(
-        said("S", Dimension::FORCE),
-        "unknown unit `S`; did you mean `s` (second, a time) or `A/V` (siemens, a conductance)?"
-    );
+    assert_eq!(said("S", Dimension::TIME), "unknown unit `S`; did you mean `s` (second, a time)?");
+    assert_eq!(said("S", Dimension::FORCE), "unknown unit `S`; write for example `N`");
+    let day = "unknown unit `day`; did you mean `h` (hour, a time: a day is 24 of it)?";
+    assert_eq!(said("day", Dimension::TIME), day);
     assert_eq!(said("ox", Dimension::MASS), "unknown unit `ox`; write for example `kg`");
 }
 
