@@ -56,7 +56,7 @@ pub fn resolution(stamps: &[f64]) -> Option<f64> {
 pub fn timer_step(stamps: &[f64], resolution: f64) -> Option<f64> {
     let first = *stamps.first()?;
     let divisor = stamps.iter().map(|x| ((x - first) / resolution).round().abs() as u64).fold(0, gcd);
-    (divisor > 1).then(|| divisor as f64 * resolution)
+    (divisor > 1).then_some(divisor as f64 * resolution)
 }
 
 fn gcd(mut a: u64, mut b: u64) -> u64 {

@@ -110,7 +110,7 @@ fn stands_out(fit: &DecayFit) -> Vec<Finding> {
         let (mut sizes, mut masses) = (others(i, &reach), others(i, &moving));
         let (usual, usual_mass) = (middle(&mut sizes), middle(&mut masses));
         let ratio = reach(i) / usual;
-        if ratio > ANOTHER_UNIT || ratio < 1.0 / ANOTHER_UNIT {
+        if ratio.is_finite() && !(1.0 / ANOTHER_UNIT..=ANOTHER_UNIT).contains(&ratio) {
             let text = format!(
                 "run {:?} swings by {:.3e} {unit} where the others swing by {usual:.3e} {unit}, {ratio:.3} times as far: check the unit of its position (mm under [m] is a factor of 1000)",
                 fit.runs[i].id,
