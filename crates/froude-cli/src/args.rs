@@ -86,6 +86,9 @@ pub enum Verb {
         /// Sidecar of a table.
         #[arg(long)]
         sidecar: Option<PathBuf>,
+        /// Write a sidecar beside the table that proposes names, units and signs of its columns, to be checked and corrected.
+        #[arg(long, conflicts_with = "sidecar")]
+        write_sidecar: bool,
     },
     /// Write a commented campaign of one kind, with only the keys that matter, to be filled in.
     #[command(after_help = froude::records::starter::help())]

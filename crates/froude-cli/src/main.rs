@@ -79,7 +79,10 @@ fn run(cli: Cli) -> Result<(), Failure> {
             write_files(&found)?;
             print::answer(&found, form)?;
         }
-        Verb::Inspect { file, sidecar } => {
+        Verb::Inspect { file, write_sidecar: true, .. } => {
+            print::answer(&froude::records::proposal::propose(&file)?, form)?
+        }
+        Verb::Inspect { file, sidecar, .. } => {
             let found = mistaken::INSPECT.or(inspect::inspect(&file, sidecar.as_deref()), &[file])?;
             print::answer(&found.outcome(), form)?;
         }

@@ -6,29 +6,10 @@
 use std::path::{Path, PathBuf};
 
 use froude::cfd::forces::inspect::{DatFile, dat_file};
+use froude::records::kind::Kind;
+use froude::records::table_file::is_table;
 
 use crate::failure::Failure;
-
-/// What a file or a folder is, by its name and its first words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// A campaign that drives a rig.
-    Drive,
-    Campaign,
-    Body,
-    Robot,
-    TableSidecar,
-    RunSidecar,
-    Run,
-    Table,
-    Record,
-    Mesh,
-    /// A folder of runs.
-    Runs,
-    /// A folder that a verb wrote its results into.
-    Results,
-    Folder,
-}
 
 pub struct Takes {
     verb: &'static str,
@@ -39,18 +20,18 @@ pub struct Takes {
 pub const IDENTIFY: Takes = Takes {
     verb: "identify",
     kinds: &[Kind::Campaign, Kind::Drive, Kind::Table],
-    words: "a campaign (.toml) or a table (.csv, .parquet)",
+    words: "a campaign (.toml) or a table (.csv, .xlsx, .parquet, …)",
 };
 pub const INSPECT: Takes = Takes {
     verb: "inspect",
     kinds: &[Kind::Campaign, Kind::Drive, Kind::Table, Kind::Record, Kind::Run, Kind::RunSidecar, Kind::Runs],
-    words: "a table (.csv, .parquet), a campaign (.toml), a record (.json), a run (.mcap) or a folder of runs",
+    words: "a table (.csv, .xlsx, .parquet, …), a campaign (.toml), a record (.json), a run (.mcap) or a folder of runs",
 };
 pub const COMPARE: Takes = Takes { verb: "compare", kinds: &[Kind::Record], words: "records (estimate.json)" };
 pub const PREDICT: Takes = Takes {
     verb: "predict",
     kinds: &[Kind::Record, Kind::Table],
-    words: "a record (estimate.json) and then a table (.csv, .parquet)",
+    words: "a record (estimate.json) and then a table (.csv, .xlsx, .parquet, …)",
 };
 pub const SIMULATE: Takes =
     Takes { verb: "simulate", kinds: &[Kind::Campaign, Kind::Drive], words: "a campaign with plan and truth (.toml)" };
@@ -146,25 +127,6 @@ impl Takes {
     }
 }
 
-impl Kind {
-    fn words(self) -> &'static str {
-        match self {
-            Self::Drive | Self::Campaign => "a campaign",
-            Self::Body => "a body file",
-            Self::Robot => "a robot file",
-            Self::TableSidecar => "the sidecar of a table",
-            Self::RunSidecar => "the sidecar of a run",
-            Self::Run => "a run",
-            Self::Table => "a table",
-            Self::Record => "a record",
-            Self::Mesh => "a mesh",
-            Self::Runs => "a folder of runs",
-            Self::Results => "a folder of results",
-            Self::Folder => "a folder",
-        }
-    }
-}
-
 /// Whether a folder holds tables, as other programs write logs.
 fn has_logs(folder: &Path) -> bool {
     let is_log = |file: PathBuf| matches!(kind_of(&file), Some(Kind::Table));
@@ -176,7 +138,7 @@ fn kind_of(path: &Path) -> Option<Kind> {
     if path.is_dir() {
         let is_run = |file: PathBuf| match file.extension().map(|e| e.to_string_lossy().into_owned()).as_deref() {
             Some("mcap") => true,
-            Some("toml") => kind_of_toml(&file) == Some(Kind::RunSidecar),
+            Some("toml") => Kind::of_toml(&file) == Some(Kind::RunSidecar),
             _ => false,
         };
         let has_run = std::fs::read_dir(path).ok()?.filter_map(Result::ok).any(|entry| is_run(entry.path()));
@@ -193,49 +155,13 @@ fn kind_of(path: &Path) -> Option<Kind> {
         return None;
     }
     match path.extension()?.to_string_lossy().to_lowercase().as_str() {
-        "csv" | "parquet" => Some(Kind::Table),
         "json" => Some(Kind::Record),
         "mcap" => Some(Kind::Run),
         "stl" | "obj" | "ply" | "gdf" | "msh" => Some(Kind::Mesh),
-        "dat" => (dat_file(path)? == DatFile::Mesh).then_some(Kind::Mesh),
+        "dat" if dat_file(path) == Some(DatFile::Mesh) => Some(Kind::Mesh),
+        "dat" if dat_file(path) == Some(DatFile::Forces) => None,
         "urdf" => Some(Kind::Robot),
-        "toml" => kind_of_toml(path),
-        _ => None,
+        "toml" => Kind::of_toml(path),
+        _ => is_table(path).then_some(Kind::Table),
     }
-}
-
-/// As much of a file of TOML as is looked at.
-const MOST_BYTES: u64 = 1 << 20;
-
-/// By its sections and first keys, also where it has a fault that a reader would stop at.
-fn kind_of_toml(path: &Path) -> Option<Kind> {
-    use std::io::Read as _;
-    let mut bytes = Vec::new();
-    froude::records::read::open(path).ok()?.take(MOST_BYTES).read_to_end(&mut bytes).ok()?;
-    let text = String::from_utf8_lossy(&bytes);
-    let lines = || text.lines().map(str::trim);
-    let has_section = |name: &str| {
-        let head = |line: &str| line.trim_start_matches('[').split([']', '.', ' ']).next() == Some(name);
-        lines().any(|line| line.starts_with('[') && head(line))
-    };
-    // Keys of the file itself stand before its first section.
-    let key = |line: &str| line.split('=').next().unwrap_or_default().trim().to_owned();
-    let keys: Vec<String> = lines().take_while(|line| !line.starts_with('[')).map(key).collect();
-    let has_key = |name: &str| keys.iter().any(|key| key == name);
-    let shape = || lines().any(|line| key(line) == "shape");
-    Some(if has_key("id") && has_key("campaign") {
-        Kind::RunSidecar
-    } else if has_section("rig") {
-        Kind::Drive
-    } else if has_section("module") && has_section("fluid") {
-        Kind::Robot
-    } else if has_section("source") {
-        Kind::Campaign
-    } else if has_section("columns") || has_section("constants") {
-        Kind::TableSidecar
-    } else if has_section("body") && shape() {
-        Kind::Body
-    } else {
-        return None;
-    })
 }

@@ -217,7 +217,7 @@ fn headless(
         [.., names, units] if is_units => (*names, Some(*units)),
         _ => (*last, None),
     };
-    let cell = |row: &Row<'_>, j: usize| row.cells.get(j).map(|cell| cell.to_string()).unwrap_or_default();
+    let cell = |row: &Row<'_>, j: usize| row.cells.get(j).map_or_else(String::new, ToString::to_string);
     let heads = (0..n).map(|j| Head {
         name: cell(names, j),
         above: String::new(),

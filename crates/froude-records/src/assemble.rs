@@ -10,12 +10,11 @@ use crate::known_columns::{is_text_column, known_dimension, usual_unit};
 use crate::memory;
 use crate::nearest::suggestion;
 use crate::raw_column::{
-    FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, TWICE, check_dimension, check_numbers, check_texts, in_light_of,
-    unit_of_column,
+    FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, TWICE, check_dimension, check_numbers, check_texts, unit_for, unit_of_column,
 };
 use crate::sidecar::{Mapping, Sidecar};
 use crate::table::{Column, ColumnData, Table};
-use crate::units::{Unit, parse_unit};
+use crate::units::Unit;
 
 /// What a column of a file becomes, decided by its header alone.
 pub(crate) enum Want<'s> {
@@ -200,7 +199,7 @@ fn want(path: &Path, header: &str, place: &Place) -> Result<Want<'static>, Recor
     if is_text_column(name) {
         return Err(bad(format!("{name} is text and has no unit; write `{name}`")));
     }
-    let unit = parse_unit(unit).map_err(|e| bad(in_light_of(name, unit, e).to_string()))?;
+    let (unit, _) = unit_for(name, unit).map_err(|e| bad(e.to_string()))?;
     check_dimension(place, header, name, &unit)?;
     Ok(Want::Number { name: name.to_owned(), unit: unit_of_column(name, unit) })
 }
@@ -222,6 +221,16 @@ impl Want<'_> {
     /// The name of a column whose cells may be empty where tables of several axes are read: a load, or the motion along or about an axis.
     pub fn name_if_blank(&self) -> Option<&str> {
         name_of(self).filter(|name| self.is_number() && is_of_axis(name))
+    }
+
+    /// How the unit of a column was read, where that is not what it says.
+    fn note(&self, header: &str) -> Option<String> {
+        let note = match self {
+            Self::Number { name, .. } => unit_for(name, split_header(header).ok()?.1?).ok()?.1?,
+            Self::Mapped(mapping) => mapping.note.clone()?,
+            Self::Text { .. } | Self::LeftOut => return None,
+        };
+        Some(format!("{}: {note}", name_of(self)?))
     }
 
     /// What to do about an empty cell: a column that a table can do without may also be left out.
@@ -294,6 +303,8 @@ pub(crate) fn assemble(
         blank: Vec::new(),
         understood: None,
     };
+    let notes: Vec<String> = header.iter().zip(wants).filter_map(|(header, want)| want.note(header)).collect();
+    table.understood = (!notes.is_empty()).then(|| notes.join(", "));
     for (name, raw) in header.iter().zip(&raws) {
         if let Raw::Numbers(values) = raw {
             refuse_sentinel(values, name, &|row| table.place_of_row(row))?;

@@ -118,7 +118,7 @@ fn csv<E: From<RecordError>>(
     while let Some(lines) = reader.next(&mut memory.text)? {
         has_rows = true;
         let table = chunk(path, &head, layout.as_ref(), &mut memory, &lines)?;
-        each(Table { understood: understood.clone(), ..table })?;
+        each(table.also(understood.clone()))?;
     }
     if has_rows { Ok(()) } else { Err(RecordError::NoRows { path: path.to_owned() }.into()) }
 }

@@ -114,7 +114,7 @@ pub(crate) fn read_columns(
     }
     let table = assemble(path, &header, &wants, raws, columns, &place, (1..=n_rows).collect())?;
     let understood = (!words.is_empty()).then(|| words.join(", "));
-    Ok(Table { understood, sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..table })
+    Ok(Table { sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..table }.also(understood))
 }
 
 /// The part that is declared, or the only one.

@@ -98,7 +98,7 @@ fn parse(
     let rows = head.rows(&mut records, blank)?;
     let understood = reading.understood(records.skipped, rows.left_out());
     let table = head.table(rows)?;
-    Ok(Table { understood, sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..table })
+    Ok(Table { sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..table }.also(understood))
 }
 
 /// What the columns of a table of text are.

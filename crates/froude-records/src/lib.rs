@@ -44,6 +44,7 @@ pub mod hash;
 mod heading;
 pub mod json;
 pub mod keep;
+pub mod kind;
 pub mod known_columns;
 pub mod manifest;
 pub mod measured;

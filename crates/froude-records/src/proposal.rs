@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use froude_foreign::layout::is_missing;
 use froude_foreign::split::{Row, rows};
 
+use crate::block::{Block, TableBuilder};
 use crate::csv_table::text;
 use crate::error::{Place, RecordError};
 use crate::file_words::{FileWords, is_summary, sentinel};
 use crate::foreign_names::meant_without_unit;
 use crate::heading::Heading;
 use crate::known_columns::{is_text_column, usual_unit};
+use crate::outcome::Outcome;
 use crate::reading::Reading;
 use crate::records::Skipped;
 use crate::table_file::Format;
@@ -24,6 +26,20 @@ const LARGEST_BYTES: u64 = 2 << 30;
 
 /// As much of it as is looked at for words in the place of numbers.
 const SAMPLE_BYTES: usize = 1 << 20;
+
+/// Writes the proposal beside the table, and says so.
+///
+/// # Errors
+///
+/// As [`write_sidecar`].
+pub fn propose(table: &Path) -> Result<Outcome, RecordError> {
+    let path = write_sidecar(table)?;
+    let rows = [path.display().to_string()];
+    let t = TableBuilder::new("files", "", &rows);
+    let files = t.build(vec![t.text("path", "", Clone::clone)]);
+    let said = format!("wrote {}: check every line, correct it, then froude inspect {}", rows[0], table.display());
+    Ok(Outcome { blocks: vec![files.into(), Block::text("", vec![said])], ..Outcome::default() })
+}
 
 /// Writes the proposal beside the table, as its `.toml`; its path.
 ///

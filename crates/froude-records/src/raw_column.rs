@@ -2,7 +2,7 @@
 
 use crate::error::{Place, RecordError, briefly};
 use crate::known_columns::{expected, known_dimension, usual_unit};
-use crate::units::{Unit, UnitError, is_plausible, question};
+use crate::units::{Dimension, Unit, UnitError, is_plausible, parse_unit, parse_unit_for, question};
 
 /// The cells of one column as the format gives them.
 pub(crate) enum Raw {
@@ -16,6 +16,26 @@ pub(crate) fn in_light_of(name: &str, text: &str, error: UnitError) -> UnitError
         (Some(dimension), Some(usual)) => error.expecting(text, dimension, &usual),
         _ => error,
     }
+}
+
+/// The unit of a column, in light of what a known name measures, with what is to be said of how it was read.
+pub(crate) fn unit_for(name: &str, text: &str) -> Result<(Unit, Option<String>), UnitError> {
+    match known_dimension(name) {
+        // Other dimensions are refused with the column.
+        Some(dimension) if dimension != Dimension::ONE => match parse_unit_for(text, dimension) {
+            Ok((unit, note)) => Ok((unit, note)),
+            Err(UnitError::Other(_)) if parse_unit(text).is_ok() && !is_asked(text, dimension) => {
+                parse_unit(text).map(|unit| (unit, None))
+            }
+            Err(error) => Err(in_light_of(name, text, error)),
+        },
+        _ => parse_unit(text).map(|unit| (unit, None)).map_err(|error| in_light_of(name, text, error)),
+    }
+}
+
+/// Whether a unit of another dimension may be a slip for one of this, so that the message lists what to write.
+fn is_asked(text: &str, dimension: Dimension) -> bool {
+    parse_unit_for(text, dimension).is_err_and(|error| error.to_string().contains("; write "))
 }
 
 /// A standard uncertainty in `degC` is one in K: differences have no offset.

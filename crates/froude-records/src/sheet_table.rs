@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use froude_foreign::layout::{Seen, layout};
-use froude_foreign::marks::{Evidence, Marks};
+use froude_foreign::marks::{Evidence, Marks, Undecided};
 use froude_foreign::sheet::{Cell, Region, Sheet, Workbook};
 use froude_foreign::split::{Row, Separator};
 
@@ -34,11 +34,10 @@ pub(crate) fn read_sheet(
     let parse = || {
         let columns = sidecar.map(|sidecar| sidecar.fitted(&reading.headings)).transpose()?;
         let head = Head::of(path, &reading, columns.as_ref(), file)?;
-        let mut below =
-            Below { rows: rows.iter().filter(|row| row.line >= reading.line) };
+        let mut below = Below { rows: rows.iter().filter(|row| row.line >= reading.line) };
         let found = head.rows(&mut below, blank)?;
         let understood = reading.understood(Skipped::default(), found.left_out());
-        Ok(Table { understood, sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..head.table(found)? })
+        Ok(Table { sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..head.table(found)? }.also(understood))
     };
     parse().map_err(|first| obstacles::of(path, &rows, &reading, sidecar, first))
 }
@@ -51,7 +50,7 @@ pub(crate) fn look(path: &Path, file: &FileWords) -> Result<(Vec<Row<'static>>, 
     let name = chosen(path, &book, file)?;
     let range: Option<Region> = file.range.as_deref().map(str::parse).transpose().map_err(refuse)?;
     let sheet = book.sheet(&name, range).map_err(refuse)?;
-    let (rows, marks) = rows(&sheet, file)?;
+    let (rows, marks) = rows(&sheet, file);
     let layout = layout(&rows, &file.stated, &|unit| parse_unit(unit).is_ok());
     let seen = Seen { separator: Separator::Comma, layout, marks };
     let words = if book.sheets().len() > 1 { vec![format!("sheet {name:?}")] } else { Vec::new() };
@@ -86,7 +85,7 @@ fn chosen(path: &Path, book: &Workbook<'_>, file: &FileWords) -> Result<String, 
 fn rows(
     sheet: &Sheet,
     file: &FileWords,
-) -> Result<(Vec<Row<'static>>, Result<Marks, froude_foreign::marks::Undecided>), RecordError> {
+) -> (Vec<Row<'static>>, Result<Marks, Undecided>) {
     let mut evidence = Evidence::default();
     let width = sheet.rows.iter().map(Vec::len).max().unwrap_or(0);
     for j in 0..width {
@@ -129,7 +128,7 @@ fn rows(
         cells: (0..width).map(|j| text(i, j)).collect(),
         is_comment: false,
     };
-    Ok(((0..sheet.rows.len()).map(of).filter(|row| !row.is_blank()).collect(), marks))
+    ((0..sheet.rows.len()).map(of).filter(|row| !row.is_blank()).collect(), marks)
 }
 
 /// Rows at the beginning of a sheet in which heads may span columns.

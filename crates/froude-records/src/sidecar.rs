@@ -10,9 +10,7 @@ use crate::heading::Heading;
 use crate::known_columns::{is_text_column, known_dimension};
 use crate::measured::Measured;
 use crate::nearest::suggestion;
-use crate::raw_column::{
-    Raw, TEXT_FOR_NUMBERS, check_dimension, check_numbers, check_texts, in_light_of, unit_of_column,
-};
+use crate::raw_column::{Raw, TEXT_FOR_NUMBERS, check_dimension, check_numbers, check_texts, unit_for, unit_of_column};
 use crate::read;
 use crate::run::cell::Cell;
 use crate::run::channel::Words;
@@ -26,7 +24,7 @@ use crate::section::{Section, Source, parse};
 use crate::section_values::one_of;
 use crate::table::{Column, ColumnData};
 use crate::texts::Texts;
-use crate::units::{Dimension, Quantity, Unit, parse_unit};
+use crate::units::{Dimension, Quantity, Unit};
 
 const LARGEST_BYTES: u64 = 1 << 20;
 
@@ -71,6 +69,8 @@ pub struct Mapping {
     pub name: String,
     /// Unit of the numbers in the table; none for text and for scaled columns.
     pub unit: Option<Unit>,
+    /// How the unit was read, where that is not what it says.
+    pub note: Option<String>,
     /// Factor of sign or direction: the number in the table times it is what the name means.
     pub sign: f64,
     /// What of unit, sign, frame and clock is not written, for methods that take none of them for granted.
@@ -201,15 +201,14 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
     section.only(&[&["name", "unit", "sign", "scale", "quantity", "frame", "clock"], &sensor::KEYS[..]].concat())?;
     let name = section.need_text("name", "write name = \"f_x\", for example")?.to_owned();
     let place = section.place();
-    let unit = match section.text("unit")? {
+    let (unit, note) = match section.text("unit")? {
         Some(text) => {
-            let unit = parse_unit(text).map_err(|e| {
-                RecordError::value(place.clone(), "unit", format!("cannot be read: {}", in_light_of(&name, text, e)))
-            })?;
+            let (unit, note) = unit_for(&name, text)
+                .map_err(|e| RecordError::value(place.clone(), "unit", format!("cannot be read: {e}")))?;
             check_dimension(&place, &format!("{name} [{text}]"), &name, &unit)?;
-            Some(unit_of_column(&name, unit))
+            (Some(unit_of_column(&name, unit)), note)
         }
-        None => None,
+        None => (None, None),
     };
     let sign = section.number("sign")?.unwrap_or(1.0);
     if sign.abs() != 1.0 {
@@ -232,7 +231,7 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
     let words = Words::read(section, dimension, frames)?;
     let sensor = Sensor::read(section, dimension.filter(|_| scale.is_none()))?;
     let undeclared = ["unit", "sign", "frame", "clock"].into_iter().filter(|key| section.get(key).is_none()).collect();
-    Ok(Mapping { name, unit, sign, undeclared, scale, sensor, words, place })
+    Ok(Mapping { name, unit, note, sign, undeclared, scale, sensor, words, place })
 }
 
 impl Mapping {
@@ -245,11 +244,10 @@ impl Mapping {
         match heading.and_then(|heading| heading.unit.as_deref()) {
             Some(text) => {
                 let column = format!("{} [{text}]", self.name);
-                let unit = parse_unit(text).map_err(|e| {
-                    RecordError::column(self.place.clone(), &column, format!(": {}", in_light_of(&self.name, text, e)))
-                })?;
+                let (unit, note) = unit_for(&self.name, text)
+                    .map_err(|e| RecordError::column(self.place.clone(), &column, format!(": {e}")))?;
                 check_dimension(&self.place, &column, &self.name, &unit)?;
-                mapping.unit = Some(unit_of_column(&self.name, unit));
+                (mapping.unit, mapping.note) = (Some(unit_of_column(&self.name, unit)), note);
                 Ok(mapping)
             }
             None if known_dimension(&self.name).is_some() => {

@@ -84,6 +84,15 @@ impl Table {
         }
     }
 
+    /// The same with what its reader understood beside it.
+    pub(crate) fn also(self, words: Option<String>) -> Self {
+        let understood = match (words, self.understood) {
+            (Some(words), Some(own)) => Some(format!("{words}, {own}")),
+            (words, own) => words.or(own),
+        };
+        Self { understood, ..self }
+    }
+
     /// How the file was understood, as a finding; none of a table in Froude's own form.
     #[must_use]
     pub fn foreign(&self) -> Option<Finding> {

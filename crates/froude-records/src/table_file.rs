@@ -50,6 +50,12 @@ fn read(path: &Path, sidecar: Option<&Path>, blank: Option<&mut Blanks>) -> Resu
     }
 }
 
+/// Whether a file is one of those that tables are read from, by its ending.
+#[must_use]
+pub fn is_table(path: &Path) -> bool {
+    Format::of(path).is_ok()
+}
+
 /// The beginning of a file; nothing where it cannot be read.
 fn first_bytes(path: &Path) -> Vec<u8> {
     let mut first = Vec::new();
