@@ -194,8 +194,10 @@ fn no_second(start: &Path, first: &str) -> Result<(), MethodError> {
     let stem = first.trim_end_matches(".dat");
     let entries = std::fs::read_dir(start).map_err(|source| MethodError::Folder { path: start.to_owned(), source })?;
     let names = entries.filter_map(Result::ok).map(|entry| entry.file_name().to_string_lossy().into_owned());
-    let is_second =
-        |name: &String| name.strip_prefix(stem).is_some_and(|end| end.starts_with('_') && end.ends_with(".dat"));
+    let is_second = |name: &String| {
+        let end = name.strip_prefix(stem).and_then(|end| end.strip_suffix(".dat"));
+        end.is_some_and(|end| end.starts_with('_'))
+    };
     match names.into_iter().find(is_second) {
         Some(second) => {
             let what = format!(
