@@ -80,7 +80,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
             print::answer(&found, form)?;
         }
         Verb::Inspect { file, write_sidecar: true, .. } => {
-            print::answer(&froude::records::proposal::propose(&file)?, form)?
+            print::answer(&froude::records::proposal::propose(&file)?, form)?;
         }
         Verb::Inspect { file, sidecar, .. } => {
             let found = mistaken::INSPECT.or(inspect::inspect(&file, sidecar.as_deref()), &[file])?;

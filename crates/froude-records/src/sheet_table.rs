@@ -82,10 +82,7 @@ fn chosen(path: &Path, book: &Workbook<'_>, file: &FileWords) -> Result<String, 
 }
 
 /// The cells of a sheet as text, and the marks of those that are numbers stored as text.
-fn rows(
-    sheet: &Sheet,
-    file: &FileWords,
-) -> (Vec<Row<'static>>, Result<Marks, Undecided>) {
+fn rows(sheet: &Sheet, file: &FileWords) -> (Vec<Row<'static>>, Result<Marks, Undecided>) {
     let mut evidence = Evidence::default();
     let width = sheet.rows.iter().map(Vec::len).max().unwrap_or(0);
     for j in 0..width {

@@ -31,7 +31,8 @@ fn a_file_of_another_kind_is_called_what_it_is_with_the_command_that_takes_it() 
     let empty = bench.folder.path().join("empty");
     std::fs::create_dir(&empty).unwrap();
     let of_runs = "folders of runs, or runs (.mcap)";
-    let of_files = "a table (.csv, .xlsx, .parquet, …), a campaign (.toml), a record (.json), a run (.mcap) or a folder of runs";
+    let of_files =
+        "a table (.csv, .xlsx, .parquet, …), a campaign (.toml), a record (.json), a run (.mcap) or a folder of runs";
     for (args, told) in [
         (
             vec!["carriage", "drag", campaign],
