@@ -90,6 +90,17 @@ pub enum Verb {
         #[arg(long, conflicts_with = "sidecar")]
         write_sidecar: bool,
     },
+    /// Write a table or a log of any format that is read as CSV, Parquet or MCAP, with names and units.
+    #[command(after_help = "Examples:\n  froude convert tow.tdms tow.csv\n  froude convert drift.xlsx drift.parquet")]
+    Convert {
+        /// The table or log.
+        input: PathBuf,
+        /// The file to write (.csv, .parquet, .mcap); it must not be there yet.
+        out: PathBuf,
+        /// Sidecar of the table [default: the .toml of the same name beside it].
+        #[arg(long)]
+        sidecar: Option<PathBuf>,
+    },
     /// Write a commented campaign of one kind, with only the keys that matter, to be filled in.
     #[command(after_help = froude::records::starter::help())]
     New {

@@ -86,6 +86,9 @@ fn run(cli: Cli) -> Result<(), Failure> {
             let found = mistaken::INSPECT.or(inspect::inspect(&file, sidecar.as_deref()), &[file])?;
             print::answer(&found.outcome(), form)?;
         }
+        Verb::Convert { input, out, sidecar } => {
+            print::answer(&froude::records::convert::convert(&input, sidecar.as_deref(), &out)?, form)?;
+        }
         Verb::New { kind, out } => print::answer(&froude::records::starter::start(&kind, &out)?, form)?,
         Verb::Plan { campaign } => print::answer(&mistaken::PLAN.or(plan::plan(&campaign), &[campaign])?, form)?,
         Verb::Simulate { campaign, replace } => {

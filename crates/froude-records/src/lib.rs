@@ -27,6 +27,7 @@ mod checksum;
 pub mod chunks;
 pub mod comparison;
 mod container_table;
+pub mod convert;
 pub mod csv_table;
 pub mod declare;
 pub mod document;

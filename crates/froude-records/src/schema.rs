@@ -6,7 +6,7 @@ pub const ESTIMATE_JSON_SCHEMA: &str = include_str!("../schemas/estimate-2.schem
 pub const ESTIMATE_1_JSON_SCHEMA: &str = include_str!("../schemas/estimate-1.schema.json");
 
 /// What each verb prints with `--json`, by its name: the record, or the JSON Schema of its blocks.
-pub const RESULTS: [(&str, &str); 18] = [
+pub const RESULTS: [(&str, &str); 19] = [
     ("identify", ESTIMATE_JSON_SCHEMA),
     ("added-mass-check", include_str!("../schemas/results/added-mass-check.json")),
     ("cfd-collect", include_str!("../schemas/results/cfd-collect.json")),
@@ -17,6 +17,7 @@ pub const RESULTS: [(&str, &str); 18] = [
     ("cfd-status", include_str!("../schemas/results/cfd-status.json")),
     ("cfd-suggest", include_str!("../schemas/results/cfd-suggest.json")),
     ("cfd-swing", include_str!("../schemas/results/cfd-swing.json")),
+    ("convert", include_str!("../schemas/results/convert.json")),
     ("inspect", include_str!("../schemas/results/inspect.json")),
     ("new", include_str!("../schemas/results/new.json")),
     ("plan", include_str!("../schemas/results/plan.json")),

@@ -11,6 +11,7 @@ mod board;
 mod carriage;
 mod cfd;
 mod clocks;
+mod convert;
 mod decay;
 mod documents;
 mod excited;
