@@ -6,7 +6,7 @@ use froude_foreign::decode::Decoded;
 use froude_foreign::layout::{Layout, Seen, look};
 use froude_foreign::marks::{Marks, Undecided, Witness};
 
-use crate::error::{Place, RecordError};
+use crate::error::{Place, Position, RecordError};
 use crate::file_words::FileWords;
 use crate::guard::unguarded;
 use crate::heading::{Heading, headings, rename_sname, split_header};
@@ -82,7 +82,8 @@ impl Reading {
             Ok(marks) => (marks, None),
             Err(undecided) => (Marks::default(), Some(undecided)),
         };
-        let words = told(words, seen, marks, &sname);
+        let noun = if matches!(place.position, Position::Row(_)) { "row" } else { "line" };
+        let words = told(words, seen, marks, &sname, noun);
         let dialect = Dialect { separator: seen.separator, marks };
         let is_number = layout.is_number.clone();
         Ok(Self { dialect, headings, is_number, place, at: 0, line: layout.data_line, words, undecided })
@@ -147,7 +148,13 @@ fn of_encoding(decoded: &Decoded<'_>) -> Option<String> {
 }
 
 /// Adds how the cells of a table are to be read.
-fn told(mut words: Vec<String>, seen: &Seen, marks: Marks, sname: &[(String, &'static str)]) -> Vec<String> {
+fn told(
+    mut words: Vec<String>,
+    seen: &Seen,
+    marks: Marks,
+    sname: &[(String, &'static str)],
+    noun: &str,
+) -> Vec<String> {
     let Layout { units_line, titles, names_line, .. } = &seen.layout;
     let dialect = Dialect::own();
     if seen.separator != dialect.separator {
@@ -166,13 +173,17 @@ fn told(mut words: Vec<String>, seen: &Seen, marks: Marks, sname: &[(String, &'s
         words.push(format!("{name} between thousands"));
     }
     if *titles > 0 {
-        words.push(counted(*titles, "line above the names passed over", "lines above the names passed over"));
+        words.push(counted(
+            *titles,
+            &format!("{noun} above the names passed over"),
+            &format!("{noun}s above the names passed over"),
+        ));
     }
     if *names_line > 1 {
-        words.push(format!("names in line {names_line}"));
+        words.push(format!("names in {noun} {names_line}"));
     }
     if let Some(line) = units_line {
-        words.push(format!("units in line {line}"));
+        words.push(format!("units in {noun} {line}"));
     }
     words.extend(renamed(sname));
     words

@@ -97,9 +97,8 @@ impl Table {
     #[must_use]
     pub fn foreign(&self) -> Option<Finding> {
         let name = self.path.file_name().unwrap_or_default().to_string_lossy();
-        let told = |words: &String| {
-            Finding::new(Severity::Note, "foreign-table", format!("{name} was understood as: {words}"))
-        };
+        let told =
+            |words: &String| Finding::new(Severity::Note, "foreign-table", format!("{name} was read as: {words}"));
         self.understood.as_ref().map(told)
     }
 

@@ -20,7 +20,7 @@ fn a_log_goes_through_every_format_and_comes_back() {
     let said = convert("log.txt", "a.csv");
     assert!(said.contains("3 columns, 3 rows"), "{said}");
     assert!(
-        said.contains("log.txt was understood as: cells separated by semicolons, decimal comma, units in line 2"),
+        said.contains("log.txt was read as: cells separated by semicolons, decimal comma, units in line 2"),
         "{said}"
     );
     let plain = "time [ms],command [V],f_x [N]\n0,1.5,-2.25\n10,1.75,-2.5\n20,2,-2.75\n";

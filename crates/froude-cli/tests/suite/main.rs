@@ -9,6 +9,7 @@ mod bench;
 #[path = "../../../froude-rig/tests/board/mod.rs"]
 mod board;
 mod carriage;
+mod cases;
 mod cfd;
 mod clocks;
 mod convert;

@@ -341,7 +341,7 @@ fn a_workbook_is_read_as_the_same_table_of_text() {
     proposal::write_sidecar(&path).unwrap();
     let table = read_table(&path, None).unwrap();
     assert_eq!(table.n_rows, 90);
-    assert_eq!(table.understood.as_deref(), Some("units in line 2"));
+    assert_eq!(table.understood.as_deref(), Some("units in row 2"));
     let drag = si(&table, "f_x");
     assert!(drag.iter().all(|f| *f < 0.0) && (drag[0] + 1.05).abs() < 0.1, "{}", drag[0]);
 }

@@ -1,0 +1,107 @@
+//! Small inputs as people write them, with known answers, at the verbs that their owners would run.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::bench::{froude, text};
+
+/// A copy of some inputs in a folder of their own.
+fn copied(names: &[&str]) -> (tempfile::TempDir, Vec<PathBuf>) {
+    let folder = tempfile::tempdir().unwrap();
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/cases");
+    let copy = |name: &&str| {
+        let to = folder.path().join(name);
+        std::fs::copy(from.join(name), &to).unwrap();
+        to
+    };
+    let paths = names.iter().map(copy).collect();
+    (folder, paths)
+}
+
+fn done(arguments: &[&str]) -> String {
+    let output = froude(arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// That the intervals of the recommended, or only, estimate hold the truth, and are at most `widest` of it on each side.
+fn holds(record: &Value, model: &str, truth: &[(&str, f64)], widest: f64) {
+    let estimates = record["estimates"].as_array().unwrap();
+    let estimate = estimates.iter().find(|e| e["model"] == model || estimates.len() == 1).unwrap();
+    for (name, truth) in truth {
+        let c = &estimate["coefficients"][*name];
+        let [low, high] = [0, 1].map(|k| c["interval_95"][k].as_f64().unwrap_or_else(|| panic!("{name}: {c}")));
+        assert!(low <= *truth && *truth <= high, "{name}: [{low}, {high}] without {truth}");
+        assert!(high - low < 2.0 * widest * truth.abs().max(1.0), "{name}: [{low}, {high}]");
+    }
+}
+
+/// Four exports of one workbook: what stops each is named at once, the proposed sidecar reads it, and the derivatives are right.
+#[test]
+fn drift_tests_out_of_a_workbook_become_derivatives_in_three_commands() {
+    let truth = [("D_x_II", 4.2), ("D_y_I", 6.0), ("Y_uv", -28.0), ("D_y_II", 115.0), ("N_v", -1.5), ("N_uv", -14.0)];
+    for (name, understood) in [
+        ("drift-utf8-bom.csv", "cells separated by semicolons, decimal comma, units in line 2"),
+        (
+            "drift-cp1252.csv",
+            "text in windows-1252 (by its letters), cells separated by semicolons, decimal comma, units in line 2",
+        ),
+        ("drift-utf16.csv", "text in UTF-16LE, cells separated by semicolons, decimal comma, units in line 2"),
+        ("drift.xlsx", "units in row 2"),
+    ] {
+        let (_folder, paths) = copied(&[name]);
+        let table = text(&paths[0]);
+        let refused = froude(&["inspect", table]);
+        assert_eq!(refused.status.code(), Some(2));
+        let told = String::from_utf8(refused.stderr).unwrap();
+        for part in ["is it speed?", "is it angle?", "is it f_x?", "is it f_y?", "is it m_z?", "--write-sidecar"] {
+            assert!(told.contains(part), "{part}: {told}");
+        }
+        done(&["inspect", table, "--write-sidecar"]);
+        let record: Value = serde_json::from_str(&done(&["identify", table, "--json"])).unwrap();
+        let said = record["findings"].as_array().unwrap().iter().find(|f| f["code"] == "foreign-table").unwrap();
+        assert!(said["message"].as_str().unwrap().ends_with(&format!("was read as: {understood}")), "{said}");
+        holds(&record, "linear_quadratic", &truth, 0.2);
+    }
+}
+
+#[test]
+fn drift_tests_with_lift_are_recovered_with_and_without_repeats() {
+    let (_folder, paths) = copied(&["lift.csv", "lift-no-repeats.csv"]);
+    for table in &paths {
+        let record: Value = serde_json::from_str(&done(&["identify", text(table), "--json"])).unwrap();
+        let truth = [("D_x_II", 4.2), ("D_y_I", 6.0), ("Y_uv", -28.0), ("D_y_II", 115.0)];
+        holds(&record, "linear_quadratic", &truth, 0.4);
+    }
+}
+
+#[test]
+fn letters_of_sname_head_columns_and_stand_in_formulas() {
+    let (folder, _) = copied(&["sname.csv"]);
+    let campaign = folder.path().join("c.toml");
+    std::fs::write(
+        &campaign,
+        "schema = 1\nname = \"sname\"\n[[source]]\nname = \"t\"\nkind = \"tank\"\ntable = \"sname.csv\"\n[identify]\nmodels = [\"own\"]\n\
+         [[identify.model]]\nname = \"own\"\nf_x = \"X_uu*u*abs(u)\"\nf_y = \"Y_uv*u*v + Y_ur*u*r\"\nm_z = \"N_uv*u*v + N_ur*u*r\"\n",
+    )
+    .unwrap();
+    let record: Value = serde_json::from_str(&done(&["identify", text(&campaign), "--json"])).unwrap();
+    let truth = [("X_uu", -10.0), ("Y_uv", -60.0), ("Y_ur", 8.0), ("N_uv", -20.0), ("N_ur", -12.0)];
+    holds(&record, "own", &truth, 0.2);
+}
+
+#[test]
+fn a_servo_log_of_rounded_stamps_says_how_they_were_read() {
+    let (folder, paths) = copied(&["axis-60hz-ms.csv"]);
+    std::fs::write(
+        folder.path().join("axis-60hz-ms.toml"),
+        "schema = 1\n[constants]\ndrive_gain = \"35 N/V\"\n[columns]\n\"time [s]\" = { name = \"time\" }\n\"position [m]\" = { name = \"position\" }\n\
+         \"command [V]\" = { name = \"command\" }\n",
+    )
+    .unwrap();
+    let record: Value = serde_json::from_str(&done(&["identify", text(&paths[0]), "--json"])).unwrap();
+    holds(&record, "servo_symmetric", &[("M", 12.0), ("F_v", 30.0), ("F_c", 4.0)], 0.3);
+    let findings = record["findings"].to_string();
+    assert!(findings.contains("the stamps are rounded to 1 ms"), "{findings}");
+}
