@@ -90,12 +90,12 @@ pub enum Verb {
         #[arg(long, conflicts_with = "sidecar")]
         write_sidecar: bool,
     },
-    /// Write a table or a log of any format that is read as CSV, Parquet or MCAP, with names and units.
+    /// Convert a table or log in any readable format to CSV, Parquet or MCAP, with names and units.
     #[command(after_help = "Examples:\n  froude convert tow.tdms tow.csv\n  froude convert drift.xlsx drift.parquet")]
     Convert {
         /// The table or log.
         input: PathBuf,
-        /// The file to write (.csv, .parquet, .mcap); it must not be there yet.
+        /// The file to write (.csv, .parquet, .mcap); it must not exist yet.
         out: PathBuf,
         /// Sidecar of the table [default: the .toml of the same name beside it].
         #[arg(long)]
@@ -104,7 +104,7 @@ pub enum Verb {
     /// Write a commented campaign of one kind, with only the keys that matter, to be filled in.
     #[command(after_help = froude::records::starter::help())]
     New {
-        /// What the campaign is of.
+        /// Kind of campaign.
         #[arg(value_parser = froude::records::starter::kinds())]
         kind: String,
         /// Folder to write into; nothing in it is replaced.

@@ -51,12 +51,12 @@ pub fn binary_kind(bytes: &[u8]) -> Option<&'static str> {
 pub fn decode<'b>(bytes: &'b [u8], declared: Option<&str>) -> Result<Decoded<'b>, String> {
     if let Some(label) = declared {
         let encoding = Encoding::for_label(label.trim().as_bytes()).ok_or_else(|| {
-            format!("is declared to be {label:?}, which is no encoding; write \"utf-8\", \"utf-16le\" or \"windows-1252\", for example")
+            format!("has the declared encoding {label:?}, which is unknown; write \"utf-8\", \"utf-16le\" or \"windows-1252\", for example")
         })?;
         return all(encoding, bytes, false);
     }
     if let Some(what) = binary_kind(bytes) {
-        return Err(format!("is {what}, and no text"));
+        return Err(format!("is {what}, not text; name the table itself, saved as CSV"));
     }
     if bytes.starts_with(b"\xff\xfe\x00\x00") || bytes.starts_with(b"\x00\x00\xfe\xff") {
         return Err("is text in UTF-32; save it as UTF-8".to_owned());
@@ -68,7 +68,7 @@ pub fn decode<'b>(bytes: &'b [u8], declared: Option<&str>) -> Result<Decoded<'b>
         return all(encoding, bytes, true);
     }
     if let Some(at) = bytes.iter().position(|b| is_control(*b)) {
-        return Err(format!("is binary and no text: byte {at} is {:#04x}", bytes[at]));
+        return Err(format!("is binary, not text: byte {at} is {:#04x}", bytes[at]));
     }
     if let Ok(text) = std::str::from_utf8(bytes) {
         return Ok(Decoded { text: Cow::Borrowed(text), encoding: UTF_8.name(), is_guess: false });
@@ -84,7 +84,7 @@ fn all<'b>(encoding: &'static Encoding, bytes: &'b [u8], is_guess: bool) -> Resu
         return Err(format!("is not text in {}: some of its bytes are no letters there", used.name()));
     }
     match text.char_indices().find(|(_, c)| u8::try_from(*c).is_ok_and(is_control)) {
-        Some((at, c)) => Err(format!("is binary and no text in {}: letter {at} is {c:?}", used.name())),
+        Some((at, c)) => Err(format!("is not text in {}: character {at} is {c:?}", used.name())),
         None => Ok(Decoded { text, encoding: used.name(), is_guess }),
     }
 }
@@ -140,8 +140,8 @@ mod tests {
     #[test]
     fn what_is_no_text_is_named() {
         let said = |bytes: &[u8]| decode(bytes, None).unwrap_err();
-        assert_eq!(said(b"\x89PNG\r\n\x1a\n"), "is a PNG image, and no text");
-        assert_eq!(said(b"1,2\n\x00\x01\x02"), "is binary and no text: byte 4 is 0x00");
+        assert_eq!(said(b"\x89PNG\r\n\x1a\n"), "is a PNG image, not text; name the table itself, saved as CSV");
+        assert_eq!(said(b"1,2\n\x00\x01\x02"), "is binary, not text: byte 4 is 0x00");
         assert_eq!(said(b"\xff\xfe\x00\x001\x00\x00\x00"), "is text in UTF-32; save it as UTF-8");
         assert_eq!(said(b"\xff\xfea"), "is not text in UTF-16LE: some of its bytes are no letters there");
         assert!(decode(b"a", Some("ebcdic")).unwrap_err().contains("which is no encoding"));

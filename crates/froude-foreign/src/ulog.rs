@@ -179,7 +179,7 @@ impl Log {
             b'F' => {
                 let text = std::str::from_utf8(body).map_err(|_| "a format is not text".to_owned())?;
                 let (name, fields) =
-                    text.split_once(':').ok_or_else(|| format!("`{text}` is no format; expected `name:fields`"))?;
+                    text.split_once(':').ok_or_else(|| format!("`{text}` is not a format; expected `name:fields`"))?;
                 self.formats.insert(name.to_owned(), fields.to_owned());
                 Ok(())
             }
@@ -196,7 +196,7 @@ impl Log {
             }
             // Information, parameters, texts and marks of synchronisation, and what later versions may add.
             other if other.is_ascii_uppercase() => Ok(()),
-            other => Err(format!("there is no message of ULog (type {other}): the file is damaged; copy it again")),
+            other => Err(format!("unknown ULog message type {other}: the file is damaged; copy it again")),
         }
     }
 
@@ -206,7 +206,9 @@ impl Log {
         let has_others = incompatible.first().is_some_and(|bits| bits & !1 != 0)
             || incompatible.iter().skip(1).any(|bits| *bits != 0);
         if has_others {
-            return Err("the log has features that this version of the format does not know".to_owned());
+            return Err(
+                "the log uses ULog features that are not read; convert it with ulog2csv (PyPI pyulog)".to_owned()
+            );
         }
         if is_appended {
             let offsets = body.get(16..).unwrap_or_default().chunks_exact(8).filter_map(u64_of);
@@ -243,7 +245,7 @@ impl Log {
                 ));
             }
             let (kind, own) =
-                field.split_once(' ').ok_or_else(|| format!("`{field}` is no field; expected `type name`"))?;
+                field.split_once(' ').ok_or_else(|| format!("`{field}` is not a field; expected `type name`"))?;
             let (kind, length) = match kind.split_once('[') {
                 None => (kind, None),
                 Some((kind, length)) => {

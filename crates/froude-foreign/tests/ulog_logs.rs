@@ -118,8 +118,8 @@ fn what_contradicts_the_format_is_refused_with_its_byte() {
         ("undeclared", "a message is of topic 9, which nothing declares"),
         ("no_format", "byte 16: the format of att is missing"),
         ("short", "a message of att_0 has 10 bytes, too few for the 28 of its format"),
-        ("letter", "byte 16: there is no message of ULog (type 7): the file is damaged; copy it again"),
-        ("future", "byte 16: the log has features that this version of the format does not know"),
+        ("letter", "byte 16: unknown ULog message type 7: the file is damaged; copy it again"),
+        ("future", "byte 16: the log uses ULog features that are not read; convert it with ulog2csv (PyPI pyulog)"),
         (
             "flat",
             "no topic of this ULog file can be read; topic bare_0 is not read: it has no field `uint64_t timestamp`",

@@ -110,7 +110,7 @@ pub fn times(time_s: &[f64], slowest_hz: f64) -> Option<String> {
         .filter(|(factor, ..)| is_of_a_test(*factor))
         .map(|(factor, written, meant)| {
             format!(
-                "`time [{meant}]` where `time [{written}]` stands makes it {} Hz and {} s",
+                "`time [{meant}]` instead of `time [{written}]` would give {} Hz and {} s",
                 significant(rate_hz / factor, 3),
                 significant(lasts_s * factor, 3)
             )
@@ -118,7 +118,7 @@ pub fn times(time_s: &[f64], slowest_hz: f64) -> Option<String> {
         .collect();
     let advice = if fits.is_empty() { "check the unit of its times".to_owned() } else { fits.join("; ") };
     Some(format!(
-        "its times make {} Hz and {} s, which no such test has: every result with a unit of time is then wrong by powers of the same factor; {advice}",
+        "its times give a sampling rate of {} Hz and a duration of {} s, which no such test has; if their unit is wrong, so is every result that involves time; {advice}",
         significant(rate_hz, 3),
         significant(lasts_s, 3)
     ))
@@ -159,12 +159,12 @@ mod tests {
         let times_of = |step_s: f64, n: u32| (0..n).map(|i| step_s * f64::from(i)).collect::<Vec<f64>>();
         assert_eq!(
             times(&times_of(1000.0 / 60.0, 1440), SLOWEST_HZ).unwrap(),
-            "its times make 0.0600 Hz and 24000 s, which no such test has: every result with a unit of time is then wrong by powers of the same factor; \
-             `time [ms]` where `time [s]` stands makes it 60.0 Hz and 24.0 s"
+            "its times give a sampling rate of 0.0600 Hz and a duration of 24000 s, which no such test has; if their unit is wrong, so is every result that \
+             involves time; `time [ms]` instead of `time [s]` would give 60.0 Hz and 24.0 s"
         );
         // A kilohertz in milliseconds; a minute of 100 Hz, headed as milliseconds; sound logs, also of hours.
         assert!(times(&times_of(1.0, 20_000), SLOWEST_HZ).unwrap().contains("`time [ms]`"));
-        assert!(times(&times_of(1e-5, 6000), SLOWEST_HZ).unwrap().contains("`time [s]` where `time [ms]` stands"));
+        assert!(times(&times_of(1e-5, 6000), SLOWEST_HZ).unwrap().contains("`time [s]` instead of `time [ms]`"));
         for (step_s, n) in [(0.01, 6000), (1.0, 600), (1e-4, 20_000), (0.1, 100_000)] {
             assert_eq!(times(&times_of(step_s, n), SLOWEST_HZ), None, "{step_s}");
         }

@@ -1,4 +1,4 @@
-//! `froude convert`: a table or a log of any format that is read, as CSV, Parquet or MCAP.
+//! `froude convert`: any readable table or log, written as CSV, Parquet or MCAP.
 //!
 //! Numbers keep the units of their columns in CSV and Parquet. In MCAP, which has no place for a unit, they are in SI: a topic `/table` of JSON messages, one a
 //! row at its `time`, with a schema whose descriptions state the units.

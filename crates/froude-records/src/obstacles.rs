@@ -115,7 +115,7 @@ fn of_marks(found: &Undecided) -> Obstacle {
             (comma.line, format!("`{}` and `{}` have two decimal marks", point.cell, comma.cell))
         }
         Undecided::Thousands(one, other) => {
-            (other.line, format!("`{}` and `{}` have two marks of thousands", one.cell, other.cell))
+            (other.line, format!("`{}` and `{}` use two different thousands separators", one.cell, other.cell))
         }
     };
     Obstacle { line: Some(line), column: None, text }

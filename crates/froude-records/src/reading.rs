@@ -224,7 +224,7 @@ pub(crate) fn undecided(path: &Path, found: &Undecided, sidecar: &str) -> Record
         Undecided::Thousands(one, other) => (
             &other.line,
             format!(
-                "`{}` and `{}` in line {} have two marks of thousands; export the file with one of them",
+                "`{}` and `{}` in line {} use two different thousands separators; export the file with one of them",
                 other.cell, one.cell, one.line
             ),
         ),

@@ -37,7 +37,7 @@ macro_rules! starter {
 pub const STARTERS: [Starter; 9] = [
     starter!("table", "steady forces over speed, a row per run"),
     starter!("drift", "forces and yaw moment over speed and drift angle, a row per run"),
-    starter!("decay", "releases of a body that swings out, a log each"),
+    starter!("decay", "free-decay tests of a released body, one log each"),
     starter!("steady", "raw logs of steady tows, with a sidecar", "runs/run_01.toml" = "steady-run.toml"),
     starter!("carriage", "a towing carriage that Froude drives, on its twin"),
     starter!("openfoam", "force files of OpenFOAM cases that are computed already"),

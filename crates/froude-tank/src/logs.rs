@@ -311,7 +311,7 @@ fn in_another_unit(logs: &[TankLog]) -> Vec<Finding> {
             if own > ANOTHER_UNIT * high || own < low / ANOTHER_UNIT {
                 let unit = log.log.channels.get(name).map_or("", |channel| channel.meaning.unit.as_str());
                 let text = format!(
-                    "{}: {name} goes through {own:.3e} {unit}, and through {low:.3e} to {high:.3e} {unit} in the other runs: check its unit (mm under [m] is a factor of 1000)",
+                    "{}: the range of {name} is {own:.3e} {unit}, that of the other runs {low:.3e} to {high:.3e} {unit}: check its unit (mm under [m] is a factor of 1000)",
                     log.log.path.display()
                 );
                 out.push(warning("run-stands-out", text));

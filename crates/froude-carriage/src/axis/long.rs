@@ -73,8 +73,7 @@ fn for_each_part(
 ) -> Result<(), MethodError> {
     let jumps = sidecar_of(path, sidecar)?.map(|sidecar| sidecar.run.declared.jumps).unwrap_or_default();
     if jumps.is_split {
-        let what =
-            "split_at_clock_jumps is not done to a log that is read in chunks; cut the log where its clock was set";
+        let what = "split_at_clock_jumps is not available for a log that is read in chunks; cut the log where its clock was set";
         return Err(MethodError::input(path, what));
     }
     let mut wraps = Wraps::default();

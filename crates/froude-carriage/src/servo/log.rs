@@ -121,9 +121,9 @@ impl ServoLog {
         let mut done = Vec::new();
         if put > 0 {
             done.push(format!(
-                "position and command are read at even times {} ms apart, {put} of {samples} samples ({}) between those of the log: the position by a cubic \
-                 spline, the command by straight lines, which by its second differences are off by {} V rms. This error is among the residuals that the \
-                 intervals come from",
+                "position and command are read at even times {} ms apart, {put} of {samples} samples ({}) are interpolated: the position by a cubic \
+                 spline, the command linearly, with an error of {} V rms estimated from its second differences. The residuals, from which the \
+                 intervals are computed, include this error",
                 plain(1e3 * step_s, 6),
                 percent(put as f64 / samples.max(1) as f64),
                 significant(self.off_lines_v(), 2)

@@ -90,7 +90,7 @@ pub(super) fn judged(even: &Even, lever_m: f64, window: Option<f64>) -> Result<J
         Standing::Swings => Status::Oscillating,
         Standing::Drifts => {
             return Err(format!(
-                "its mean load still changes by {:.2} % of its force from one half of the window to the other, and {:.1} % is allowed: compute it longer",
+                "its mean load still changes by {:.2} % of its force from one half of the window to the other (limit {:.1} %): run the case longer",
                 100.0 * largest(&scales, &window.drift, &|_| true),
                 100.0 * DRIFT
             ));

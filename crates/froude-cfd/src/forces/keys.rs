@@ -7,8 +7,8 @@
 //! up       = "z"              # axis of the mesh that points up
 //! turned   = "inflow"         # what was turned to give a drift angle: the inflow, or the body in the mesh
 //! symmetry = "none"           # the whole body; or the plane that a half domain ends at: "z = 0"
-//! rho_inf  = "1 kg/m^3"       # rhoInf of the function object; 1 for loads over the density
-//! origin   = "0 m, 0 m, 0 m"  # point of the mesh that moments are wanted about; left out: CofR
+//! rho_inf  = "1 kg/m^3"       # rhoInf of the function object; 1 for loads divided by the density
+//! origin   = "0 m, 0 m, 0 m"  # point of the mesh about which moments are reported; left out: CofR
 //! ```
 
 use froude_added_mass::frame::{Axes, Direction, Orientation};
@@ -60,13 +60,13 @@ pub const KEYS: &[Key] = &[
         "symmetry",
         Kind::Word(&PLANES),
         SYMMETRY,
-        "plane of the mesh that a half domain ends at; `none` for the whole body",
+        "symmetry plane of a half model, in mesh axes; `none` if the mesh contains the whole body",
     ),
     optional(
         "rho_inf",
         Kind::Quantity(Dimension::DENSITY),
         "required for forces; coefficients need none",
-        "rhoInf of the function object, the density that its loads are of; \"1 kg/m^3\" for loads over the density",
+        "rhoInf of the function object, the density used for its loads; \"1 kg/m^3\" for loads divided by the density",
     )
     .within(Range::Positive),
     optional(
@@ -75,7 +75,7 @@ pub const KEYS: &[Key] = &[
         "CofR of the comment lines",
         "point of the mesh that the moments in the files are about, where the files do not state it",
     ),
-    optional("origin", Kind::Text, "CofR", "point of the mesh that moments are wanted about: \"0 m, 0 m, -0.2 m\""),
+    optional("origin", Kind::Text, "CofR", "point of the mesh about which moments are reported: \"0 m, 0 m, -0.2 m\""),
     positive("a_ref", Dimension::AREA, "Aref of coefficients"),
     positive("l_ref", Dimension::LENGTH, "lRef of coefficients"),
     positive("mag_u_inf", Dimension::SPEED, "magUInf of coefficients"),

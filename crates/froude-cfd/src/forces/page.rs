@@ -53,7 +53,7 @@ pub(super) fn findings(gathered: &Gathered, spec: &ForcesSpec) -> Vec<Finding> {
             String::new()
         };
         let cases = counted(gathered.without.len(), "case has", "cases have");
-        out.push(warning("openfoam-cases-missing", format!("{cases} no loads that count: {name}: {why}{others}")));
+        out.push(warning("openfoam-cases-missing", format!("{cases} no usable mean loads: {name}: {why}{others}")));
     }
     let left = &gathered.settings.left_out;
     if !left.is_empty() {
@@ -63,7 +63,7 @@ pub(super) fn findings(gathered: &Gathered, spec: &ForcesSpec) -> Vec<Finding> {
     if let Some(first) = gathered.settings.contradicted.first() {
         let cases = counted(gathered.settings.contradicted.len(), "case", "cases");
         let text = format!(
-            "the inflow of {cases} is not that of the stated speed and angle: {first}. Check the pattern or the list, `turned`, and the sign of the angle (v = U (cos θ, −sin θ): at a positive one the water comes from port)"
+            "the inflow of {cases} does not match the stated speed and angle: {first}. Check the pattern or the list, `turned`, and the sign of the angle (v = U (cos θ, −sin θ): at a positive one the water comes from port)"
         );
         out.push(warning("openfoam-inflow", text));
     }
@@ -126,12 +126,12 @@ fn windows(cases: &[Case]) -> String {
     };
     let resampled = cases.iter().filter(|case| case.is_resampled).count();
     let uneven = if resampled > 0 {
-        format!("; the steps of {} are uneven, and means are those over time", counted(resampled, "case", "cases"))
+        format!("; the steps of {} are uneven, so the means are weighted by time", counted(resampled, "case", "cases"))
     } else {
         String::new()
     };
     format!(
-        "loads are means from the time {} to {}, of cases that begin at {}; the start of the flow before the window is left out. Within it no mean force changes by more than {:.1} % from one half to the other, or it swings about a steady mean{uneven}",
+        "loads are means from the time {} to {}, of cases that begin at {}; the start-up transient before the window is left out. Within it no mean force changes by more than {:.1} % from one half to the other, or it swings about a steady mean{uneven}",
         range(&|case| case.judged.span[0]),
         range(&|case| case.judged.span[1]),
         range(&|case| case.judged.begins),

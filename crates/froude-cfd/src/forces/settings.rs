@@ -55,7 +55,7 @@ pub(super) fn settings(folder: &Path, spec: &ForcesSpec) -> Result<Settings, Met
         let found = if names.is_empty() {
             "no folder in it has postProcessing with force files".to_owned()
         } else {
-            format!("of the folders with force files none matches: {names}")
+            format!("no folder with force files matches the pattern: {names}")
         };
         return Err(MethodError::input(
             folder,

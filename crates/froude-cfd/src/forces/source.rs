@@ -104,7 +104,7 @@ impl Case {
     fn files(&self) -> impl Iterator<Item = ReadFile> {
         let [from, to] = self.judged.span;
         let words = format!(
-            "mean over the end of the case, judged as {}; the start of the flow before it is left out",
+            "mean over the end of the case, judged as {}; the start-up transient before it is left out",
             self.judged.status.word()
         );
         // Of an iteration the unit is none; a file does not say which of the two its times are.
@@ -204,7 +204,10 @@ fn gathered(
         (true, Some((name, why))) => {
             let more = without.len() - 1;
             let others = if more > 0 { format!(" ({more} more)") } else { String::new() };
-            Err(MethodError::input(source.input.path(), format!("no case has loads that count: {name}: {why}{others}")))
+            Err(MethodError::input(
+                source.input.path(),
+                format!("no case has usable mean loads: {name}: {why}{others}"),
+            ))
         }
         _ if loads.is_empty() => {
             let what = "the force files determine no load along or about an axis of the body: coefficients of some directions only do not where the body is turned";
@@ -229,7 +232,7 @@ fn density(campaign: &Campaign) -> Result<Option<f64>, MethodError> {
 /// Density of the water over that which the forces are of.
 fn ratio(spec: &ForcesSpec, density_kg_m3: Option<f64>, campaign: &Campaign) -> Result<f64, MethodError> {
     let Some(rho_inf) = spec.rho_inf_kg_m3 else {
-        let advice = "the files do not state the density that their forces are of; write rho_inf = \"998 kg/m^3\", as rhoInf is in the function object (system/controlDict), or rho_inf = \"1 kg/m^3\" for forces over the density";
+        let advice = "the files do not state the density that their forces are of; write rho_inf = \"998 kg/m^3\", as rhoInf is in the function object (system/controlDict), or rho_inf = \"1 kg/m^3\" for forces divided by the density";
         return Err(spec.missing("rho_inf", advice).into());
     };
     density_kg_m3.map(|density| density / rho_inf).ok_or_else(|| {
@@ -320,7 +323,7 @@ fn errors(observations: &Observations, cases: &[Case]) -> Vec<SharedError> {
     });
     let start = loads().map(|(k, load)| {
         let left = rows(&|_, to_go| to_go[k]);
-        SharedError::of_load(&format!("start of the flow ({load})"), load, &left, 1.0, f64::INFINITY)
+        SharedError::of_load(&format!("start-up transient ({load})"), load, &left, 1.0, f64::INFINITY)
     });
     let out: Vec<SharedError> = scatter.chain(start).collect();
     out.into_iter().map(|error| error.evaluated_as(Kind::Numerical)).collect()

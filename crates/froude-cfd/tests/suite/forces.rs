@@ -161,8 +161,9 @@ fn half_of_the_body_is_doubled_and_the_window_said() {
     );
     let window = said(&found, "openfoam-window");
     assert!(
-        window
-            .starts_with("loads are means from the time 15.1 to 20, of cases that begin at 0.1; the start of the flow"),
+        window.starts_with(
+            "loads are means from the time 15.1 to 20, of cases that begin at 0.1; the start-up transient"
+        ),
         "{window}"
     );
     let steps = &found.results[0].files()[0].steps;
@@ -241,7 +242,7 @@ fn a_case_that_has_not_settled_is_left_out_by_name() {
     let found = identified(folder.path(), SECTION).unwrap();
     let missing = said(&found, "openfoam-cases-missing");
     assert!(
-        missing.starts_with("1 case has no loads that count: U2_b12: its mean load still changes by "),
+        missing.starts_with("1 case has no usable mean loads: U2_b12: its mean load still changes by "),
         "{missing}"
     );
     assert_eq!(said(&found, "openfoam-cases-left-out"), "1 folder with force files is not among the cases: old");
@@ -266,7 +267,7 @@ fn what_is_not_stated_is_asked_and_what_cannot_be_is_refused() {
         ("none", "x = 0", "is \"x = 0\", a plane across the body's axis forward"),
         ("up = \"-z\"", "up = \"-x\"", "they lie along one axis of the mesh"),
         ("{speed [m/s]}", "{speed}", "{speed} has no unit: write {speed [m/s]}"),
-        ("pattern = \"U", "pattern = \"V", "none matches: U1.5_b0, U1.5_b12"),
+        ("pattern = \"U", "pattern = \"V", "matches the pattern: U1.5_b0, U1.5_b12"),
         ("pattern = \"U{speed [m/s]}_b{angle [deg]}\"\n", "", "0/U has no line `internalField uniform"),
         ("none\"", "none\"\nobject = \"bow\"", "no force files of the function object \"bow\"; it has forces"),
         ("none\"", "none\"\norigin = \"1, 0, 0\"", "write three lengths: \"0 m, 0 m, -0.2 m\""),

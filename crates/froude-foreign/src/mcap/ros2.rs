@@ -184,14 +184,14 @@ fn field(line: &str) -> Result<Option<Field>, String> {
         return Ok(None);
     }
     if name.is_empty() {
-        return Err(format!("`{code}` is no field; expected `type name`"));
+        return Err(format!("`{code}` is not a field; expected `type name`"));
     }
     let (kind, array) = match kind.split_once('[') {
         None => (kind, Size::One),
         Some((kind, size)) => {
             let size = size.strip_suffix(']').ok_or_else(|| format!("`{code}`: a bracket is not closed"))?;
             let is_varying = size.is_empty() || size.starts_with("<=");
-            let fixed = || size.parse().map(Size::Fixed).map_err(|_| format!("`{code}`: `{size}` is no length"));
+            let fixed = || size.parse().map(Size::Fixed).map_err(|_| format!("`{code}`: `{size}` is not a length"));
             (kind, if is_varying { Size::Varying } else { fixed()? })
         }
     };
@@ -472,7 +472,7 @@ uint64 b
     fn what_is_not_understood_is_named() {
         for (text, problem) in [
             ("float64", "line 1 of its definition: `float64` has no name; expected `type name`"),
-            ("float64[x] a", "line 1 of its definition: `float64[x] a`: `x` is no length"),
+            ("float64[x] a", "line 1 of its definition: `float64[x] a`: `x` is not a length"),
             ("Other a", "the definition of p/Other is missing"),
             ("wstring a", "a is a wstring, which ROS 2 writes in two ways"),
             ("T t", "p/T lies more than 32 definitions deep, or has more than 10000 numbers"),

@@ -55,7 +55,7 @@ impl Values {
         let rest = if n_daqmx > 0 {
             if n_daqmx != objects.len() {
                 return Err(format!(
-                    "the data at byte {at} are of DAQmx and of plain channels together, which is not read"
+                    "the segment with data at byte {at} mixes DAQmx and plain channels, which is not read; save them in separate TDMS files"
                 ));
             }
             self.daqmx(data, &objects, segment)?

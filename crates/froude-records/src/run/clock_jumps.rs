@@ -193,7 +193,7 @@ pub fn clock_back(place: Place, before_s: f64, now_s: f64, usual_s: f64) -> Reco
             plain(*period_s, 10)
         ),
         None => format!(
-            "is {now_s} s after {before_s} s: the clock was set back by {} s, or a second log begins there; no usual counter wraps so. Write \
+            "is {now_s} s after {before_s} s: the clock was set back by {} s, or a second log begins there; no common counter wraps at this value. Write \
              split_at_clock_jumps = true {sidecar} to use the longest stretch between such jumps, or cut the log there; a counter with another \
              period is declared as clock_wraps = \"… s\". Do not sort the rows: that would mix both stretches",
             plain(before_s - now_s, 6)
@@ -205,7 +205,7 @@ pub fn clock_back(place: Place, before_s: f64, now_s: f64, usual_s: f64) -> Reco
 /// The error for a step back that the declared period does not explain.
 fn not_a_wrap(place: Place, before_s: f64, now_s: f64, period_s: f64) -> RecordError {
     let problem = format!(
-        "is {now_s} s after {before_s} s, and no wrap of the declared {} s: that would be a step of {} s. Correct clock_wraps, or cut the log there",
+        "is {now_s} s after {before_s} s, which is not a wrap of the declared {} s: the step would be {} s. Correct clock_wraps, or cut the log there",
         plain(period_s, 9),
         plain(now_s + period_s - before_s, 6)
     );
@@ -216,7 +216,7 @@ fn not_a_wrap(place: Place, before_s: f64, now_s: f64, period_s: f64) -> RecordE
 #[must_use]
 pub fn twice(place: Place, time_s: f64) -> RecordError {
     let problem = format!(
-        "is {time_s} s as in the row before, and the other stamps show no even rate that rounding would make this of: delete the row if it is there \
+        "is {time_s} s as in the row before, and rounding at an even rate does not explain it: delete the row if it was logged \
          twice, or log the time with more digits"
     );
     RecordError::value(place, "time", problem)

@@ -306,15 +306,15 @@ impl Found {
         let missing = Missing::of(time_s, step_s, gaps);
         let words = match (self.rounded, self.resolution_s) {
             (Some(step_s), Some(resolution_s)) => format!(
-                "the stamps are rounded to {} ms and lie within half of that of even times {} ms apart, which are used in their place",
+                "the stamps are rounded to {} ms; they fit even times {} ms apart within half of that, and these even times are used instead",
                 plain(1e3 * resolution_s, 6),
                 plain(1e3 * step_s, 7)
             ),
             (_, Some(resolution_s)) => format!(
-                "no even times lie within half the resolution of the stamps ({} ms), which are used as they are",
+                "the stamps fit no even times within half their resolution ({} ms) and are used as they are",
                 plain(1e3 * resolution_s, 6)
             ),
-            _ => "no even times explain the stamps, which are used as they are".to_owned(),
+            _ => "the stamps fit no even times and are used as they are".to_owned(),
         };
         // Rounding that is undone costs nothing.
         let severity = if self.rounded.is_some() { Severity::Note } else { Severity::Warning };
@@ -355,12 +355,7 @@ impl Missing {
     fn words(&self) -> Option<String> {
         let part = self.ticks as f64 / (self.ticks + self.samples).max(1) as f64;
         (self.ticks > 0).then(|| {
-            format!(
-                "{} of the samples at this step ({}) are missing, at most {} in a row",
-                percent(part),
-                self.ticks,
-                self.in_a_row
-            )
+            format!("{} of the samples ({}) are missing, at most {} in a row", percent(part), self.ticks, self.in_a_row)
         })
     }
 }

@@ -149,11 +149,11 @@ pub fn question(name: &str, unit: &Unit) -> Option<String> {
         Dimension::ANGULAR_SPEED if !says_angle && RATES.contains(&plain) => {
             let (turns, radians) = if words.contains(&"min") { ("rpm", "rad/min") } else { ("rev/s", "rad/s") };
             Some(format!(
-                "`{text}` of a rate of turning is read in two ways; write `{turns}` where turns are counted, or `{radians}`"
+                "`{text}` is ambiguous for a rate of rotation; write `{turns}` where turns are counted, or `{radians}`"
             ))
         }
         Dimension::ANGLE if plain == "angle" && !says_angle && text != "1" => {
-            Some(format!("`{text}` of an angle has no size; write `deg` or `rad`, with the numbers converted"))
+            Some(format!("`{text}` is not a unit of angle; convert the numbers and write `deg` or `rad`"))
         }
         _ => None,
     }

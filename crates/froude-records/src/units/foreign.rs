@@ -50,13 +50,10 @@ const FOREIGN: &[(&[&str], Meanings)] = &[
             ("ton_short", "short ton (US), 907.18474 kg"),
             ("ton_long", "long ton (UK), 1016.0469 kg"),
             ("tf", "tonne-force, 9806.65 N"),
-            ("kip", "1000 lbf: a short ton-force is 2 of it"),
+            ("kip", "1000 lbf; a short ton-force is 2 kip"),
         ],
     ),
-    (
-        &["tonf"],
-        &[("tf", "tonne-force, 9806.65 N"), ("kip", "1000 lbf: a short ton-force is 2 of it, a long one 2.24")],
-    ),
+    (&["tonf"], &[("tf", "tonne-force, 9806.65 N"), ("kip", "1000 lbf; a short ton-force is 2 kip, a long one 2.24")]),
     (
         &["gal", "gallon", "gallons", "Gal"],
         &[
@@ -89,7 +86,7 @@ const FOREIGN: &[(&[&str], Meanings)] = &[
     (&["pdl"], &[("lb ft/s^2", "poundal, 0.138255 N, a force")]),
     (&["psf", "PSF"], &[("lbf/ft^2", "a pressure")]),
     (&["ppt", "psu", "PSU", "PPT"], &[("g/kg", "parts in a thousand, a salinity")]),
-    (&["ppb"], &[("ppm", "a part in a million; a part in a milliard is a thousandth of it")]),
+    (&["ppb"], &[("ppm", "parts per million; 1 ppb is 0.001 ppm")]),
     (&["Std"], &[("h", "Stunde: hour, a time")]),
     (&["d", "day", "days", "Tag", "Tage", "jour", "jours"], &[("h", "hour, a time: a day is 24 of it")]),
     (&["qm", "sqm"], &[("m^2", "an area")]),

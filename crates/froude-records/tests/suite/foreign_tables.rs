@@ -198,8 +198,14 @@ fn a_proposed_sidecar_reads_the_table_that_it_was_made_for() {
 #[test]
 fn what_is_no_table_is_named() {
     let said = |bytes: &[u8]| read(bytes, "").unwrap_err();
-    assert_eq!(said(b"\x89PNG\r\n\x1a\n\x00\x00"), "t.csv: the file is a PNG image, and no text");
-    assert_eq!(said(b"PK\x03\x04\x14\x00"), "t.csv: the file is a zip archive or an office document, and no text");
+    assert_eq!(
+        said(b"\x89PNG\r\n\x1a\n\x00\x00"),
+        "t.csv: the file is a PNG image, not text; name the table itself, saved as CSV"
+    );
+    assert_eq!(
+        said(b"PK\x03\x04\x14\x00"),
+        "t.csv: the file is a zip archive or an office document, not text; name the table itself, saved as CSV"
+    );
     assert_eq!(
         said(b"1,2\n3,4\n"),
         "t.csv:1: there are numbers where the columns should be named; write a line of headers above them, as `speed [m/s],f_x [N]`"

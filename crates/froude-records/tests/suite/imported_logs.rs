@@ -58,7 +58,7 @@ fn uneven_time_steps_are_reported_and_nothing_is_resampled() {
     assert_eq!((finding.severity, finding.code.as_str()), (Severity::Warning, "uneven-time-steps"));
     assert!((imported.steps.shortest_s - 0.96e-3).abs() < 1e-12 && (imported.steps.longest_s - 1.07e-3).abs() < 1e-12);
     assert!(
-        finding.message.contains("no even times lie within half the resolution of the stamps (0.01 ms)"),
+        finding.message.contains("the stamps fit no even times within half their resolution (0.01 ms)"),
         "{}",
         finding.message
     );
@@ -82,7 +82,7 @@ fn a_time_that_goes_back_or_is_not_there_is_reported_with_its_line() {
     assert_eq!(
         import_run(&path, None).unwrap_err().to_string(),
         format!(
-            "{}:4: `time` is 0.1 s as in the row before, and the other stamps show no even rate that rounding would make this of: delete the row if it is there \
+            "{}:4: `time` is 0.1 s as in the row before, and rounding at an even rate does not explain it: delete the row if it was logged \
              twice, or log the time with more digits",
             path.display()
         )
@@ -150,13 +150,13 @@ fn rounded_stamps_give_the_even_times_and_lost_samples_are_counted() {
     assert_eq!((whole.findings[0].severity, whole.findings[0].code.as_str()), (Severity::Note, "uneven-time-steps"));
     assert_eq!(
         whole.findings[0].message,
-        "time steps have a median of 17.000000 ms, from 16.000000 ms to 17.000000 ms: the stamps are rounded to 1 ms and lie within half of that of even \
-         times 16.66667 ms apart, which are used in their place"
+        "time steps have a median of 17.000000 ms, from 16.000000 ms to 17.000000 ms: the stamps are rounded to 1 ms; they fit even times \
+         16.66667 ms apart within half of that, and these even times are used instead"
     );
     let kept = (0..1440).filter(|k| k % 40 != 7 && !(600..720).contains(k));
     let lost = import_run(&log(folder.path(), kept.map(stamp)), None).unwrap();
     let message = &lost.findings[0].message;
-    assert!(message.contains("2.5 % of the samples at this step (33) are missing, at most 1 in a row"), "{message}");
+    assert!(message.contains("2.5 % of the samples (33) are missing, at most 1 in a row"), "{message}");
     assert!(message.contains("120 ticks are missing in 1 gap, the longest of 2.017 s from 9.98333 s on"), "{message}");
     assert_eq!((lost.findings[0].code.as_str(), lost.log.lost.len()), ("time-gaps", 1));
 }

@@ -93,7 +93,7 @@ fn spellings_with_several_meanings_are_asked_about() {
         (
             "ton",
             "; did you mean `t` (tonne, 1000 kg) or `ton_short` (short ton (US), 907.18474 kg) or `ton_long` (long ton (UK), 1016.0469 kg) \
-             or `tf` (tonne-force, 9806.65 N) or `kip` (1000 lbf: a short ton-force is 2 of it)?",
+             or `tf` (tonne-force, 9806.65 N) or `kip` (1000 lbf; a short ton-force is 2 kip)?",
         ),
         ("gpm", "; did you mean `gal_US/min` (3.785411784 l/min) or `gal_imp/min` (4.54609 l/min)?"),
         ("mile", "; did you mean `mi` (statute mile, 1609.344 m) or `nmi` (nautical mile, 1852 m)?"),
@@ -191,7 +191,7 @@ fn a_rate_of_turning_says_what_it_counts() {
     let asked = |name, text| question(name, &parse_unit(text).unwrap());
     let two = |text: &str, turns: &str, radians: &str| {
         Some(format!(
-            "`{text}` of a rate of turning is read in two ways; write `{turns}` where turns are counted, or `{radians}`"
+            "`{text}` is ambiguous for a rate of rotation; write `{turns}` where turns are counted, or `{radians}`"
         ))
     };
     for name in ["w_x", "w_z", "p", "q", "r", "n", "rpm", "Drehzahl", "rotation", "yaw rate", "omega", "std_w_z"] {
@@ -207,7 +207,7 @@ fn a_rate_of_turning_says_what_it_counts() {
     }
     assert_eq!(asked("frequency", "Hz"), None);
     assert_eq!(asked("shear", "1/s"), None);
-    let without_size = "`cts` of an angle has no size; write `deg` or `rad`, with the numbers converted";
+    let without_size = "`cts` is not a unit of angle; convert the numbers and write `deg` or `rad`";
     assert_eq!(asked("angle", "cts").as_deref(), Some(without_size));
     assert_eq!((asked("angle", "1"), asked("angle", "deg"), asked("n_links", "-")), (None, None, None));
 }

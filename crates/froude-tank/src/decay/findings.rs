@@ -123,8 +123,8 @@ fn stands_out(fit: &DecayFit) -> Vec<Finding> {
         let found = moving(i);
         ((found - usual_mass).abs() > allowed).then(|| {
             let text = format!(
-                "run {:?} swings with a period of {:.4} s, which is a moving inertia of {found:.4} {of_mass} where the others have {usual_mass:.4} {of_mass} ({:+.1} %): another body, other springs, \
-                 or a wrong unit of time; {} by each release alone stands in the table of the releases",
+                "run {:?} has a period of {:.4} s, which gives a moving inertia of {found:.4} {of_mass}; the other runs give {usual_mass:.4} {of_mass} ({:+.1} %): check the body, the springs \
+                 and the unit of time; the table of releases lists {} from each release alone",
                 fit.runs[i].id,
                 fit.runs[i].period_s,
                 100.0 * (found / usual_mass - 1.0),
