@@ -89,9 +89,9 @@ fn all<'b>(encoding: &'static Encoding, bytes: &'b [u8], is_guess: bool) -> Resu
     }
 }
 
-/// Control characters that no text has: tabs, line ends, form feeds and the end mark of DOS are left.
+/// What no text has, and nearly every other file: other control characters are shown where they stand.
 fn is_control(byte: u8) -> bool {
-    (byte < 0x20 && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | 0x1a)) || byte == 0x7f
+    byte == 0
 }
 
 /// UTF-16 whose every second byte is zero at the beginning, as ASCII in it is.
@@ -144,6 +144,6 @@ mod tests {
         assert_eq!(said(b"1,2\n\x00\x01\x02"), "is binary, not text: byte 4 is 0x00");
         assert_eq!(said(b"\xff\xfe\x00\x001\x00\x00\x00"), "is text in UTF-32; save it as UTF-8");
         assert_eq!(said(b"\xff\xfea"), "is not text in UTF-16LE: some of its bytes are no letters there");
-        assert!(decode(b"a", Some("ebcdic")).unwrap_err().contains("which is no encoding"));
+        assert!(decode(b"a", Some("ebcdic")).unwrap_err().contains("which is unknown"));
     }
 }

@@ -30,6 +30,8 @@ pub struct Layout {
     pub data_line: usize,
     /// Lines above the names that are none of these.
     pub titles: usize,
+    /// Lines below the units that say how the numbers were made.
+    pub below: usize,
     /// Which columns hold numbers.
     pub is_number: Vec<bool>,
 }
@@ -43,6 +45,8 @@ pub struct Seen {
     pub layout: Layout,
     /// How its numbers are written, or what nobody can decide.
     pub marks: Result<Marks, Undecided>,
+    /// Whether a number that can be read in two ways is still to be asked about, as nothing that was looked at says which mark is which.
+    pub is_open: bool,
 }
 
 /// What somebody states about a table of text.
@@ -90,8 +94,16 @@ pub fn look(sample: &str, stated: &Stated, is_unit: &dyn Fn(&str) -> bool) -> Se
         _ => (Separator::Comma, rows(sample, Separator::Comma)),
     };
     let layout = layout(&rows, stated, is_unit);
-    let marks = marks(&rows, &layout, stated);
-    Seen { separator, layout, marks }
+    let evidence = evidence(&rows, &layout);
+    let marks = match (stated.decimal, stated.thousands) {
+        (None, None) => evidence.marks(separator == Separator::Comma),
+        (decimal, thousands) => {
+            let decimal = decimal.unwrap_or(if thousands == Some('.') { ',' } else { '.' });
+            Ok(Marks { decimal, thousands })
+        }
+    };
+    let is_open = stated.decimal.is_none() && stated.thousands.is_none() && !evidence.is_settled();
+    Seen { separator, layout, marks, is_open }
 }
 
 /// How well rows fall into columns of numbers: their number times the part of their cells that are numbers; 0 for fewer than two columns.
@@ -135,13 +147,21 @@ pub fn layout(rows: &[Row<'_>], stated: &Stated, is_unit: &dyn Fn(&str) -> bool)
     };
     let is_units = |row: &Row<'_>| {
         let cells =
-            || row.cells.iter().map(|cell| bare(cell)).filter(|cell| !matches!(*cell, "" | "-" | "--" | "1" | "–"));
-        filled(row) > 0 && cells().next().is_some() && cells().all(is_unit)
+            row.cells.iter().map(|cell| bare(cell)).filter(|cell| !matches!(*cell, "" | "-" | "--" | "1" | "–"));
+        // One among them may be a date's form, or a unit that is not known: that is said of its column.
+        let (units, others) = cells.fold(
+            (0, 0),
+            |(units, others), cell| {
+                if is_unit(cell) { (units + 1, others) } else { (units, others + 1) }
+            },
+        );
+        units > 0 && units >= others && row.cells.len() >= n
     };
     // Spreadsheets add columns without a cell.
     let used = (0..n).filter(|j| data.iter().any(|row| row.cells.len() == n && !row.cells[*j].is_empty())).count();
     let is_head = |row: &Row<'_>| {
-        row.cells.len() <= n.max(1) + trailing(row)
+        row.cells.len() >= n
+            && row.cells.len() <= n.max(1) + trailing(row)
             && filled(row) * 2 > used
             && (is_units(row) || (0..n).all(|j| !is_number[j] || shape(holds(row, j)).is_none()))
     };
@@ -167,13 +187,30 @@ pub fn layout(rows: &[Row<'_>], stated: &Stated, is_unit: &dyn Fn(&str) -> bool)
         let above = (0..last).rev().take_while(adjoins).count().min(MOST_HEADS - 1);
         let first = last - above;
         if last > first && stated.units_line != Some(0) {
-            units_at = (first + 1..=last).rev().find(|at| is_units(data[*at]));
+            units_at = (first + 1..=last).rev().chain([first]).find(|at| is_units(data[*at]));
         }
-        (first, last)
+        // Below the units, loggers say how a number was made: `Avg`, `Smp`.
+        let says_how = |row: &&&Row<'_>| {
+            let words = || row.cells.iter().filter(|cell| !cell.is_empty());
+            let has_digit = words().any(|cell| cell.contains(|c: char| c.is_ascii_digit()));
+            row.cells.len() == n
+                && words().count() > 0
+                && !has_digit
+                && (0..n).any(|j| is_number[j] && !is_missing(holds(row, j)))
+        };
+        let below = if units_at.is_some() && units_at < Some(last + 1) {
+            data[last + 1..].iter().take_while(says_how).count()
+        } else {
+            0
+        };
+        (first, last + below)
     };
     let Some(end) = data.get(last) else { return Layout::default() };
+    // Above the units, or below where nothing is above.
+    let names_end = units_at.filter(|at| *at > first).unwrap_or(last + 1);
     let names: Vec<&Row<'_>> =
-        (first..=last).filter(|at| Some(*at) != units_at).filter_map(|at| data.get(at).copied()).collect();
+        (first..names_end).filter(|at| Some(*at) != units_at).filter_map(|at| data.get(at).copied()).collect();
+    let below = units_at.filter(|at| *at > first).map_or(0, |at| last - at);
     let units = units_at.and_then(|at| data.get(at));
     let Some(lowest) = names.last() else { return Layout::default() };
     let width = lowest.cells.len().max(n);
@@ -182,8 +219,10 @@ pub fn layout(rows: &[Row<'_>], stated: &Stated, is_unit: &dyn Fn(&str) -> bool)
         heads: heads.collect(),
         names_line: lowest.line,
         units_line: units.map(|row| row.line),
-        data_line: data.get(last + 1).map_or(end.line + 1, |row| row.line),
+        // A comment below the names is looked at with the rows.
+        data_line: end.last_line + 1,
         titles: first,
+        below,
         is_number,
     }
 }
@@ -229,6 +268,7 @@ fn headless(
         units_line: units.map(|row| row.line),
         data_line: first.line,
         titles: 0,
+        below: 0,
         is_number,
     }
 }
@@ -290,24 +330,14 @@ fn one_line(cell: &str) -> String {
     cell.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The marks of the numbers of a layout.
-///
-/// # Errors
-///
-/// What nobody can decide but a person.
-pub fn marks(rows: &[Row<'_>], layout: &Layout, stated: &Stated) -> Result<Marks, Undecided> {
+/// What the numbers of a layout say about their marks.
+fn evidence(rows: &[Row<'_>], layout: &Layout) -> Evidence {
     let mut evidence = Evidence::default();
     for j in (0..layout.is_number.len()).filter(|j| layout.is_number[*j]) {
         let below = rows.iter().filter(|row| !row.is_comment && row.line >= layout.data_line);
         evidence.column(below.filter_map(|row| Some((row.cells.get(j).map(Cow::as_ref)?, row.line))));
     }
-    match (stated.decimal, stated.thousands) {
-        (None, None) => evidence.marks(),
-        (Some(decimal), thousands) => Ok(Marks { decimal, thousands }),
-        (None, Some(thousands)) => {
-            Ok(Marks { decimal: if thousands == '.' { ',' } else { '.' }, thousands: Some(thousands) })
-        }
-    }
+    evidence
 }
 
 #[cfg(test)]

@@ -153,6 +153,13 @@ pub enum Undecided {
     Either(Witness),
     /// Two cells with two decimal marks.
     Both(Witness, Witness),
+    /// A cell that is a thousand only if the other, whose decimal mark is certain, is of the same hand.
+    Mixed {
+        /// The one that is certain.
+        certain: Witness,
+        /// The other.
+        other: Witness,
+    },
     /// Two marks of thousands.
     Thousands(Witness, Witness),
 }
@@ -193,32 +200,44 @@ impl Evidence {
         }
     }
 
+    /// Whether some cell says for certain which mark is the decimal one.
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        self.point.is_some() || self.comma.is_some() || !self.thousands.is_empty()
+    }
+
     /// The marks that all cells fit.
     ///
     /// # Errors
     ///
     /// The cells that contradict each other, or the one that nothing decides.
-    pub fn marks(&self) -> Result<Marks, Undecided> {
+    pub fn marks(&self, is_comma_separated: bool) -> Result<Marks, Undecided> {
         let thousands = match self.thousands.as_slice() {
             [] => None,
             [(mark, _)] => Some(*mark),
             [(_, one), (_, other), ..] => return Err(Undecided::Thousands(one.clone(), other.clone())),
         };
-        let decided = |decimal: char, doubtful: &Option<Witness>, other: char| match doubtful {
-            Some(cell) if thousands != Some(other) => Err(Undecided::Either(cell.clone())),
+        let decided = |decimal: char, certain: &Witness, doubtful: &Option<Witness>, other: char| match doubtful {
+            Some(cell) if thousands != Some(other) => {
+                Err(Undecided::Mixed { certain: certain.clone(), other: cell.clone() })
+            }
             _ => Ok(Marks { decimal, thousands }),
         };
         let found = match (&self.point, &self.comma) {
             (Some(point), Some(comma)) => Err(Undecided::Both(point.clone(), comma.clone())),
-            (None, Some(_)) => decided(',', &self.either_point, '.'),
-            (Some(_), None) => decided('.', &self.either_comma, ','),
+            (None, Some(comma)) => decided(',', comma, &self.either_point, '.'),
+            (Some(point), None) => decided('.', point, &self.either_comma, ','),
             // `1,234,567` and no fraction anywhere.
             (None, None) if thousands == Some('.') => Ok(Marks { decimal: ',', thousands }),
             (None, None) if thousands == Some(',') => Ok(Marks { decimal: '.', thousands }),
-            (None, None) => match (&self.either_comma, &self.among_whole) {
-                (Some(cell), _) | (None, Some(cell)) => Err(Undecided::Either(cell.clone())),
-                (None, None) => Ok(Marks { decimal: '.', thousands }),
-            },
+            (None, None) => {
+                // A comma between cells goes with a point in numbers; behind other separators 1.250 may be 1250.
+                let point = if is_comma_separated { &self.among_whole } else { &self.either_point };
+                match self.either_comma.as_ref().or(point.as_ref()) {
+                    Some(cell) => Err(Undecided::Either(cell.clone())),
+                    None => Ok(Marks { decimal: '.', thousands }),
+                }
+            }
         }?;
         // A mark cannot be both.
         match self.thousands.iter().find(|(mark, _)| *mark == found.decimal) {
@@ -239,7 +258,7 @@ mod tests {
     fn decide(cells: &[&str]) -> Result<Marks, Undecided> {
         let mut evidence = Evidence::default();
         evidence.column(cells.iter().copied().zip(1..));
-        evidence.marks()
+        evidence.marks(true)
     }
 
     fn found(cells: &[&str]) -> (char, Option<char>) {
@@ -266,7 +285,7 @@ mod tests {
     #[test]
     fn what_nothing_settles_is_asked() {
         let cell = |cells: &[&str]| match decide(cells).unwrap_err() {
-            Undecided::Either(w) => w.cell,
+            Undecided::Either(w) | Undecided::Mixed { other: w, .. } => w.cell,
             Undecided::Both(a, b) | Undecided::Thousands(a, b) => format!("{} {}", a.cell, b.cell),
         };
         assert_eq!(cell(&["1,234", "12"]), "1,234");
@@ -274,6 +293,10 @@ mod tests {
         assert_eq!(cell(&["0.5", "1,234"]), "1,234");
         // 800, 900, 1.000 rotations a minute are no 1.0.
         assert_eq!(cell(&["800", "900", "1.000"]), "1.000");
+        // Behind semicolons 1.250 may be 1250.
+        let mut evidence = Evidence::default();
+        evidence.column(["1.250", "1.500"].into_iter().zip(1..));
+        assert!(evidence.marks(false).is_err() && evidence.marks(true).is_ok() && !evidence.is_settled());
         assert_eq!(cell(&["0,5", "0.5"]), "0.5 0,5");
         assert_eq!(cell(&["1 234", "1'234"]), "1 234 1'234");
         assert_eq!(cell(&["1.234.567", "0.5"]), "0.5 1.234.567");

@@ -10,7 +10,8 @@ use crate::known_columns::{is_text_column, known_dimension, usual_unit};
 use crate::memory;
 use crate::nearest::suggestion;
 use crate::raw_column::{
-    FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, TWICE, check_dimension, check_numbers, check_texts, unit_for, unit_of_column,
+    FILL_OR_DELETE, Raw, TEXT_FOR_NUMBERS, TWICE, check_dimension, check_numbers, check_texts, looks_numeric, unit_for,
+    unit_of_column,
 };
 use crate::sidecar::{Mapping, Sidecar};
 use crate::table::{Column, ColumnData, Table};
@@ -355,7 +356,7 @@ pub(crate) fn column(
             };
             if may_be_text(name) {
                 check_texts(&cells, name, &place)?;
-            } else if cells.iter().all(|cell| fast_float2::parse::<f64, _>(cell).is_ok()) {
+            } else if looks_numeric(cells.iter()) {
                 return Err(missing_unit(&table.path, name, header_place));
             }
             Column { name: name.clone(), data: ColumnData::Text(cells.into()) }

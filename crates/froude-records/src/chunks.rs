@@ -143,7 +143,9 @@ fn chunk(
         return head.table(Rows::of(columns.into_iter().map(raw).collect(), lines));
     }
     let text = utf8(path, first, &memory.text[..lines.bytes])?;
-    head.table(head.rows(&mut Records::new(path, text, first, Separator::Comma), None)?)
+    let mut records = Records::new(path, text, first, Separator::Comma);
+    records.width = head.width_of_rows();
+    head.table(head.rows(&mut records, None)?)
 }
 
 #[cfg(test)]
@@ -213,7 +215,7 @@ mod tests {
     fn comments_and_blank_lines_are_passed_over_in_every_chunk() {
         let folder = tempfile::tempdir().unwrap();
         let path = written(folder.path(), "speed [m/s],f_x [N]", |i| match i {
-            50_000 => "# 1,2".to_owned(),
+            50_000 => "# the wind rose".to_owned(),
             55_000 => String::new(),
             _ => format!("{},{}", i % 10, 2 * i),
         });

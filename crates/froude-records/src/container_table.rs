@@ -46,6 +46,7 @@ pub(crate) fn look(path: &Path, file: &FileWords) -> Result<Reading, RecordError
         line: 1,
         words,
         undecided: None,
+        is_open: false,
     })
 }
 

@@ -12,11 +12,11 @@ use std::io::Write;
 use std::path::Path;
 
 use froude_foreign::decode::{Decoded, decode};
-use froude_foreign::marks::Marks;
+use froude_foreign::marks::{Marks, Shape, Undecided, Witness, shape};
 
 use crate::assemble::{Room, Want, assemble, number, plan};
 use crate::error::{Place, RecordError, decimal_comma};
-use crate::file_words::{FileWords, is_summary, of_summary, sidecar_name};
+use crate::file_words::{FileWords, is_sum, is_summary, of_summary, sidecar_name};
 use crate::guard::{guarded, unguarded};
 use crate::memory;
 use crate::obstacles;
@@ -95,6 +95,7 @@ fn parse(
     let columns = sidecar.map(|sidecar| sidecar.fitted(&reading.headings)).transpose()?;
     let head = Head::of(path, reading, columns.as_ref(), file)?;
     let mut records = Records::new(path, &text[reading.at..], reading.line, reading.dialect.separator);
+    records.width = head.width_of_rows();
     let rows = head.rows(&mut records, blank)?;
     let understood = reading.understood(records.skipped, rows.left_out());
     let table = head.table(rows)?;
@@ -108,6 +109,7 @@ pub(crate) struct Head<'a, 's> {
     file: &'s FileWords,
     place: Place,
     marks: Marks,
+    is_open: bool,
     pub(crate) header: Vec<String>,
     pub(crate) wants: Vec<Want<'s>>,
 }
@@ -148,7 +150,22 @@ impl<'a, 's> Head<'a, 's> {
         if sidecar.is_none() {
             obstacles::refuse_passed_over(path, reading)?;
         }
-        Ok(Self { path, sidecar, file, place: reading.place.clone(), marks: reading.dialect.marks, header, wants })
+        Ok(Self {
+            path,
+            sidecar,
+            file,
+            place: reading.place.clone(),
+            marks: reading.dialect.marks,
+            is_open: reading.is_open,
+            header,
+            wants,
+        })
+    }
+
+    /// Cells of a row, where a comment with as many is to be asked about.
+    pub(crate) fn width_of_rows(&self) -> Option<usize> {
+        let is_declared = self.file.leaves_out("#") || self.file.leaves_out("%");
+        (!is_declared).then_some(self.header.len())
     }
 
     /// All further rows; empty cells that may be empty are 0 and listed, where there is a place for them.
@@ -211,6 +228,10 @@ impl<'a, 's> Head<'a, 's> {
             return Ok(None);
         }
         let place = || Place::in_table(self.path, line);
+        if self.is_open && matches!(shape(cell), Some(Shape::Either(_))) {
+            let either = Undecided::Either(Witness { cell: cell.to_owned(), line });
+            return Err(undecided(self.path, &either, &sidecar_name(self.path)));
+        }
         let is_plain = self.marks == Marks::default() && !cell.contains(['d', 'D', '−']);
         let value = if is_plain {
             number(cell, &self.header[j], &place)?
@@ -236,14 +257,13 @@ impl<'a, 's> Head<'a, 's> {
     /// Whether a row is declared to be left out because it sums up others.
     fn is_summary(&self, cells: &[Cow<'_, str>], line: usize) -> Result<bool, RecordError> {
         let first = cells.iter().map(|cell| cell.trim()).find(|cell| !cell.is_empty()).unwrap_or_default();
-        if first.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '+' | '.')) {
-            return Ok(false);
-        }
         if self.file.leaves_out(first) {
             return Ok(true);
         }
         let has_numbers = self.wants.iter().any(Want::is_number);
-        if self.file.leave_out.is_some() || !has_numbers || !is_summary(first) {
+        let is_text = |(cell, want): (&Cow<'_, str>, &Want<'_>)| !want.is_number() && is_sum(cell.trim());
+        let is_sum_by = is_summary(first) || cells.iter().zip(&self.wants).any(is_text);
+        if self.file.leave_out.is_some() || !has_numbers || !is_sum_by {
             return Ok(false);
         }
         Err(RecordError::syntax(Place::in_table(self.path, line), of_summary(self.path, first)))

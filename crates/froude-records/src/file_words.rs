@@ -97,7 +97,28 @@ impl FileWords {
 }
 
 /// Words at the beginning of rows that sum up those above.
-const SUMMARIES: [&str; 40] = [
+const SUMMARIES: [&str; 64] = [
+    "mean value",
+    "mw",
+    "ø",
+    "x̄",
+    "σ",
+    "cv",
+    "95% ci",
+    "95 % ci",
+    "u95",
+    "±",
+    "gesamt",
+    "gesamtmittel",
+    "ergebnis",
+    "écart type",
+    "desv. est.",
+    "合計",
+    "offset",
+    "factor",
+    "faktor",
+    "scale",
+    "skalierung",
     "mean",
     "average",
     "avg",
@@ -106,6 +127,9 @@ const SUMMARIES: [&str; 40] = [
     "stdev",
     "std.",
     "std dev",
+    "stddev",
+    "standard deviation",
+    "std.-abw.",
     "std. dev.",
     "sd",
     "sigma",
@@ -140,48 +164,112 @@ const SUMMARIES: [&str; 40] = [
     "標準偏差",
 ];
 
-/// Whether a cell at the beginning of a row says that the row sums up others.
+/// Whether a cell at the beginning of a row says that the row sums up others: `Mean`, `Mean (n = 5)`, `Std. dev.:`.
 #[must_use]
 pub fn is_summary(cell: &str) -> bool {
-    SUMMARIES.contains(&cell.trim_end_matches(':').to_lowercase().as_str())
+    let lower = cell.trim().trim_end_matches(':').to_lowercase();
+    let first = lower.split([' ', '(', '-', '_', '=']).next().unwrap_or_default();
+    SUMMARIES.contains(&lower.as_str()) || (lower.len() > first.len() && STEMS.contains(&first))
 }
 
-/// Numbers that programs write where there is none.
-const SENTINELS: [f64; 22] = [
+/// Whether a cell, wherever it stands, is the name of a row that sums up others.
+#[must_use]
+pub fn is_sum(cell: &str) -> bool {
+    cell.starts_with(char::is_alphabetic) && SUMMARIES.contains(&cell.trim_end_matches(':').to_lowercase().as_str())
+}
+
+/// First words of longer names of such rows.
+const STEMS: [&str; 18] = [
+    "mean",
+    "average",
+    "avg",
+    "avg.",
+    "std",
+    "std.",
+    "stddev",
+    "stdev",
+    "standard",
+    "grand",
+    "sum",
+    "total",
+    "median",
+    "mittelwert",
+    "moyenne",
+    "promedio",
+    "gjennomsnitt",
+    "summe",
+];
+
+/// Round numbers that programs write where there is none.
+const SENTINELS: [f64; 26] = [
     -9999.0,
+    9999.0,
     -999.0,
+    999.0,
     -99999.0,
+    99999.0,
     -999999.0,
+    999999.0,
+    7999.0,
+    -7999.0,
+    6999.0,
+    -6999.0,
+    8888.0,
+    -8888.0,
+    888.8,
+    -888.8,
+    -888.88,
+    -2_147_483_648.0,
+    1e6,
+    -1e6,
+    1e10,
+    1e20,
+    -1e20,
+    1e30,
+    -1e30,
+    1e35,
+];
+
+/// Those that no measurement is by chance: fill values and flags of loggers, netCDF, Fortran and single precision.
+const CERTAIN: [f64; 12] = [
     -999.25,
     -999.9,
     -999.99,
     -9999.25,
     -9999.9,
     -9999.99,
-    9999.0,
-    99999.0,
-    999999.0,
     9999.99,
-    1e30,
-    -1e30,
-    1e20,
-    -1e20,
-    1e35,
     -1e34,
-    9.969_209_968_386_869e36,
-    -2_147_483_648.0,
+    9.969_21e36,
+    3.402_823e38,
+    -3.402_823e38,
+    -9.99e-29,
 ];
 
-/// A number so much larger than all others of its column is one of these.
-const FAR: f64 = 10.0;
+/// Part of itself by which a number may differ from one of these, as it is printed.
+const PRINTED: f64 = 2e-6;
+
+/// A round one is one of these where it is so much farther out than all others of its column, or is there twice and is the farthest.
+const FAR: f64 = 5.0;
 
 /// The first number of a column that stands for no measurement, by its value and its distance from all others.
 #[must_use]
 pub fn sentinel(values: &[f64]) -> Option<(usize, f64)> {
-    let is_one = |value: &f64| SENTINELS.contains(value);
-    let (row, found) = values.iter().enumerate().find(|(_, value)| value.abs() >= 999.0 && is_one(value))?;
-    let others = values.iter().filter(|value| !is_one(value)).map(|value| value.abs());
-    (found.abs() > FAR * others.fold(0.0, f64::max)).then_some((row, *found))
+    let is_among = |value: f64, list: &[f64]| {
+        list.iter().any(|known| {
+            value == *known || ((value - known).abs() <= PRINTED * known.abs() && !(1e-20..1e20).contains(&known.abs()))
+        })
+    };
+    let first = |list: &[f64]| values.iter().enumerate().find(|(_, value)| is_among(**value, list));
+    if let Some((row, certain)) = first(&CERTAIN) {
+        return Some((row, *certain));
+    }
+    let (row, found) = first(&SENTINELS)?;
+    let others = values.iter().filter(|value| !is_among(**value, &SENTINELS)).map(|value| value.abs());
+    let farthest = others.fold(0.0, f64::max);
+    let is_twice = values.iter().filter(|value| *value == found).count() > 1;
+    let is_far = found.abs() > FAR * farthest || (is_twice && *found < 0.0 && found.abs() > farthest);
+    (is_far && values.len() > 1).then_some((row, *found))
 }
 
 /// The name that a sidecar of this table has.

@@ -89,9 +89,12 @@ const BETWEEN: [&str; 3] = [" / ", " in ", ", "];
 fn split(written: &str) -> Option<(&str, &str, &'static str)> {
     let is_unit = |unit: &str| unit.parse::<f64>().is_err() && parse_unit(unit).is_ok();
     if let Some(inner) = written.strip_suffix(')') {
-        let parts = inner.match_indices('(').map(|(at, _)| (inner[..at].trim(), inner[at + 1..].trim()));
-        let found = parts.into_iter().find(|(name, unit)| !name.is_empty() && is_unit(unit));
-        return found.map(|(name, unit)| (name.trim_end_matches(['/', ',']).trim_end(), unit, ""));
+        let parts = inner.match_indices('(').map(|(at, _)| (&inner[..at], inner[at + 1..].trim()));
+        // `F(t)` is a force over time, and no tonnes.
+        let is_argument = |name: &str, unit: &str| !name.ends_with(' ') && matches!(unit, "t" | "s" | "h");
+        let found =
+            parts.into_iter().find(|(name, unit)| !name.trim().is_empty() && is_unit(unit) && !is_argument(name, unit));
+        return found.map(|(name, unit)| (name.trim().trim_end_matches(['/', ',']).trim_end(), unit, ""));
     }
     BETWEEN.iter().find_map(|mark| {
         let (name, unit) = written.split_once(mark)?;
@@ -196,7 +199,8 @@ mod tests {
     }
 
     #[test]
-    fn a_ratio_is_no_unit() {
+    fn a_ratio_or_a_function_is_no_unit() {
+        assert_eq!(of(&["F(t)", "x(s)", "t (s)", "F(N)"]), ["F(t)", "x(s)", "t [s]", "F [N]"]);
         assert_eq!(of(&["x / L"]), ["x / L"]);
         assert_eq!(of(&["Lift/Drag", "U/V"]), ["Lift/Drag", "U/V"]);
         assert_eq!(of(&["Zeit / s"]), ["Zeit [s]"]);

@@ -44,7 +44,12 @@ pub(crate) fn all(
     sidecar: Option<&Sidecar>,
     first: RecordError,
 ) -> RecordError {
-    let end = text.floor_char_boundary(SAMPLE_BYTES);
+    let end = if text.len() <= SAMPLE_BYTES {
+        text.len()
+    } else {
+        let whole = text.floor_char_boundary(SAMPLE_BYTES);
+        text[..whole].rfind('\n').map_or(whole, |end| end + 1)
+    };
     of(path, &rows(&text[..end], reading.dialect.separator), reading, sidecar, first)
 }
 
@@ -113,6 +118,9 @@ fn of_marks(found: &Undecided) -> Obstacle {
         Undecided::Either(one) => (one.line, format!("`{}` can be read in two ways", one.cell)),
         Undecided::Both(point, comma) => {
             (comma.line, format!("`{}` and `{}` have two decimal marks", point.cell, comma.cell))
+        }
+        Undecided::Mixed { certain, other } => {
+            (other.line, format!("`{}` stands beside `{}` and can be read in two ways", other.cell, certain.cell))
         }
         Undecided::Thousands(one, other) => {
             (other.line, format!("`{}` and `{}` use two different thousands separators", one.cell, other.cell))

@@ -1,5 +1,6 @@
 //! A sidecar that proposes what the columns of a table are, for a person to check and correct.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use froude_foreign::layout::is_missing;
@@ -96,7 +97,11 @@ fn proposed(table: &Path, reading: &Reading, rows: &[Row<'_>]) -> String {
     }
     out += &of_file(reading, rows);
     out += "\n[columns]\n# name: what Froude calls it; unit: of the numbers in the file; sign = -1 where the file counts against Froude's axes\n# (x forward, y to starboard, z down; loads are those of the water on the body).\n";
+    let mut keys = BTreeSet::new();
     for heading in &reading.headings {
+        // A key is there once: of two columns of one name only a person can tell them apart.
+        let is_open = heading.written.is_empty() || !keys.insert(&heading.written);
+        out += if is_open { "# " } else { "" };
         out += &line(heading, reading);
     }
     out
@@ -128,7 +133,7 @@ fn of_file(reading: &Reading, rows: &[Row<'_>]) -> String {
     let list = |words: &[String]| words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(", ");
     let mut out = String::new();
     if reading.undecided.is_some() {
-        out += "# Which mark a number such as 1,234 has: delete one of the two lines.\ndecimal = \",\"\nthousands = \",\"\n";
+        out += "# Numbers of this file can be read in two ways: state its marks.\n# decimal = \",\"\n# thousands = \".\"\n";
     }
     if !missing.is_empty() {
         out += &format!("# Cells that stand for no measurement.\nnot_measured = [{}]\n", list(&missing));

@@ -1,5 +1,8 @@
 //! A column as it is read, before its unit is known.
 
+use froude_foreign::layout::is_missing;
+use froude_foreign::marks::shape;
+
 use crate::error::{Place, RecordError, briefly};
 use crate::known_columns::{expected, known_dimension, usual_unit};
 use crate::units::{Dimension, Unit, UnitError, is_plausible, parse_unit, parse_unit_for, question};
@@ -62,6 +65,14 @@ pub(crate) fn check_numbers(si: &[f64], header: &str, place: &dyn Fn(usize) -> P
         Some(row) => Err(RecordError::not_finite(place(row), header, &briefly(si[row]))),
         None => Ok(()),
     }
+}
+
+/// Whether most cells that say something are numbers, however they are written.
+pub(crate) fn looks_numeric<'c>(cells: impl Iterator<Item = &'c String>) -> bool {
+    let filled = cells.filter(|cell| !is_missing(cell.trim()));
+    let (all, numbers) =
+        filled.fold((0_usize, 0_usize), |(all, numbers), cell| (all + 1, numbers + usize::from(shape(cell).is_some())));
+    numbers > 0 && 2 * numbers >= all
 }
 
 /// Refuses empty cells; `place` is that of a row.

@@ -36,6 +36,8 @@ pub(crate) struct Reading {
     pub words: Vec<String>,
     /// Numbers that nobody can decide but a person.
     pub undecided: Option<Undecided>,
+    /// Whether one further down is to be asked about.
+    pub is_open: bool,
 }
 
 impl Reading {
@@ -49,6 +51,10 @@ impl Reading {
         if text.trim().is_empty() {
             let problem = "the file is empty; its first line names the columns as `name [unit]`";
             return Err(RecordError::syntax(Place::whole(path), problem));
+        }
+        if !text.contains('\n') && text.trim_end().contains('\r') {
+            let problem = "a carriage return stands without a line feed; save the file with LF or CRLF line ends";
+            return Err(RecordError::syntax(Place::in_table(path, 1), problem));
         }
         if file.stated == FileWords::default().stated && is_own(text) {
             return Self::own(path, decoded);
@@ -86,7 +92,17 @@ impl Reading {
         let words = told(words, seen, marks, &sname, noun);
         let dialect = Dialect { separator: seen.separator, marks };
         let is_number = layout.is_number.clone();
-        Ok(Self { dialect, headings, is_number, place, at: 0, line: layout.data_line, words, undecided })
+        Ok(Self {
+            dialect,
+            headings,
+            is_number,
+            place,
+            at: 0,
+            line: layout.data_line,
+            words,
+            undecided,
+            is_open: seen.is_open,
+        })
     }
 
     /// A table as Froude writes it: its first line are its headers.
@@ -101,7 +117,17 @@ impl Reading {
         let place = Place::line(path, 1);
         let words = of_encoding(decoded).into_iter().chain(renamed(&sname)).collect();
         let is_number = headings.iter().map(|heading| heading.unit.is_some()).collect();
-        Ok(Self { dialect, headings, is_number, place, at: records.at, line: records.line, words, undecided: None })
+        Ok(Self {
+            dialect,
+            headings,
+            is_number,
+            place,
+            at: records.at,
+            line: records.line,
+            words,
+            undecided: None,
+            is_open: false,
+        })
     }
 
     /// Whether its rows are those of Froude's own tables: numbers with a point between commas.
@@ -155,7 +181,7 @@ fn told(
     sname: &[(String, &'static str)],
     noun: &str,
 ) -> Vec<String> {
-    let Layout { units_line, titles, names_line, .. } = &seen.layout;
+    let Layout { units_line, titles, names_line, below, .. } = &seen.layout;
     let dialect = Dialect::own();
     if seen.separator != dialect.separator {
         words.push(format!("cells separated by {}", seen.separator.words()));
@@ -184,6 +210,11 @@ fn told(
     }
     if let Some(line) = units_line {
         words.push(format!("units in {noun} {line}"));
+    }
+    if *below > 0 {
+        let (one, many) =
+            (format!("{noun} below the units passed over"), format!("{noun}s below the units passed over"));
+        words.push(counted(*below, &one, &many));
     }
     words.extend(renamed(sname));
     words
@@ -221,6 +252,20 @@ pub(crate) fn undecided(path: &Path, found: &Undecided, sidecar: &str) -> Record
                 write("decimal = \",\"\n  thousands = \".\""),
             ),
         ),
+        Undecided::Mixed { certain, other } => {
+            let mark = if other.cell.contains(',') { ',' } else { '.' };
+            (
+                &other.line,
+                format!(
+                    "`{}` stands beside `{}` in line {}: with that decimal mark it is {}; if so, write in {sidecar}:{}\nelse export the file with one decimal mark",
+                    other.cell,
+                    certain.cell,
+                    certain.line,
+                    other.cell.replace(mark, ""),
+                    write(&format!("decimal = \"{}\"\n  thousands = \"{mark}\"", if mark == ',' { '.' } else { ',' })),
+                ),
+            )
+        }
         Undecided::Thousands(one, other) => (
             &other.line,
             format!(

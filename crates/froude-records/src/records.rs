@@ -6,10 +6,14 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use froude_foreign::marks::Marks;
-use froude_foreign::split::{Separator, comment};
+use froude_foreign::layout::bare;
+use froude_foreign::marks::{Marks, shape};
+use froude_foreign::split::{Separator, comment, rows};
 
 use crate::error::{Place, RecordError};
+use crate::file_words::sidecar_name;
+use crate::heading::split_header;
+use crate::units::parse_unit;
 
 /// Most columns of a table.
 const MOST_COLUMNS: usize = 10_000;
@@ -55,6 +59,8 @@ pub(crate) struct Records<'p, 'a> {
     /// The line that is read next.
     pub(crate) line: usize,
     pub(crate) skipped: Skipped,
+    /// Cells of a row: a comment with as many, and a number among them, is one that was taken out or is numbered so. None where such rows are declared.
+    pub(crate) width: Option<usize>,
     /// Blank rows that count only if another row follows on them.
     pending: usize,
 }
@@ -64,7 +70,8 @@ impl<'a> NextRow<'a> for Records<'_, 'a> {
         while self.at < self.text.len() {
             let (line, rest) = (self.line, &self.text[self.at..]);
             let end = memchr::memchr(b'\n', rest.as_bytes()).unwrap_or(rest.len());
-            if comment(&rest[..end], self.separator).is_some() {
+            if let Some(comment) = comment(&rest[..end], self.separator) {
+                self.refuse_row(line, comment)?;
                 self.skipped.comments += 1;
                 self.at += (end + 1).min(rest.len());
                 self.line += 1;
@@ -85,11 +92,33 @@ impl<'a> NextRow<'a> for Records<'_, 'a> {
 impl<'p, 'a> Records<'p, 'a> {
     /// The rows of a text that begins on a line.
     pub(crate) fn new(path: &'p Path, text: &'a str, line: usize, separator: Separator) -> Self {
-        Self { path, text, separator, at: 0, line, skipped: Skipped::default(), pending: 0 }
+        Self { path, text, separator, at: 0, line, skipped: Skipped::default(), width: None, pending: 0 }
     }
 
     fn refuse<T>(&self, line: usize, problem: &str) -> Result<T, RecordError> {
         Err(RecordError::syntax(Place::line(self.path, line), problem))
+    }
+
+    /// Refuses a comment that may be a row.
+    fn refuse_row(&self, line: usize, comment: &str) -> Result<(), RecordError> {
+        let first = rows(comment, self.separator).into_iter().next().unwrap_or_default();
+        let has_number = first.cells.iter().skip(1).any(|cell| shape(cell).is_some());
+        let is_unit = |text: &str| parse_unit(text).is_ok();
+        let states_unit =
+            |cell: &str| is_unit(bare(cell)) || matches!(split_header(cell), Ok((_, Some(unit))) if is_unit(unit));
+        let has_units = 2 * first.cells.iter().filter(|cell| states_unit(cell)).count() >= first.cells.len();
+        if self.width.is_none_or(|width| width < 2 || first.cells.len() != width) || !(has_number || has_units) {
+            return Ok(());
+        }
+        if !has_number {
+            let problem = "the line begins as a comment and looks like names or units, below those of the table; delete it, or write the rows below it to a file of their own";
+            return self.refuse(line, problem);
+        }
+        let problem = format!(
+            "the line begins as a comment and has the cells of a row; where it is to be left out, write in {}:\n  schema = 1\n  [file]\n  leave_out = [\"#\"]\nwhere it is a row, take the mark away",
+            sidecar_name(self.path)
+        );
+        self.refuse(line, &problem)
     }
 
     /// Cells up to the end of the row; `at` stands behind its line break.

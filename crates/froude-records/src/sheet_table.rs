@@ -20,7 +20,7 @@ use crate::table::Table;
 use crate::units::parse_unit;
 
 /// The largest workbook that is read.
-const LARGEST_BYTES: u64 = 1 << 30;
+const LARGEST_BYTES: u64 = froude_foreign::MAX_BYTES;
 
 /// Reads a sheet as a table; empty cells are an error without a place for them.
 pub(crate) fn read_sheet(
@@ -52,7 +52,7 @@ pub(crate) fn look(path: &Path, file: &FileWords) -> Result<(Vec<Row<'static>>, 
     let sheet = book.sheet(&name, range).map_err(refuse)?;
     let (rows, marks) = rows(&sheet, file);
     let layout = layout(&rows, &file.stated, &|unit| parse_unit(unit).is_ok());
-    let seen = Seen { separator: Separator::Comma, layout, marks };
+    let seen = Seen { separator: Separator::Comma, layout, marks, is_open: false };
     let words = if book.sheets().len() > 1 { vec![format!("sheet {name:?}")] } else { Vec::new() };
     let reading = Reading::seen(path, &seen, words)?;
     Ok((rows, reading))
@@ -93,7 +93,7 @@ fn rows(sheet: &Sheet, file: &FileWords) -> (Vec<Row<'static>>, Result<Marks, Un
         evidence.column(texts);
     }
     let marks = match (file.stated.decimal, file.stated.thousands) {
-        (None, None) => evidence.marks(),
+        (None, None) => evidence.marks(false),
         (decimal, thousands) => {
             let decimal = decimal.unwrap_or(if thousands == Some('.') { ',' } else { '.' });
             Ok(Marks { decimal, thousands })

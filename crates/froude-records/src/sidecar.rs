@@ -10,7 +10,9 @@ use crate::heading::Heading;
 use crate::known_columns::{is_text_column, known_dimension};
 use crate::measured::Measured;
 use crate::nearest::suggestion;
-use crate::raw_column::{Raw, TEXT_FOR_NUMBERS, check_dimension, check_numbers, check_texts, unit_for, unit_of_column};
+use crate::raw_column::{
+    Raw, TEXT_FOR_NUMBERS, check_dimension, check_numbers, check_texts, looks_numeric, unit_for, unit_of_column,
+};
 use crate::read;
 use crate::run::cell::Cell;
 use crate::run::channel::Words;
@@ -24,7 +26,7 @@ use crate::section::{Section, Source, parse};
 use crate::section_values::one_of;
 use crate::table::{Column, ColumnData};
 use crate::texts::Texts;
-use crate::units::{Dimension, Quantity, Unit};
+use crate::units::{Dimension, Quantity, Unit, parse_unit};
 
 const LARGEST_BYTES: u64 = 1 << 20;
 
@@ -94,8 +96,11 @@ pub(crate) fn is_sidecar(path: &Path) -> bool {
         let mut squeezed = text.lines().map(|line| line.split_whitespace().collect::<String>());
         squeezed.any(|line| heads.iter().any(|head| line.starts_with(head)))
     };
+    // A campaign may state constants too.
+    let is_campaign = has(&["[[source", "[source", "[[identify", "[identify", "[fluid"]);
     // Without its last letter, so that [column] is reported as misspelt.
-    has(&["[column", "[constant", "[file"]) || (has(&["[mounted", "[condition", "role="]) && !has(&["[[", "checksum"]))
+    let has_columns = has(&["[column", "[constant", "[file"]);
+    !is_campaign && (has_columns || (has(&["[mounted", "[condition", "role="]) && !has(&["[[", "checksum"])))
 }
 
 /// Reads a sidecar.
@@ -238,6 +243,14 @@ impl Mapping {
     /// The same with the unit that the table states, where the sidecar leaves it out.
     fn with_unit_of(&self, heading: Option<&Heading>) -> Result<Self, RecordError> {
         let mut mapping = self.clone();
+        if let (Some(own), Some(stated)) = (&self.unit, heading.and_then(|heading| heading.unit.as_deref()))
+            && parse_unit(stated).is_ok_and(|stated| (stated.factor, stated.offset) != (own.factor, own.offset))
+            && unit_for(&self.name, stated).is_ok_and(|(stated, _)| stated.factor != own.factor)
+        {
+            let problem =
+                format!("is {:?}, and the table states {stated}; leave `unit` out, or correct one of them", own.text);
+            return Err(RecordError::value(self.place.clone(), "unit", problem));
+        }
         if self.unit.is_some() || self.scale.is_some() || is_text_column(&self.name) {
             return Ok(mapping);
         }
@@ -266,7 +279,14 @@ impl Sidecar {
         let of = |(written, mapping): (&String, &Mapping)| {
             let is = |heading: &&Heading| [&heading.written, &heading.name].contains(&written);
             let exact = headings.iter().find(|heading| heading.header() == *written);
-            let heading = exact.or_else(|| headings.iter().find(is));
+            let mut named = headings.iter().filter(is);
+            let heading = exact.or_else(|| named.next());
+            if let (None, Some(other)) = (exact, named.next()) {
+                let first = heading.map_or_else(String::new, Heading::header);
+                let problem =
+                    format!(": both `{first}` and `{}` are called so; write the whole header", other.header());
+                return Err(RecordError::column(mapping.place.clone(), written, problem));
+            }
             let header = heading.map_or_else(|| written.clone(), Heading::header);
             Ok((header, mapping.with_unit_of(heading)?))
         };
@@ -311,6 +331,9 @@ impl Sidecar {
             (Raw::Texts(cells), false) => {
                 if is_text_column(&mapping.name) {
                     check_texts(&cells, written, place)?;
+                } else if mapping.name != "repeat" && looks_numeric(cells.iter()) {
+                    let problem = " holds numbers and has no unit; write unit = \"…\" beside its name";
+                    return Err(RecordError::column(mapping.place.clone(), written, problem));
                 }
                 return Ok(ColumnData::Text(cells.into()));
             }

@@ -18,6 +18,7 @@ use crate::csv_table::read_csv;
 use crate::error::{Place, RecordError};
 use crate::measured::Measured;
 use crate::nearest::suggestion;
+use crate::read;
 use crate::run::meta::Role;
 use crate::sidecar::{Sidecar, is_sidecar, read_sidecar};
 use crate::table::{ColumnData, Table};
@@ -56,7 +57,7 @@ pub fn sidecar_path(table: &Path) -> Result<Option<PathBuf>, RecordError> {
     let name = table.file_name().unwrap_or_default().to_string_lossy();
     let mut found: Vec<PathBuf> = Vec::new();
     for file in std::fs::read_dir(folder).into_iter().flatten().flatten().take(MOST_FILES).map(|entry| entry.path()) {
-        if file.extension().is_some_and(|e| e == "toml") && is_sidecar(&file) {
+        if file.extension().is_some_and(|e| e == "toml") && names_files(&file) {
             let pattern = read_sidecar(&file)?.files;
             found.extend(pattern.filter(|pattern| WildMatch::new(pattern).matches(&name)).map(|_| file));
         }
@@ -71,6 +72,13 @@ pub fn sidecar_path(table: &Path) -> Result<Option<PathBuf>, RecordError> {
         ))),
         found => Ok(found.first().cloned()),
     }
+}
+
+/// Whether a file has a key `files`: others beside a table do not concern it, whatever is wrong with them.
+fn names_files(path: &Path) -> bool {
+    let text = read::whole(path, 1 << 20, "a sidecar").unwrap_or_default();
+    let is_key = |line: &str| line.split_once('=').is_some_and(|(key, _)| key.trim() == "files");
+    is_sidecar(path) && String::from_utf8_lossy(&text).lines().any(is_key)
 }
 
 /// Whether a table is the list of a sidecar in its folder, and no log itself.
@@ -90,8 +98,21 @@ fn listed(mut sidecar: Sidecar, list: &Path, table: &Path) -> Result<Sidecar, Re
     let rows = read_csv(list, None)?;
     let name = table.file_name().unwrap_or_default().to_string_lossy();
     let files = rows.text("file")?;
-    let is_row = |row: &usize| files.get(*row).is_some_and(|file| Path::new(file).file_name() == table.file_name());
-    let Some(row) = (0..rows.n_rows).find(is_row) else {
+    let folder = list.parent().unwrap_or(Path::new(""));
+    let is_table = |file: &str| match Path::new(file).parent() {
+        Some(own) if !own.as_os_str().is_empty() => folder.join(file) == table,
+        _ => Path::new(file).file_name() == table.file_name(),
+    };
+    let mut fitting = (0..rows.n_rows).filter(|row| files.get(*row).is_some_and(|file| is_table(file)));
+    let found = fitting.next();
+    if let Some(again) = fitting.next() {
+        return Err(RecordError::value(
+            rows.place_of_row(again),
+            "file",
+            format!("names {name} a second time; delete one of the rows"),
+        ));
+    }
+    let Some(row) = found else {
         let near = suggestion(&name, files.iter().map(String::as_str));
         let problem = format!("has no row for {name}; {near}");
         return Err(RecordError::value(Place::whole(list), "file", problem));
@@ -108,7 +129,11 @@ fn listed(mut sidecar: Sidecar, list: &Path, table: &Path) -> Result<Sidecar, Re
             (ColumnData::Text(texts), "role") => {
                 sidecar.run.role = Some(role(&rows, row, texts.get(row).map_or("", String::as_str))?);
             }
-            (ColumnData::Text(_), _) => {}
+            (ColumnData::Text(_), "file" | "note" | "comment") => {}
+            (ColumnData::Text(_), other) => {
+                let problem = "is no column of a list: file, role, configuration, note, and conditions with a unit, such as `speed [m/s]`";
+                return Err(RecordError::column(Place::whole(list), other, format!(" {problem}")));
+            }
         }
     }
     Ok(sidecar)
@@ -134,7 +159,7 @@ mod tests {
         write("run_1.csv", "t (ms),F (N)\n0,1\n10,2\n");
         write("run_2.csv", "t (ms),F (N)\n0,3\n10,4\n");
         write("other.csv", "time [s],f_x [N]\n0,3\n");
-        write("runs.csv", "file,speed [m/s],role,who\nrun_1.csv,0.5,test,me\nrun_2.csv,1,still,you\n");
+        write("runs.csv", "file,speed [m/s],role,note\nrun_1.csv,0.5,test,me\nrun_2.csv,1,still,you\n");
         write(
             "logs.toml",
             "schema = 1\nfiles = \"run_*.csv\"\nlist = \"runs.csv\"\nmethod = \"steady\"\n[columns]\n\

@@ -1,6 +1,5 @@
 //! What is in an MCAP log that another program recorded: its topics, and what of it is read. No role, no campaign: nobody declared any.
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
@@ -8,6 +7,7 @@ use froude_foreign::{Cells, Column, Part, mcap};
 use froude_identify::inspect::Inspection;
 use froude_identify::method::MethodError;
 use froude_records::finding::{Finding, Severity};
+use froude_records::read::open;
 use froude_records::text::counted;
 
 /// Its topics, each with messages, rate and fields; what is not read is a note.
@@ -17,7 +17,7 @@ use froude_records::text::counted;
 /// A file that cannot be read.
 pub(super) fn inspect(path: &Path) -> Result<Inspection, MethodError> {
     let refuse = |what: String| MethodError::input(path, what);
-    let file = File::open(path).map_err(|e| refuse(format!("cannot be read: {e}")))?;
+    let file = open(path)?;
     let bytes = file.metadata().map_err(|e| refuse(format!("cannot be read: {e}")))?.len();
     let contents = mcap::read(&mut BufReader::new(file), bytes).map_err(|e| refuse(e.to_string()))?;
     let mut facts = vec![(

@@ -285,7 +285,7 @@ fn duplicate_coefficient_names_of_different_unit_are_refused() {
     refuses(
         &[("c.toml", &campaign), ("t.csv", "v_x [m/s],v_y [m/s],f_x [N],f_y [N]\n0.1,0.1,-0.5,-0.1\n")],
         "c.toml",
-        "model \"m\": coefficient A would be kg/s in one formula and kg/m in another; give the two terms different names",
+        "model \"m\": coefficient A would be kg/s in one formula and kg/m in another; give the two terms different names; A is a coefficient here, and a known number where [body] declares reference_area",
     );
 }
 

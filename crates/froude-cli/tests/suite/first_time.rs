@@ -153,27 +153,24 @@ fn a_unit_in_round_parentheses_is_answered_with_what_to_write() {
     let rows = "1,0.1,-0.2\n2,0.2,-0.81\n3,0.3,-1.83\n4,0.4,-3.19\n";
     std::fs::write(&table, format!("run,U (m/s),Fx (N)\n{rows}")).unwrap();
     let told = refusal(&["inspect", text(&table)]);
-    let head = "run,speed [m/s],f_x [N]";
-    let expected = format!(
-        "froude: {}:1: column `U (m/s)`: units stand in square brackets; write `speed [m/s]`; all headers: `{head}`\n",
-        text(&table)
+    let shown = text(&table);
+    assert_eq!(
+        told,
+        format!(
+            "froude: {shown}:1: column `U [m/s]` would not be used; is it speed?\n1 more thing keeps this table from being read:\n  \
+             - column `Fx [N]`: would not be used; is it f_x?\nfroude inspect {shown} --write-sidecar writes {}, which proposes names, units \
+             and signs for you to check and correct\n",
+            text(&table.with_extension("toml"))
+        )
     );
-    assert_eq!(told, expected);
     // What was proposed is what is read.
-    std::fs::write(&table, format!("{head}\n{rows}")).unwrap();
+    printed(&["inspect", text(&table), "--write-sidecar"]);
     assert_eq!(json(&["identify", text(&table), "--json"])["estimates"][0]["n"], 4);
 
     // A drag is written positive: renaming it would make it a thrust.
+    std::fs::remove_file(table.with_extension("toml")).unwrap();
     std::fs::write(&table, format!("run,U (m/s),drag (N)\n{}", rows.replace('-', ""))).unwrap();
-    let told = refusal(&["identify", text(&table)]);
-    let (said, sidecar) = told.split_once(":\n").unwrap();
-    let expected = format!(
-        "froude: {}:1: column `U (m/s)`: units stand in square brackets, and a drag that is written positive is -f_x; leave the table as it is, \
-         and write a sidecar tank.toml",
-        text(&table)
-    );
-    assert_eq!(said, expected);
-    std::fs::write(table.with_extension("toml"), sidecar).unwrap();
+    printed(&["inspect", text(&table), "--write-sidecar"]);
     let fitted = json(&["identify", text(&table), "--json"]);
     assert_eq!(fitted["estimates"][0]["n"], 4);
     assert!(findings_of(&fitted, "load-along-motion").is_empty(), "{}", fitted["findings"]);

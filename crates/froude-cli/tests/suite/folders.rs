@@ -40,6 +40,8 @@ const ROWS: &[Row] = &[
     ("demo", "demo demo", &["demo/"]),
     ("identify", "identify t.csv", &["t-results/"]),
     ("inspect", "inspect t.csv", &[]),
+    ("convert", "convert t.csv t.parquet", &["t.parquet"]),
+    ("new", "new table --out fresh", &["fresh/campaign.toml"]),
     ("compare", "compare t-results/estimate.json u-results/estimate.json --out beside", &["beside/"]),
     (
         "predict",
@@ -85,7 +87,7 @@ const NEED_OPENFOAM: [&str; 7] =
     ["cfd case", "cfd run", "cfd collect", "cfd report", "cfd suggest", "cfd retry", "cfd swing"];
 
 /// Files whose names are the user's.
-const NAMED_BY_USER: [&str; 2] = ["once.obj", "tank.csv"];
+const NAMED_BY_USER: [&str; 3] = ["once.obj", "tank.csv", "t.parquet"];
 
 fn lab() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -233,6 +235,8 @@ const INPUTS: &[(&str, &[&str])] = &[
     ("table, CSV", &["inspect big.csv", "identify big.csv", "predict t-results/estimate.json big.csv"]),
     ("table, Parquet", &["inspect big.parquet", "identify big.parquet", "predict t-results/estimate.json big.parquet"]),
     ("sidecar, body file, sidecar of a run", &["identify t.csv --sidecar big.toml", "added-mass big.toml --check"]),
+    ("workbook", &["inspect big.xlsx"]),
+    ("MAT, HDF5", &["inspect big.mat", "inspect big.h5"]),
     (
         "campaign",
         &["identify big.toml", "plan big.toml", "simulate big.toml", "run big.toml --yes", "cfd plan big.toml"],

@@ -145,8 +145,11 @@ pub fn question(name: &str, unit: &Unit) -> Option<String> {
     let plain = plain.strip_prefix("std_").unwrap_or(&plain);
     let words: Vec<&str> = words(whole(text));
     let says_angle = words.iter().any(|word| ANGLES.contains(word));
+    // `rpm_port`, `n1`: a word of the name is enough, and per minute counts turns nearly always.
+    let is_rate = RATES.contains(&plain)
+        || plain.split('_').any(|word| RATES.contains(&word.trim_end_matches(|c: char| c.is_ascii_digit())));
     match unit.dimension {
-        Dimension::ANGULAR_SPEED if !says_angle && RATES.contains(&plain) => {
+        Dimension::ANGULAR_SPEED if !says_angle && (is_rate || words.contains(&"min")) => {
             let (turns, radians) = if words.contains(&"min") { ("rpm", "rad/min") } else { ("rev/s", "rad/s") };
             Some(format!(
                 "`{text}` is ambiguous for a rate of rotation; write `{turns}` where turns are counted, or `{radians}`"

@@ -280,12 +280,19 @@ fn a_campaign_of_the_same_name_is_no_sidecar() {
     assert!(read_table(&table, None).unwrap().sidecar.is_none());
     std::fs::write(
         folder.path().join("tank.toml"),
-        "schema = 1\n[columns]\n\"speed [m/s]\" = { name = \"speed\", unit = \"km/h\" }\n",
+        "schema = 1\n[columns]\n\"speed [m/s]\" = { name = \"v_x\", sign = -1 }\n",
     )
     .unwrap();
     let read = read_table(&table, None).unwrap();
     assert!(read.sidecar.is_some());
-    assert_eq!(read.number("speed", Dimension::SPEED).unwrap(), [1000.0 / 3600.0]);
+    assert_eq!(read.number("v_x", Dimension::SPEED).unwrap(), [-1.0]);
+    std::fs::write(
+        folder.path().join("tank.toml"),
+        "schema = 1\n[columns]\n\"speed [m/s]\" = { name = \"speed\", unit = \"km/h\" }\n",
+    )
+    .unwrap();
+    let told = read_table(&table, None).unwrap_err().to_string();
+    assert!(told.contains("`unit` is \"km/h\", and the table states m/s"), "{told}");
 }
 
 /// What is mounted was passed over without a word where nothing was said of the columns.

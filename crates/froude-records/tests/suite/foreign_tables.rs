@@ -133,6 +133,13 @@ fn sums_and_numbers_that_were_not_measured_are_named_and_asked() {
         let table = read_table_with_blanks(&path, None).unwrap();
         assert_eq!(table.blank, [("f_x".to_owned(), 1)]);
     }
+    let marked = read(b"run,speed [m/s],f_x [N]\n1,0.5,-2\n#2,1,-8\n3,1.25,-12.5\n", "").unwrap_err();
+    assert!(marked.starts_with("t.csv:3: the line begins as a comment and has the cells of a row"), "{marked}");
+    let left = read(
+        b"run,speed [m/s],f_x [N]\n1,0.5,-2\n#2,1,-8\n3,1.25,-12.5\n",
+        "schema = 1\n[file]\nleave_out = [\"#\"]\n",
+    );
+    assert!(is_the_table(&left.unwrap()));
     // A counter that reaches 9999 is one.
     let count: String = (9990..10_010).map(|i| format!("{i},1\n")).collect();
     assert!(read(format!("time [ms],f_x [N]\n{count}").as_bytes(), "").is_ok());

@@ -105,11 +105,11 @@ fn a_sidecar_maps_parquet_columns_too() {
     let folder = tempfile::tempdir().unwrap();
     let path = written(folder.path());
     let sidecar = folder.path().join("other.toml");
-    let text = "schema = 1\n[columns]\n\"speed [mm/s]\" = { name = \"v_x\", unit = \"m/s\" }\nconfiguration = { name = \"configuration\" }\n";
+    let text = "schema = 1\n[columns]\n\"speed [mm/s]\" = { name = \"v_x\", sign = -1 }\nconfiguration = { name = \"configuration\" }\n";
     std::fs::write(&sidecar, text).unwrap();
     assert!(parse_sidecar(&sidecar, text).is_ok());
     let table = read_table(&path, Some(&sidecar)).unwrap();
-    assert_eq!(table.number("v_x", Dimension::SPEED).unwrap(), [100.0, 250.5]);
+    assert_eq!(table.number("v_x", Dimension::SPEED).unwrap(), [-0.1, -0.2505]);
     assert_eq!(table.columns.len(), 2);
 }
 
