@@ -162,6 +162,7 @@ pub mod forces {
     mod convert;
     mod dat;
     mod files;
+    mod gathered;
     pub mod inspect;
     mod judged;
     pub mod keys;

@@ -65,7 +65,7 @@ fn contents(path: &Path) -> Result<Contents, RecordError> {
     }
     let bytes = read::whole(path, froude_foreign::MAX_BYTES, "a file of named columns")?;
     match ending.as_str() {
-        "mat" if mat5::is_mat5(&bytes) => mat5::read(&bytes),
+        "mat" if !hdf5::is_hdf5(&bytes) => mat5::read(&bytes),
         "tdms" => tdms::read(&bytes),
         "ulg" => ulog::read(&bytes),
         _ => hdf5::read(bytes),

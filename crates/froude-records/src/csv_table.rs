@@ -42,7 +42,7 @@ pub(crate) type Blanks = Vec<(String, usize)>;
 ///
 /// See [`RecordError`].
 pub fn read_csv(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    read_text(path, sidecar, None)
+    parse_csv(path, read::whole(path, LARGEST_BYTES, "a table")?, sidecar)
 }
 
 /// The same; empty cells of loads and of motions along axes are listed in `blank`, where there is a place for them.
@@ -54,13 +54,13 @@ pub(crate) fn read_text(
     parse_bytes(path, &read::whole(path, LARGEST_BYTES, "a table")?, sidecar, blank)
 }
 
-/// The same from text; `path` is for messages.
+/// The same from its bytes; `path` is for messages.
 ///
 /// # Errors
 ///
 /// See [`RecordError`].
-pub fn parse_csv(path: &Path, text: &str, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    parse_bytes(path, text.as_bytes(), sidecar, None)
+pub fn parse_csv(path: &Path, bytes: impl AsRef<[u8]>, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
+    parse_bytes(path, bytes.as_ref(), sidecar, None)
 }
 
 /// The same; empty cells are an error without a place for them.

@@ -14,6 +14,7 @@ use froude_identify::wild;
 use froude_records::RecordError;
 use froude_records::campaign::{BudgetEntry, Shared, Source};
 use froude_records::finding::{Finding, Severity};
+use froude_records::nearest::suggestion;
 use froude_records::run::clocks::is_own;
 use froude_records::run::step::Step;
 use froude_records::run::{Channel, Role, RunReader, RunStatus, read_run_meta};
@@ -436,6 +437,28 @@ pub(crate) fn condition(log: &TankLog, name: &str, dimension: Dimension) -> Resu
             &log.log.path,
             format!("[conditions] {name} is in {}, and is {}", found.unit, dimension.describe()),
         )),
+    }
+}
+
+/// Conditions of the water, which every method's log may state.
+const OF_WATER: [&str; 3] = ["temperature", "density", "kinematic_viscosity"];
+
+/// Refuses a condition that the method does not know: passed over, a misspelt angle would be none.
+///
+/// # Errors
+///
+/// The first such condition, with the nearest name.
+pub(crate) fn only_conditions<'n>(
+    log: &TankLog,
+    known: impl Iterator<Item = &'n str> + Clone,
+) -> Result<(), MethodError> {
+    let names = || known.clone().chain(OF_WATER);
+    match log.log.meta.conditions.keys().find(|name| !names().any(|known| known == name.as_str())) {
+        Some(unknown) => {
+            let what = format!("[conditions] {unknown} is not known here; {}", suggestion(unknown, names()));
+            Err(MethodError::input(&log.log.path, what))
+        }
+        None => Ok(()),
     }
 }
 

@@ -5,9 +5,9 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number::plain;
 use froude_records::text::counted;
 
+use super::gathered::{Case, Gathered};
 use super::judged::DRIFT;
 use super::keys::ForcesSpec;
-use super::source::{Case, Gathered};
 use crate::outcome::Status;
 use crate::verb::{LOADS, unit};
 

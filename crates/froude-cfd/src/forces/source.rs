@@ -7,23 +7,23 @@ use froude_identify::answer::Answer;
 use froude_identify::method::{Declares, Found, Method, MethodError, Need};
 use froude_identify::page::told;
 use froude_identify::reduce::{Observations, reduce_table};
-use froude_identify::source::{ReadFile, identify_observations};
+use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
 use froude_identify::validation::STD_ITERATIVE;
 use froude_records::RecordError;
 use froude_records::block::Section;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::Finding;
-use froude_records::run::step::Step;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit};
 
 use super::convert::Conversion;
 use super::files::{Read, read};
-use super::judged::{Even, Judged, even, judged, norm};
+use super::gathered::{Case, Gathered};
+use super::judged::{Even, even, judged, norm};
 use super::keys::{ForcesSpec, KEYS, NAME};
 use super::page;
-use super::settings::{Setting, Settings, settings};
+use super::settings::{Setting, settings};
 use crate::history::Sample;
 use crate::outcome::Loads;
 use crate::verb::{LOADS, is_of_a_rig};
@@ -88,47 +88,6 @@ impl Method for OpenFoamForces {
         let summary = Some(Section::new("Loads of the cases", blocks.collect::<Vec<_>>()));
         Ok(Found { results: vec![answer], summary, findings, ..Found::default() })
     }
-}
-
-/// A case with its mean loads.
-#[derive(Debug, Clone)]
-pub(super) struct Case {
-    pub(super) setting: Setting,
-    pub(super) read: Read,
-    pub(super) rows: usize,
-    pub(super) is_resampled: bool,
-    pub(super) judged: Judged,
-}
-
-impl Case {
-    fn files(&self) -> impl Iterator<Item = ReadFile> {
-        let [from, to] = self.judged.span;
-        let words = format!(
-            "mean over the end of the case, judged as {}; the start-up transient before it is left out",
-            self.judged.status.word()
-        );
-        // Of an iteration the unit is none; a file does not say which of the two its times are.
-        let step = Step::new("window", "", words).with("from", from, "1").with("to", to, "1");
-        self.read
-            .files
-            .iter()
-            .map(move |path| ReadFile { steps: vec![step.clone()], ..ReadFile::new(path.clone(), "case") })
-    }
-}
-
-/// What the cases of a source gave.
-#[derive(Debug)]
-pub(super) struct Gathered {
-    pub(super) cases: Vec<Case>,
-    /// Names of cases without a mean that counts, and why.
-    pub(super) without: Vec<(String, String)>,
-    pub(super) settings: Settings,
-    /// Loads that all cases determine.
-    pub(super) loads: Vec<usize>,
-    /// Density of the water over that of the files; `None` of coefficients.
-    pub(super) density_ratio: Option<f64>,
-    /// Point of the mesh that moments are about, m.
-    pub(super) origin_m: Option<[f64; 3]>,
 }
 
 fn gathered(

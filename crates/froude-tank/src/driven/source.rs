@@ -180,6 +180,7 @@ pub fn of_fit<M: MotorDriven>(fitted: &Fitted<'_, M>) -> Vec<Finding> {
 /// A log as a run: its motion and loads, and the conditions that it was done in.
 fn run<M: MotorDriven>(log: &TankLog) -> Result<Run<'_>, MethodError> {
     let (spec, meta) = (M::SPEC, &log.log.meta);
+    logs::only_conditions(log, spec.conditions.iter().map(|condition| condition.name))?;
     let mut conditions = IndexMap::new();
     for condition in spec.conditions {
         let declared = logs::condition(log, condition.name, condition.dimension)?;

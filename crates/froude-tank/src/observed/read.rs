@@ -54,6 +54,7 @@ pub fn reduced<M: Observed>(method: &M, run: &Run<'_>) -> Result<Reduced<M::Foun
 pub(super) fn run<'a, M: Observed>(method: &M, log: &'a TankLog) -> Result<Run<'a>, MethodError> {
     let meta = &log.log.meta;
     let refuse = |what: &str| MethodError::input(&log.log.path, what);
+    logs::only_conditions(log, M::SPEC.conditions.iter().map(|condition| condition.name))?;
     let mut conditions = IndexMap::new();
     for condition in M::SPEC.conditions {
         let value = match (logs::condition(log, condition.name, condition.dimension)?, condition.otherwise) {
