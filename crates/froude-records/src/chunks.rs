@@ -1,6 +1,6 @@
 //! Tables of more rows than one wants to keep: the same table, some rows at a time.
 //!
-//! Every chunk is a [`Table`] with the columns, units, checks and messages of [`read_table`](crate::table_file::read_table); memory is a chunk's,
+//! Every chunk is a [`Table`] with the columns, units, checks and messages of [`read_table`]; memory is a chunk's,
 //! whatever the file's length. A CSV of numbers alone is read eight digits at a time; a chunk with text, quotes or an error is read cell by
 //! cell, which says what is wrong. A Parquet file is unpacked a row group at a time.
 //!

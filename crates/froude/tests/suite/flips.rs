@@ -205,7 +205,7 @@ fn no_flip_in_a_file_without_a_checksum_is_a_panic() {
             read.is_ok_and(|campaign| froude::pipeline::check_sections(&campaign).is_ok())
         }),
         ("body", &body, &|b| froude::methods::added_mass::body_file::parse_body(at, &text(b)).is_ok()),
-        ("CSV", &csv, &|b| froude::records::csv_table::parse_csv(at, &text(b), None).is_ok()),
+        ("CSV", &csv, &|b| froude::records::csv_table::parse_csv(at, text(b), None).is_ok()),
         ("sidecar of a table", &sidecar, &|b| froude::records::sidecar::parse_sidecar(at, &text(b)).is_ok()),
         ("STL", stl, &|b| froude::mesh::files::read("a.stl", b).is_ok()),
         ("OBJ", obj, &|b| froude::mesh::files::read("a.obj", b).is_ok()),
