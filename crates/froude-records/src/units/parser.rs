@@ -56,7 +56,11 @@ impl Parser<'_> {
                 '.' | '-' if self.touches(c) => false,
                 '.' | '-' => return Err(self.syntax(format!("unexpected `{c}`"))),
                 _ => {
-                    // A space stood here, or two factors touch: `m(s)`.
+                    // A space stood here. Parentheses without a mark before them hold a remark: `bar (g)`, `l(h)`.
+                    if c == '(' {
+                        let problem = "parentheses follow on a unit; write `*` before them where they multiply";
+                        return Err(self.syntax(problem.to_owned()));
+                    }
                     if was_divided {
                         return Err(self.ambiguous());
                     }

@@ -214,6 +214,15 @@ fn a_rate_of_turning_says_what_it_counts() {
 
 /// Units of results: volts or amperes as in the columns, and mechanical ones as they were.
 #[test]
+fn a_remark_in_parentheses_is_no_factor() {
+    for text in ["bar(g)", "psi (g)", "kPa(a)", "l(h)", "mm (W)"] {
+        let said = parse_unit(text).unwrap_err().to_string();
+        assert!(said.contains("parentheses follow on a unit"), "{said}");
+    }
+    assert!(parse_unit("kg*(m/s)").is_ok() && parse_unit("kg/(m s)").is_ok());
+}
+
+#[test]
 fn units_of_results_are_reduced() {
     let of = |text: &str| parse_unit(text).unwrap().dimension;
     let shown = [
