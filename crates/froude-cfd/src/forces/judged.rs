@@ -179,7 +179,7 @@ mod tests {
     fn what_still_drifts_or_is_short_has_no_mean() {
         let of = |samples: Vec<Sample>| judged(samples, None).unwrap_err();
         let ramp = of(series(200, |i| i, |t| 1.0 + 0.01 * t));
-        assert!(ramp.starts_with("its mean load still changes by ") && ramp.ends_with("compute it longer"), "{ramp}");
+        assert!(ramp.starts_with("its mean load still changes by ") && ramp.ends_with("run the case longer"), "{ramp}");
         assert!(of(series(19, |i| i, |_| 1.0)).starts_with("has 19 rows; 20 are needed"));
         assert_eq!(of(Vec::new()), "its force files have no rows yet");
         assert_eq!(of(series(50, |i| i, |_| 0.0)), "its mean force is zero");
