@@ -66,7 +66,7 @@ pub use import::{
     steps_finding, time_column,
 };
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
-pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog, median};
+pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 pub use meta::{
     Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Direction, Mounted, Role, RunMeta, RunStatus, TOW,
 };
@@ -74,3 +74,4 @@ pub use reader::{Block, RunReader, head_of, read_run};
 pub use recorder::{Packing, Recorder};
 pub use seal::{CampaignMark, contradiction, difference};
 pub use sidecar::{AMPLIFIER, TORQUE_CONSTANT, parse_run_meta, read_run_meta, run_meta_text, write_run_meta};
+pub use stamps::median;

@@ -10,6 +10,7 @@ use crate::nearest::suggestion;
 use crate::run::channel::Meaning;
 use crate::run::doubt::Doubt;
 use crate::run::meta::RunMeta;
+use crate::run::stamps::median;
 use crate::units::{Dimension, parse_unit};
 
 /// A whole run.
@@ -218,10 +219,4 @@ impl RunLog {
     pub fn lost_ticks(&self) -> u64 {
         self.lost.iter().filter_map(|gap| gap.ticks).sum()
     }
-}
-
-/// The middle one, in the order of size; `None` of none.
-pub fn median(steps: &mut [f64]) -> Option<f64> {
-    let middle = steps.len() / 2;
-    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

@@ -8,8 +8,6 @@
 
 use std::ops::Range;
 
-use crate::run::log::median;
-
 /// Fewest stamps that can prove an even rate.
 const FEWEST: usize = 20;
 /// Largest resolution, as part of a step, at which missing samples can be counted step by step.
@@ -24,6 +22,12 @@ pub const LACKS: f64 = 1.5;
 pub const GAP: f64 = 10.5;
 /// Steps to either side of a long one that say what is usual there: a log may be slower at rest.
 const BESIDE: usize = 11;
+
+/// The middle one, in the order of size; `None` of none.
+pub fn median(steps: &mut [f64]) -> Option<f64> {
+    let middle = steps.len() / 2;
+    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
 
 /// Even times that the stamps of a log are the rounded ones of.
 #[derive(Debug, Clone, PartialEq)]

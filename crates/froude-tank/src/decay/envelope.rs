@@ -50,7 +50,7 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
     let summary = |(run, swings): &(DecayRun<'_>, Swings)| {
         let [first, end] = swings.samples;
         let own: Vec<f64> = rows.iter().filter(|r| r.run == run.id).map(|r| r.residual).collect();
-        let [period_s, added] = RunSummary::period_and_added(swings, setup);
+        let [period_s, added] = swings.period_and_added(setup);
         RunSummary {
             id: run.id.to_owned(),
             samples: end - first,

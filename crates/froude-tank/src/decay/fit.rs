@@ -6,7 +6,6 @@ use froude_fit::faer::Mat;
 use froude_records::finding::Finding;
 
 use super::run::{DecaySetup, Restoring};
-use super::swings::Swings;
 use crate::findings::warning;
 use crate::joint::{DeclaredError, part};
 
@@ -174,15 +173,6 @@ pub(super) fn declared(setup: &DecaySetup, [added, linear, quadratic]: [f64; 3])
     };
     let restoring = setup.restoring.parts().into_iter().map(|(name, u, by)| of(name, u, by_stiffness.map(|d| d * by)));
     std::iter::once(of("dry inertia", setup.inertia, [-1.0, 0.0, 0.0])).chain(restoring).collect()
-}
-
-impl RunSummary {
-    /// Mean period of swings, s, and the added mass that it is of.
-    pub(super) fn period_and_added(swings: &Swings, setup: &DecaySetup) -> [f64; 2] {
-        let (first, last) = (&swings.passages[0], &swings.passages[swings.passages.len() - 1]);
-        let period_s = 2.0 * (last.time_s - first.time_s) / (swings.passages.len() - 1).max(1) as f64;
-        [period_s, setup.restoring.stiffness() * (period_s / std::f64::consts::TAU).powi(2) - setup.inertia.value]
-    }
 }
 
 impl DecayFit {

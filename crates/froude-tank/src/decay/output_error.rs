@@ -153,7 +153,7 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
         let [first, end] = swings.samples;
         let [q, v, rest] = model.start(i, &found.values);
         let residuals = &found.residuals[i];
-        let [period_s, by_period] = RunSummary::period_and_added(swings, setup);
+        let [period_s, by_period] = swings.period_and_added(setup);
         RunSummary {
             id: run.id.to_owned(),
             samples: end - first,

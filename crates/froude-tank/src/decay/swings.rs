@@ -41,6 +41,15 @@ pub struct Swings {
 }
 
 impl Swings {
+    /// Mean period, s, and the added mass that it is of.
+    pub(super) fn period_and_added(&self, setup: &DecaySetup) -> [f64; 2] {
+        let (first, last) = (&self.passages[0], &self.passages[self.passages.len() - 1]);
+        let period_s = 2.0 * (last.time_s - first.time_s) / (self.passages.len() - 1).max(1) as f64;
+        [period_s, setup.restoring.stiffness() * (period_s / (2.0 * PI)).powi(2) - setup.inertia.value]
+    }
+}
+
+impl Swings {
     /// The used part of a run, with as many peaks as a method needs.
     pub fn of(run: &DecayRun<'_>, setup: &DecaySetup, method: Method) -> Result<Self, DecayError> {
         run.check()?;
