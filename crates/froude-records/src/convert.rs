@@ -103,6 +103,7 @@ fn mcap(table: &Table, out: &Path) -> Result<Prepared, RecordError> {
     let schema = serde_json::json!({"type": "object", "properties": properties}).to_string();
     Prepared::new(out, |file| {
         let mut writer = mcap::WriteOptions::new()
+            .compression_threads(0)
             .create(mcap::write::NoSeek::new(BufWriter::new(file)))
             .map_err(std::io::Error::other)?;
         let id = writer.add_schema("froude.table", "jsonschema", schema.as_bytes()).map_err(std::io::Error::other)?;

@@ -201,7 +201,7 @@ const STEMS: [&str; 18] = [
 ];
 
 /// Round numbers that programs write where there is none.
-const SENTINELS: [f64; 26] = [
+const SENTINELS: [f64; 24] = [
     -9999.0,
     9999.0,
     -999.0,
@@ -220,8 +220,6 @@ const SENTINELS: [f64; 26] = [
     -888.8,
     -888.88,
     -2_147_483_648.0,
-    1e6,
-    -1e6,
     1e10,
     1e20,
     -1e20,

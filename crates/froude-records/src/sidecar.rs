@@ -261,6 +261,7 @@ impl Mapping {
                     .map_err(|e| RecordError::column(self.place.clone(), &column, format!(": {e}")))?;
                 check_dimension(&self.place, &column, &self.name, &unit)?;
                 (mapping.unit, mapping.note) = (Some(unit_of_column(&self.name, unit)), note);
+                mapping.undeclared.retain(|key| *key != "unit");
                 Ok(mapping)
             }
             None if known_dimension(&self.name).is_some() => {

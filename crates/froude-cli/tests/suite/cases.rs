@@ -28,7 +28,7 @@ fn done(arguments: &[&str]) -> String {
 /// That the intervals of the recommended, or only, estimate hold the truth, and are at most `widest` of it on each side.
 fn holds(record: &Value, model: &str, truth: &[(&str, f64)], widest: f64) {
     let estimates = record["estimates"].as_array().unwrap();
-    let estimate = estimates.iter().find(|e| e["model"] == model || estimates.len() == 1).unwrap();
+    let estimate = estimates.iter().find(|e| e["id"].as_str().unwrap().ends_with(&format!("/{model}"))).unwrap();
     for (name, truth) in truth {
         let c = &estimate["coefficients"][*name];
         let [low, high] = [0, 1].map(|k| c["interval_95"][k].as_f64().unwrap_or_else(|| panic!("{name}: {c}")));

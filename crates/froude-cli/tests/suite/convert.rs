@@ -23,7 +23,7 @@ fn a_log_goes_through_every_format_and_comes_back() {
         said.contains("log.txt was read as: cells separated by semicolons, decimal comma, units in line 2"),
         "{said}"
     );
-    let plain = "time [ms],command [V],f_x [N]\n0,1.5,-2.25\n10,1.75,-2.5\n20,2,-2.75\n";
+    let plain = "time [ms],f_x [N],command [V]\n0,-2.25,1.5\n10,-2.5,1.75\n20,-2.75,2\n";
     assert_eq!(std::fs::read_to_string(at("a.csv")).unwrap(), plain);
     convert("a.csv", "b.parquet");
     convert("b.parquet", "c.csv");

@@ -80,6 +80,7 @@ const ROWS: &[Row] = &[
     ("cfd suggest", "cfd suggest cfd.toml", &[]),
     ("cfd retry", "cfd retry cfd.toml", &["flow/lock-"]),
     ("cfd swing", "cfd swing swing.toml", &["swung/", "swung-cfd/"]),
+    ("inspect --write-sidecar", "inspect mamba/tank.csv --write-sidecar", &["mamba/tank.toml"]),
 ];
 
 /// Verbs that need OpenFOAM or its results.
@@ -87,7 +88,7 @@ const NEED_OPENFOAM: [&str; 7] =
     ["cfd case", "cfd run", "cfd collect", "cfd report", "cfd suggest", "cfd retry", "cfd swing"];
 
 /// Files whose names are the user's.
-const NAMED_BY_USER: [&str; 3] = ["once.obj", "tank.csv", "t.parquet"];
+const NAMED_BY_USER: [&str; 4] = ["once.obj", "tank.csv", "tank.toml", "t.parquet"];
 
 fn lab() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();

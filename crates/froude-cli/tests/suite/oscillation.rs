@@ -90,7 +90,7 @@ fn nothing_about_a_run_is_taken_for_granted() {
     replace_in(&sidecar, "unit = \"N\", ", "unit = \"N\", sign = 1, ");
     replace_in(&sidecar, "flow = \"0.2 m/s\"", "current = \"0.2 m/s\"");
     let text = identify();
-    assert!(text.contains("the speed of the stream is not declared"), "{text}");
+    assert!(text.contains("[conditions] current is not known here"), "{text}");
     replace_in(&sidecar, "current = \"0.2 m/s\"", "flow = \"0.2 N\"");
     assert!(identify().contains("flow is in"));
     replace_in(&sidecar, "flow = \"0.2 N\"", "flow = \"0.2 m/s\"");
