@@ -75,7 +75,7 @@ fn what_cannot_be_used_is_refused_with_its_place() {
     let folder = simulated(EXAMPLE, &[]);
     replace_in(&folder.path().join("runs/002.toml"), "speed = \"1 m/s\"", "flow = \"1 m/s\"");
     let text = refused(folder.path(), &["identify", "campaign.toml"]);
-    assert!(text.contains("002.csv") && text.contains("the carriage speed is not declared"), "{text}");
+    assert!(text.contains("002.csv") && text.contains("[conditions] flow is not known here"), "{text}");
     replace_in(&folder.path().join("runs/002.toml"), "flow = \"1 m/s\"", "speed = \"1 m/s\"");
     // One delay is fitted for both loads: they may be late together, but not each for itself.
     for run in 1..=5 {
