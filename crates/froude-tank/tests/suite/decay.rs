@@ -354,7 +354,7 @@ fn a_release_of_another_body_or_in_another_unit_stands_out() {
     for fit in 0..2 {
         let found = stands_out(&renamed, fit);
         assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].starts_with("run \"other\" swings with a period of 2.4"), "{found:?}");
+        assert!(found[0].starts_with("run \"other\" has a period of 2.4"), "{found:?}");
         assert!(stands_out(&others, fit).is_empty());
     }
     let mut in_mm = others.clone();
