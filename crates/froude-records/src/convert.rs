@@ -104,6 +104,7 @@ fn mcap(table: &Table, out: &Path) -> Result<Prepared, RecordError> {
     Prepared::new(out, |file| {
         let mut writer = mcap::WriteOptions::new()
             .compression_threads(0)
+            .disable_seeking(true)
             .create(mcap::write::NoSeek::new(BufWriter::new(file)))
             .map_err(std::io::Error::other)?;
         let id = writer.add_schema("froude.table", "jsonschema", schema.as_bytes()).map_err(std::io::Error::other)?;
