@@ -31,6 +31,9 @@ fn a_log_goes_through_every_format_and_comes_back() {
     convert("c.csv", "d.mcap");
     let inspected = String::from_utf8(froude(&["inspect", text(&at("d.mcap"))]).stdout).unwrap();
     assert!(inspected.contains("/table") && inspected.contains("f_x"), "{inspected}");
+    // Messages have no units: a sidecar states them.
+    let columns = "time = { name = \"time\" }\nf_x = { name = \"f_x\", unit = \"N\" }\ncommand = { name = \"command\", unit = \"V\" }\n";
+    std::fs::write(at("d.toml"), format!("schema = 1\n[columns]\n{columns}")).unwrap();
     convert("d.mcap", "e.csv");
     let back = std::fs::read_to_string(at("e.csv")).unwrap();
     assert!(back.lines().next().unwrap().contains("f_x") && back.contains("-2.75"), "{back}");
