@@ -33,8 +33,10 @@ fn a_log_goes_through_every_format_and_comes_back() {
     assert!(inspected.contains("/table") && inspected.contains("f_x"), "{inspected}");
     // Messages have no units: a sidecar states them.
     let columns = "time = { name = \"time\" }\nf_x = { name = \"f_x\", unit = \"N\" }\ncommand = { name = \"command\", unit = \"V\" }\n";
-    std::fs::write(at("d.toml"), format!("schema = 1\n[columns]\n{columns}")).unwrap();
-    convert("d.mcap", "e.csv");
+    std::fs::write(at("columns.toml"), format!("schema = 1\n[columns]\n{columns}")).unwrap();
+    let (mcap, back, sidecar) = (at("d.mcap"), at("e.csv"), at("columns.toml"));
+    let output = froude(&["convert", text(&mcap), text(&back), "--sidecar", text(&sidecar)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let back = std::fs::read_to_string(at("e.csv")).unwrap();
     assert!(back.lines().next().unwrap().contains("f_x") && back.contains("-2.75"), "{back}");
 
