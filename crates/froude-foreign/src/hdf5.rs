@@ -238,7 +238,9 @@ impl Walk {
     fn numbers(&self, mut data: Vec<f64>, shape: &[usize], attributes: &Attributes) -> Value {
         for key in ["_FillValue", "missing_value"] {
             if let Some(fill) = attributes.number(key) {
-                data.iter_mut().filter(|x| **x == fill).for_each(|x| *x = f64::NAN);
+                // A fill value is written in double where the numbers are single.
+                let single = f64::from(fill as f32);
+                data.iter_mut().filter(|x| **x == fill || **x == single).for_each(|x| *x = f64::NAN);
             }
         }
         let units = ["units", "unit", "Units", "Unit"];

@@ -64,6 +64,23 @@ pub struct Stated {
     pub units_line: Option<usize>,
 }
 
+impl Stated {
+    /// The marks that are stated, or those that the cells show.
+    ///
+    /// # Errors
+    ///
+    /// What nobody can decide but a person.
+    pub fn marks(&self, evidence: &Evidence, is_comma_separated: bool) -> Result<Marks, Undecided> {
+        match (self.decimal, self.thousands) {
+            (None, None) => evidence.marks(is_comma_separated),
+            (decimal, thousands) => {
+                let decimal = decimal.unwrap_or(if thousands == Some('.') { ',' } else { '.' });
+                Ok(Marks { decimal, thousands })
+            }
+        }
+    }
+}
+
 /// Words in the place of a number that was not measured.
 const MISSING: [&str; 14] =
     ["", "-", "--", "–", "nan", "na", "n/a", "#n/a", "#nv", "n.a.", "null", "none", "-nan(ind)", "1.#qnan"];
@@ -95,13 +112,7 @@ pub fn look(sample: &str, stated: &Stated, is_unit: &dyn Fn(&str) -> bool) -> Se
     };
     let layout = layout(&rows, stated, is_unit);
     let evidence = evidence(&rows, &layout);
-    let marks = match (stated.decimal, stated.thousands) {
-        (None, None) => evidence.marks(separator == Separator::Comma),
-        (decimal, thousands) => {
-            let decimal = decimal.unwrap_or(if thousands == Some('.') { ',' } else { '.' });
-            Ok(Marks { decimal, thousands })
-        }
-    };
+    let marks = stated.marks(&evidence, separator == Separator::Comma);
     let is_open = stated.decimal.is_none() && stated.thousands.is_none() && !evidence.is_settled();
     Seen { separator, layout, marks, is_open }
 }

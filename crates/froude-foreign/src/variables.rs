@@ -58,13 +58,30 @@ fn collect(path: &str, fields: Vec<(String, Value)>, out: &mut Contents) {
         Err(fields) => fields,
     };
     let lengths: Vec<usize> = fields.iter().filter_map(|(_, value)| vector_length(value)).filter(|n| *n > 1).collect();
+    let lies = |value: &Value, n: usize, is_row: bool| match value {
+        Value::Numbers { rows, columns, .. } => {
+            (*rows == 1) == is_row && *rows.max(columns) == n && *rows.min(columns) == 1
+        }
+        _ => false,
+    };
+    let has = |n: usize, is_row: bool| n > 1 && fields.iter().any(|(_, value)| lies(value, n, is_row));
+    let [in_rows, in_columns]: [Vec<usize>; 2] =
+        [true, false].map(|is_row| lengths.iter().copied().filter(|n| has(*n, is_row)).collect());
     // Tables by their length, in the order of the file.
     let mut tables: Vec<(usize, Vec<Column>)> = Vec::new();
     let mut inner = Vec::new();
     for (name, value) in fields {
         match value {
             Value::Numbers { rows, columns, data, unit } => {
-                let is_across = rows == 1 || (columns > 1 && !lengths.contains(&rows) && lengths.contains(&columns));
+                // A square matrix lies as the vectors of its length do.
+                let is_square = rows == columns && rows > 1 && in_rows.contains(&rows);
+                if is_square && in_columns.contains(&rows) {
+                    let reason = "is square beside rows and columns of its length; save its columns by name".to_owned();
+                    out.left_out.push(LeftOut { name: joined(path, &name), reason });
+                    continue;
+                }
+                let is_across =
+                    rows == 1 || is_square || (columns > 1 && !lengths.contains(&rows) && lengths.contains(&columns));
                 let length = if is_across { columns } else { rows };
                 if data.is_empty() || length == 0 {
                     let name = joined(path, &name);

@@ -11,6 +11,7 @@ use crate::block::{Block, TableBuilder};
 use crate::error::{Place, RecordError};
 use crate::outcome::{Exit, Outcome};
 use crate::run::{Channel, RunLog, read_run};
+use crate::sidecar_file::sidecar_path;
 use crate::table::{Column, ColumnData, Table};
 use crate::table_file::{prepare_table, read_table_with_blanks};
 use crate::text::counted;
@@ -30,8 +31,11 @@ pub fn convert(input: &Path, sidecar: Option<&Path>, out: &Path) -> Result<Outco
     let ending = |path: &Path| path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let table = if ending(input) == "mcap" {
         match read_run(input) {
+            Ok(run) => of_run(input, run)?,
             Err(RecordError::ForeignLog { .. }) => read_table_with_blanks(input, sidecar)?,
-            run => of_run(input, run?)?,
+            // What lies beside it describes a table, and no run of Froude.
+            Err(_) if sidecar_path(input)?.is_some() => read_table_with_blanks(input, sidecar)?,
+            Err(error) => return Err(error),
         }
     } else {
         read_table_with_blanks(input, sidecar)?

@@ -48,6 +48,11 @@ pub(crate) fn unit_of_column(name: &str, unit: Unit) -> Unit {
 
 /// A known name with another dimension is an error, and so is a unit that is read in two ways under this name.
 pub(crate) fn check_dimension(place: &Place, header: &str, name: &str, unit: &Unit) -> Result<(), RecordError> {
+    // Other lengths of time have names of their own; this one is read as the clock wherever there is one.
+    if name == "time" && unit.dimension != Dimension::TIME {
+        let [expected, found] = [Dimension::TIME, unit.dimension].map(Dimension::describe);
+        return Err(RecordError::wrong_dimension(place.clone(), header, &expected, &found));
+    }
     match expected(name) {
         Some((dimension, words)) if dimension != unit.dimension => {
             Err(RecordError::wrong_dimension(place.clone(), header, &words, &unit.dimension.describe()))

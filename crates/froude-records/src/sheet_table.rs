@@ -92,13 +92,7 @@ fn rows(sheet: &Sheet, file: &FileWords) -> (Vec<Row<'static>>, Result<Marks, Un
         });
         evidence.column(texts);
     }
-    let marks = match (file.stated.decimal, file.stated.thousands) {
-        (None, None) => evidence.marks(false),
-        (decimal, thousands) => {
-            let decimal = decimal.unwrap_or(if thousands == Some('.') { ',' } else { '.' });
-            Ok(Marks { decimal, thousands })
-        }
-    };
+    let marks = file.stated.marks(&evidence, false);
     let decimal = marks.as_ref().map_or('.', |marks| marks.decimal);
     let text = |i: usize, j: usize| -> Cow<'static, str> {
         // A head over several columns is that of each of them.

@@ -30,6 +30,9 @@ use crate::units::{Dimension, Quantity, Unit, parse_unit};
 
 const LARGEST_BYTES: u64 = 1 << 20;
 
+/// What is wrong with a column that the sidecar names as text.
+const NUMBERS_WITHOUT_UNIT: &str = " holds numbers and has no unit; write unit = \"…\" beside its name";
+
 /// A sidecar as read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sidecar {
@@ -326,6 +329,9 @@ impl Sidecar {
     ) -> Result<ColumnData, RecordError> {
         let values = match (raw, mapping.unit.is_some() || mapping.scale.is_some()) {
             (Raw::Numbers(values), true) => values,
+            (Raw::Numbers(_), false) if !is_text_column(&mapping.name) && mapping.name != "repeat" => {
+                return Err(RecordError::column(mapping.place.clone(), written, NUMBERS_WITHOUT_UNIT));
+            }
             (Raw::Numbers(values), false) => {
                 return Ok(ColumnData::Text(values.iter().map(f64::to_string).collect()));
             }
@@ -333,8 +339,7 @@ impl Sidecar {
                 if is_text_column(&mapping.name) {
                     check_texts(&cells, written, place)?;
                 } else if mapping.name != "repeat" && looks_numeric(cells.iter()) {
-                    let problem = " holds numbers and has no unit; write unit = \"…\" beside its name";
-                    return Err(RecordError::column(mapping.place.clone(), written, problem));
+                    return Err(RecordError::column(mapping.place.clone(), written, NUMBERS_WITHOUT_UNIT));
                 }
                 return Ok(ColumnData::Text(cells.into()));
             }

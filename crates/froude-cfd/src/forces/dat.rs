@@ -92,7 +92,7 @@ fn axes(name: &str) -> [String; 3] {
 ///
 /// # Errors
 ///
-/// It is none, a line has too few or too many numbers, times do not increase, a total is not the sum of its parts.
+/// The text is not a force file, a line has too few or too many numbers, times do not increase, or a total is not the sum of its parts.
 pub fn read(text: &str) -> Result<Dat, Problem> {
     let Some((kind, columns)) = head(text) else {
         let expected = "its comment lines do not name the columns of forces, moments or coefficients, as `# Time total_x total_y …`, `# Time forces(pressure viscous) moments(pressure viscous)` or `# Time Cd Cl …` do";
@@ -203,6 +203,20 @@ impl Dat {
         let is_both = self.kind == Kind::Both;
         let of_moments = moments.unwrap_or(self);
         let rows = self.times.len().min(of_moments.times.len());
+        // The last row of one may not be written yet; more is a file of another run.
+        if self.times.len().abs_diff(of_moments.times.len()) > 1 {
+            let last = |times: &[f64]| times.last().map_or_else(|| "no time".to_owned(), f64::to_string);
+            return Err((
+                rows,
+                format!(
+                    "the forces have {} rows up to {}, the moments {} up to {}: they are not of one run",
+                    self.times.len(),
+                    last(&self.times),
+                    of_moments.times.len(),
+                    last(&of_moments.times)
+                ),
+            ));
+        }
         let mut out = Vec::with_capacity(rows);
         for (row, (time, other)) in self.times.iter().zip(&of_moments.times).enumerate() {
             if time != other {

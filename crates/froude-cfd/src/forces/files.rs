@@ -65,7 +65,7 @@ pub fn objects(case: &Path) -> Result<Vec<Object>, MethodError> {
 /// What the force files of a case hold.
 #[derive(Debug, Clone)]
 pub(super) struct Read {
-    /// Loads in the axes of the mesh, about [`Self::centre_m`]; of forces as they are written, of coefficients in N of the density asked for.
+    /// Loads in the axes of the files, about [`Self::centre_m`]: those of force files as written, those of coefficient files converted to N at the density asked for.
     pub(super) samples: Vec<Sample>,
     /// Whether they are of coefficients, whose density is that of the water already.
     pub(super) is_of_coefficients: bool,
@@ -122,9 +122,14 @@ pub(super) fn read(case: &Path, spec: &ForcesSpec, density_kg_m3: Option<f64>) -
                 .transpose()?;
             match &centre {
                 Some((known, other)) if *known != own => {
+                    let shown = |point: &Option<[f64; 3]>| {
+                        point.map_or_else(|| "not stated".to_owned(), |[x, y, z]| format!("({x} {y} {z})"))
+                    };
                     let what = format!(
-                        "CofR is {own:?}, and {} has {known:?}: moments about two points are not joined",
-                        other.display()
+                        "CofR is {}, and in {} {}: moments about two points are not joined",
+                        shown(&own),
+                        other.display(),
+                        shown(known)
                     );
                     return Err(MethodError::input(path, what));
                 }
@@ -156,7 +161,7 @@ pub(super) fn read(case: &Path, spec: &ForcesSpec, density_kg_m3: Option<f64>) -
     Ok(out)
 }
 
-/// The function object that is read: the one asked for, or the only one; forces before coefficients.
+/// The function object to read: the one that the campaign names, or the only one. Force files are preferred to coefficient files.
 fn chosen(case: &Path, spec: &ForcesSpec) -> Result<Object, MethodError> {
     let all = objects(case)?;
     let names = |all: &[&Object]| all.iter().map(|o| o.name.as_str()).collect::<Vec<_>>().join(", ");

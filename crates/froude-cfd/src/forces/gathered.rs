@@ -25,7 +25,7 @@ impl Case {
             "mean over the end of the case, judged as {}; the start-up transient before it is left out",
             self.judged.status.word()
         );
-        // Of an iteration the unit is none; a file does not say which of the two its times are.
+        // An iteration has no unit, and a file does not say whether its first column is iterations or seconds.
         let step = Step::new("window", "", words).with("from", from, "1").with("to", to, "1");
         self.read
             .files

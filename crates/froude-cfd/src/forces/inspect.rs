@@ -38,10 +38,10 @@ pub fn dat_file(path: &Path) -> Option<DatFile> {
     use std::io::Read as _;
     let mut bytes = Vec::new();
     read::open(path).ok()?.take(HEAD_BYTES).read_to_end(&mut bytes).ok()?;
-    Some(told(&String::from_utf8_lossy(&bytes)))
+    Some(recognised(&String::from_utf8_lossy(&bytes)))
 }
 
-fn told(head: &str) -> DatFile {
+fn recognised(head: &str) -> DatFile {
     if dat::kind_of(head).is_some() {
         return DatFile::Forces;
     }
@@ -56,7 +56,7 @@ fn told(head: &str) -> DatFile {
     }
 }
 
-/// Inspects a force file, a case, or a folder of cases; `None` if the path is none of these.
+/// Inspects a force file, a case, or a folder of cases; `None` for any other path.
 ///
 /// # Errors
 ///
@@ -158,7 +158,7 @@ mod tests {
             ("# Time speed\n1 2\n", DatFile::Other),
             ("", DatFile::Other),
         ] {
-            assert_eq!(told(text), is, "{text}");
+            assert_eq!(recognised(text), is, "{text}");
         }
     }
 }

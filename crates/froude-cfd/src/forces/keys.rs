@@ -48,19 +48,19 @@ pub const KEYS: &[Key] = &[
         "a table with the columns case, speed [m/s] and angle [deg]",
     ),
     optional("object", Kind::Text, "the only one with force files", "name of the function object in postProcessing"),
-    required("forward", Kind::Word(&AXES), FORWARD, "axis of the mesh that points to the bow, at no drift"),
-    required("up", Kind::Word(&AXES), UP, "axis of the mesh that points up"),
+    required("forward", Kind::Word(&AXES), FORWARD, "axis of the force files that points to the bow, at no drift: that of the mesh, unless the function object has a `coordinateSystem`"),
+    required("up", Kind::Word(&AXES), UP, "axis of the force files that points up"),
     optional(
         "turned",
         Kind::Word(&["inflow", "body"]),
         "required with drift",
-        "what was turned for a drift angle: the `inflow`, so that the axes of the mesh lie with the body, or the `body` in the mesh",
+        "what was turned for a drift angle: the `inflow`, so that the axes of the files lie with the body, or the `body` in the mesh",
     ),
     required(
         "symmetry",
         Kind::Word(&PLANES),
         SYMMETRY,
-        "symmetry plane of a half model, in mesh axes; `none` if the mesh contains the whole body",
+        "symmetry plane of a half model, in the axes of the files; `none` if the mesh contains the whole body",
     ),
     optional(
         "rho_inf",

@@ -105,7 +105,9 @@ fn understood(gathered: &Gathered, spec: &ForcesSpec) -> String {
         None => "no moments".to_owned(),
     };
     let turned = match spec.is_body_turned {
-        Some(true) => "; the body is turned in the mesh",
+        Some(true) => {
+            "; the body is turned in the mesh, and moments are about a point fixed in it, which is one point of the body only if the body turns about it"
+        }
         _ => "",
     };
     format!(

@@ -205,12 +205,19 @@ fn by_inflow(folder: &Path, spec: &ForcesSpec) -> Result<Settings, MethodError> 
     Ok(out)
 }
 
-/// The uniform inflow of a case, m/s, axes of the mesh; `None` where its files do not state one.
+/// The uniform inflow of a case, m/s, axes of the mesh; `None` where its files do not state one, or where the field at the start and a boundary differ: a field
+/// left from a template says nothing of the flow.
 fn inflow_m_s(case: &Path) -> Option<[f64; 3]> {
     let text = ["0/U", "0.orig/U"].iter().find_map(|file| input::text(&case.join(file)).ok())?;
     let field = text.lines().map(str::trim).find_map(|line| line.strip_prefix("internalField"))?;
     let velocity = triple(field.trim().strip_prefix("uniform")?.trim().trim_end_matches(';'))?;
-    velocity.iter().any(|v| *v != 0.0).then_some(velocity)
+    // `value uniform (2 0 0);` and `freestreamValue uniform (2 0 0);`; walls have none, or zero.
+    let at_boundary = text.lines().filter_map(|line| {
+        let (_, value) = line.trim().split_once("alue").filter(|(key, _)| !key.contains(char::is_whitespace))?;
+        triple(value.trim().strip_prefix("uniform")?.trim().trim_end_matches(';'))
+    });
+    let is_other = |other: &[f64; 3]| other.iter().any(|v| *v != 0.0) && *other != velocity;
+    (velocity.iter().any(|v| *v != 0.0) && !at_boundary.into_iter().any(|other| is_other(&other))).then_some(velocity)
 }
 
 /// A case whose inflow is not that of its stated speed and drift.

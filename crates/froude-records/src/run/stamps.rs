@@ -16,6 +16,8 @@ const COUNTABLE: f64 = 0.4;
 const WHOLE: f64 = 1e-6;
 /// Part of the rows that repeat their stamp below which they are rows logged twice.
 const FEW_REPEATS: f64 = 0.02;
+/// Largest resolution as part of the length of a log, which is how wrong the rate behind the stamps may be.
+const MOST_RATE_ERROR: f64 = 2e-3;
 /// A step longer than this many usual steps lacks samples.
 pub const LACKS: f64 = 1.5;
 /// A step longer than this many usual steps is a gap, at which windows end; a shorter one merely lacks samples.
@@ -81,6 +83,8 @@ pub fn even_times(stamps_s: &[f64], resolution_s: f64) -> Option<EvenTimes> {
     if n < FEWEST || resolution_s.is_nan() || resolution_s <= 0.0 {
         return None;
     }
+    // A rate is known no better than the resolution over the length of the log.
+    let length_s = stamps_s.last()? - stamps_s.first()?;
     let of = |ticks: Vec<f64>| fitted(stamps_s, ticks, resolution_s);
     match whole_steps(stamps_s) {
         // The stamps are the times, and samples are missing where a step is a multiple.
@@ -90,6 +94,9 @@ pub fn even_times(stamps_s: &[f64], resolution_s: f64) -> Option<EvenTimes> {
             return None;
         }
         _ => {}
+    }
+    if resolution_s > MOST_RATE_ERROR * length_s {
+        return None;
     }
     of((0..n).map(|i| i as f64).collect()).or_else(|| {
         let step_s = usual_step_s(stamps_s)?;
@@ -227,6 +234,15 @@ mod tests {
             let mut doubled = stamps(2000);
             doubled.insert(501, doubled[500]);
             assert_eq!(even_times(&doubled, step_s), None);
+        }
+    }
+
+    #[test]
+    fn stamps_in_whole_seconds_make_up_no_rate() {
+        for resolution_s in [0.5, 1.0, 2.0, 10.0] {
+            let stamps: Vec<f64> =
+                (0..700).map(|i| (f64::from(i) * 0.02 / resolution_s).round() * resolution_s).collect();
+            assert_eq!(even_times(&stamps, resolution_s), None, "{resolution_s}");
         }
     }
 
