@@ -214,6 +214,19 @@ fn no_second(start: &Path, first: &str) -> Result<(), MethodError> {
     }
 }
 
+/// The density that the function objects of a case divide by or multiply with, where its dictionary states one, and the file; `None` where it states several.
+pub(super) fn stated_rho_inf(case: &Path) -> Option<(f64, PathBuf)> {
+    let path = case.join("system/controlDict");
+    let text = input::text(&path).ok()?;
+    let code = text.lines().map(|line| line.split_once("//").map_or(line, |(code, _)| code));
+    // `rhoInf 998;` and, in old files, `rhoInf rhoInf [1 -3 0 0 0 0 0] 998;`.
+    let mut stated = code
+        .filter_map(|line| line.trim().strip_prefix("rhoInf")?.trim_end().strip_suffix(';'))
+        .map(|value| value.split_whitespace().next_back().and_then(|last| last.parse::<f64>().ok()));
+    let first = stated.next()??;
+    stated.all(|other| other == Some(first)).then_some((first, path))
+}
+
 fn expected(file: &str) -> Kind {
     match file {
         "force.dat" => Kind::Force,

@@ -6,7 +6,7 @@ use froude_records::number::plain;
 use froude_records::text::counted;
 
 use super::gathered::{Case, Gathered};
-use super::judged::DRIFT;
+use super::judged::{DRIFT, norm};
 use super::keys::ForcesSpec;
 use crate::outcome::Status;
 use crate::verb::{LOADS, unit};
@@ -67,6 +67,7 @@ pub(super) fn findings(gathered: &Gathered, spec: &ForcesSpec) -> Vec<Finding> {
         );
         out.push(warning("openfoam-inflow", text));
     }
+    out.extend(across(gathered, spec));
     let notes: Vec<&String> = gathered.cases.iter().flat_map(|case| &case.read.notes).collect();
     if let Some(first) = notes.first() {
         let more = notes.len() - 1;
@@ -82,6 +83,32 @@ pub(super) fn findings(gathered: &Gathered, spec: &ForcesSpec) -> Vec<Finding> {
         out.push(Finding::new(Severity::Note, "openfoam-oscillating", text));
     }
     out
+}
+
+/// Force across the body, over the whole force, beyond which a model that is declared whole may be a half.
+const ACROSS: f64 = 0.2;
+
+/// Half of a body, declared as a whole one, has a force across the plane that it ends at: the pressure of its other half is missing.
+fn across(gathered: &Gathered, spec: &ForcesSpec) -> Option<Finding> {
+    let is_across = |case: &&Case, k: usize| {
+        let mean = &case.judged.window.mean;
+        // With drift a side force is due.
+        (k == 2 || case.setting.angle_rad.sin().abs() < 1e-6) && mean[k].abs() > ACROSS * norm(mean)
+    };
+    let whole = spec.plane.is_none().then_some([1, 2])?;
+    let (k, cases) = whole.into_iter().filter(|k| gathered.loads.contains(k)).find_map(|k| {
+        let some: Vec<&Case> = gathered.cases.iter().filter(|case| is_across(case, k)).collect();
+        (!some.is_empty()).then_some((k, some))
+    })?;
+    let first = cases.first()?;
+    let text = format!(
+        "symmetry = \"none\", and {} is {} N in {}{}: a body that is symmetric has no such force, and half of a body has. If the mesh ends at a plane of symmetry, write it: symmetry = \"y = 0\"",
+        LOADS[k],
+        plain(first.judged.window.mean[k], 4),
+        first.setting.name,
+        if cases.len() == 1 { String::new() } else { format!(" (likewise {} more)", cases.len() - 1) },
+    );
+    Some(warning("openfoam-half", text))
 }
 
 fn warning(code: &str, text: String) -> Finding {

@@ -18,7 +18,7 @@ use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit};
 
 use super::convert::Conversion;
-use super::files::{Read, read};
+use super::files::{Read, read, stated_rho_inf};
 use super::gathered::{Case, Gathered};
 use super::judged::{Even, even, judged, norm};
 use super::keys::{ForcesSpec, KEYS, NAME};
@@ -104,7 +104,7 @@ fn gathered(
     let mut first_centre: Option<([f64; 3], String)> = None;
     for setting in &settings.cases {
         let mut read = read(&setting.folder, spec, density_kg_m3)?;
-        let ratio = if read.is_of_coefficients { 1.0 } else { ratio(spec, density_kg_m3, campaign)? };
+        let ratio = if read.is_of_coefficients { 1.0 } else { ratio(spec, density_kg_m3, campaign, setting)? };
         if !read.is_of_coefficients {
             density_ratio = Some(ratio);
         }
@@ -189,11 +189,21 @@ fn density(campaign: &Campaign) -> Result<Option<f64>, MethodError> {
 }
 
 /// Density of the water over that which the forces are of.
-fn ratio(spec: &ForcesSpec, density_kg_m3: Option<f64>, campaign: &Campaign) -> Result<f64, MethodError> {
+fn ratio(
+    spec: &ForcesSpec,
+    density_kg_m3: Option<f64>,
+    campaign: &Campaign,
+    setting: &Setting,
+) -> Result<f64, MethodError> {
     let Some(rho_inf) = spec.rho_inf_kg_m3 else {
         let advice = "the files do not state the density that their forces are of; write rho_inf = \"998 kg/m^3\", as rhoInf is in the function object (system/controlDict), or rho_inf = \"1 kg/m^3\" for forces divided by the density";
         return Err(spec.missing("rho_inf", advice).into());
     };
+    if let Some((own, file)) = stated_rho_inf(&setting.folder).filter(|(own, _)| (own / rho_inf - 1.0).abs() > 1e-6) {
+        let problem =
+            format!("is {rho_inf} kg/m^3, and rhoInf is {own} in {}; write rho_inf = \"{own} kg/m^3\"", file.display());
+        return Err(spec.wrong("rho_inf", problem).into());
+    }
     density_kg_m3.map(|density| density / rho_inf).ok_or_else(|| {
         let what = "[fluid] states no density, which the forces are scaled to from that of rho_inf; write density = \"998 kg/m^3\", or temperature = \"20 degC\"";
         MethodError::input(&campaign.path, what)

@@ -172,6 +172,17 @@ fn half_of_the_body_is_doubled_and_the_window_said() {
 }
 
 #[test]
+fn half_of_the_body_that_is_declared_whole_is_doubted() {
+    // The pressure on the half above the plane z = 0 presses it down.
+    let half =
+        Written { mesh: |[x, y, _, k, m, n], _| [x, y, 0.4 * x.abs(), k, m, n], scale: 0.5, family: Family::Com };
+    let found = identified(folder(half).path(), SECTION).unwrap();
+    let doubt = said(&found, "openfoam-half");
+    assert!(doubt.starts_with("symmetry = \"none\", and f_z is 1.755 N in U1.5_b0 (likewise "), "{doubt}");
+    assert!(!codes(&identified(folder(AS_BODY).path(), SECTION).unwrap()).contains(&"openfoam-half"));
+}
+
+#[test]
 fn a_mesh_along_the_flow_over_the_density_is_the_same_body() {
     // The water flows along +x and z is up.
     let inflow =
@@ -283,6 +294,12 @@ fn what_is_not_stated_is_asked_and_what_cannot_be_is_refused() {
         assert!(found.contains(expected), "{from} → {to}: {found}");
     }
     let cases = folder.path().join("cases");
+    let system = cases.join("U1_b0/system");
+    std::fs::create_dir_all(&system).unwrap();
+    std::fs::write(system.join("controlDict"), "rho rhoInf;\n    rhoInf 1000; // fresh\n").unwrap();
+    let found = refused(SECTION);
+    assert!(found.contains("is 998 kg/m^3, and rhoInf is 1000 in ") && found.contains("controlDict"), "{found}");
+    std::fs::remove_dir_all(&system).unwrap();
     let start = cases.join("U1_b0/postProcessing/forces/0");
     std::fs::copy(start.join("force.dat"), start.join("force_0.dat")).unwrap();
     assert!(refused(SECTION).contains("force_0.dat and force.dat are two runs from one start"));
