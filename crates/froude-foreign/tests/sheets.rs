@@ -115,6 +115,29 @@ book.save("t.xlsx")
 }
 
 #[test]
+fn what_a_number_format_shows_is_not_lost() {
+    let folder = written(
+        r#"
+import openpyxl, xlwt
+sheet = (book := openpyxl.Workbook()).active
+for i, form in enumerate(['0.0" kN"', "0.00", "0.0,"]):
+    sheet.cell(1, i + 1, 1500.5).number_format = form
+book.save("t.xlsx")
+book = xlwt.Workbook()
+sheet = book.add_sheet("Sheet")
+for i, form in enumerate(['0.0" kN"', "0.00", "0.0,"]):
+    sheet.write(0, i, 1500.5, xlwt.easyxf(num_format_str=form))
+book.save("t.xls")
+"#,
+    );
+    for (file, sheet) in [("t.xlsx", "Sheet"), ("t.xls", "Sheet")] {
+        let bytes = bytes(folder.path(), file);
+        let read = Workbook::open(&bytes).unwrap().sheet(sheet, None).unwrap();
+        assert_eq!(read.rows, [[text("1500.5 kN"), Cell::Number(1500.5), text("1500.5 shown in thousands")]], "{file}");
+    }
+}
+
+#[test]
 fn an_xls_table_of_xlwt_is_read_cell_by_cell() {
     let folder = written(&format!(
         r#"{TABLE}

@@ -2,9 +2,9 @@
 //!
 //! Microsoft, MS-XLS. Not covered: files of Excel 4 and older.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use super::excel::is_percent;
+use super::excel::behind;
 use super::grid::{Region, is_too_loose};
 use super::ole::{Ole, u16_at, u32_at};
 use crate::{ForeignError, MAX_CELLS};
@@ -16,8 +16,8 @@ const MAX_COLUMNS: u16 = 256;
 /// What a sheet has beside its cells.
 #[derive(Debug, Default)]
 pub(crate) struct SheetNotes {
-    /// Cells that are shown in percent; rows and columns from 0.
-    pub(crate) percent: BTreeSet<(u32, u32)>,
+    /// What the formats of cells show behind their numbers; rows and columns from 0.
+    pub(crate) behind: BTreeMap<(u32, u32), String>,
     /// Cells whose formula reads another file.
     pub(crate) external: Vec<Region>,
 }
@@ -72,8 +72,8 @@ fn records(stream: &[u8]) -> impl Iterator<Item = Result<(u16, &[u8]), ForeignEr
 struct Globals {
     /// Places of the sheets in the stream.
     sheets: Vec<usize>,
-    /// For each cell format whether it shows percent.
-    is_percent: Vec<bool>,
+    /// For each cell format what it shows behind a number.
+    behind: Vec<Option<String>>,
     /// For each reference to sheets whether they lie in another file.
     is_elsewhere: Vec<bool>,
     /// For each name of a range or formula whether it reads another file.
@@ -83,7 +83,7 @@ struct Globals {
 impl Globals {
     fn read(stream: &[u8]) -> Result<Self, ForeignError> {
         let mut globals = Self::default();
-        let mut formats = BTreeMap::from([(9, true), (10, true)]);
+        let mut formats = BTreeMap::from([(9, Some("%".to_owned())), (10, Some("%".to_owned()))]);
         let mut cell_formats = Vec::new();
         let mut is_other_file = Vec::new();
         let mut references: Vec<&[u8; 6]> = Vec::new();
@@ -109,7 +109,7 @@ impl Globals {
                 0x041E => {
                     let letters = content.get(4..).unwrap_or_default().iter().map(|b| char::from(*b));
                     let format: String = letters.filter(|c| *c != '\0').collect();
-                    formats.insert(u16_at(content, 0).unwrap_or(0), is_percent(&format));
+                    formats.insert(u16_at(content, 0).unwrap_or(0), behind(&format));
                 }
                 // XF
                 0x00E0 => cell_formats.push(u16_at(content, 2).unwrap_or(0)),
@@ -134,7 +134,7 @@ impl Globals {
                 _ => {}
             }
         }
-        globals.is_percent = cell_formats.iter().map(|id| formats.get(id) == Some(&true)).collect();
+        globals.behind = cell_formats.iter().map(|id| formats.get(id).cloned().flatten()).collect();
         let elsewhere = references.iter().map(|[low, high, ..]| usize::from(u16::from_le_bytes([*low, *high])));
         globals.is_elsewhere = elsewhere.map(|book| is_other_file.get(book) == Some(&true)).collect();
         // Length of the name and of its formula, then ten bytes on the name and the formula.
@@ -190,9 +190,9 @@ impl Globals {
                     n_written += (last_column + 1 - column) as usize;
                     // MulRk has a format and a number of four bytes for each cell.
                     let formats = (column..=last_column).zip((4..).step_by(6));
-                    notes.percent.extend(formats.filter_map(|(column, at)| {
+                    notes.behind.extend(formats.filter_map(|(column, at)| {
                         let format = usize::from(u16_at(content, at)?);
-                        (self.is_percent.get(format) == Some(&true)).then_some((row, column))
+                        Some(((row, column), self.behind.get(format)?.clone()?))
                     }));
                     if kind == 0x0006 && self.is_external(content.get(20..).unwrap_or_default()) {
                         let place = (row as usize + 1, column as usize + 1);

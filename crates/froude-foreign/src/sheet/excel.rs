@@ -1,4 +1,4 @@
-//! What `.xlsx` and `.xls` have in common: dates, percent, and what formulas refer to.
+//! What `.xlsx` and `.xls` have in common: dates, number formats, and what formulas refer to.
 
 use calamine::ExcelDateTime;
 
@@ -25,15 +25,58 @@ pub(crate) fn iso(date: &ExcelDateTime) -> Option<Cell> {
     }))
 }
 
-/// Whether a number format shows percent: a `%` outside of quotes that is not escaped.
-pub(crate) fn is_percent(format: &str) -> bool {
-    let (mut is_quoted, mut is_escaped) = (false, false);
-    format.chars().any(|c| {
-        let found = c == '%' && !is_quoted && !is_escaped;
-        is_quoted ^= c == '"' && !is_escaped;
-        is_escaped = !is_escaped && !is_quoted && matches!(c, '\\' | '_' | '*');
-        found
-    })
+/// What a number format shows behind the number that changes what it means: `%`, or a unit in quotes, `0.0" kN"`; or that it shows thousandths, `0,`.
+pub(crate) fn behind(format: &str) -> Option<String> {
+    let (mut is_quoted, mut is_escaped, mut is_scaled) = (false, false, false);
+    let (mut literal, mut is_percent) = (String::new(), false);
+    for c in format.chars() {
+        let is_code = !is_quoted && !is_escaped;
+        match c {
+            // The next section is of negative numbers.
+            ';' if is_code => break,
+            '"' if !is_escaped => is_quoted = !is_quoted,
+            // What stands before the number says which one it is.
+            '0' | '#' | '?' if is_code => {
+                literal.clear();
+                is_scaled = false;
+            }
+            ',' if is_code => is_scaled = true,
+            '%' if is_code => is_percent = true,
+            // `_x` is as wide as x, `*x` is filled with it, and `\\x` shows it.
+            '_' | '*' if is_code => {
+                is_escaped = true;
+                continue;
+            }
+            '\\' if is_code => {
+                is_escaped = true;
+                literal.push('\\');
+                continue;
+            }
+            _ if is_quoted || (is_escaped && literal.ends_with('\\')) => {
+                literal = literal.trim_end_matches('\\').to_owned();
+                literal.push(c);
+            }
+            _ => {}
+        }
+        is_escaped = false;
+    }
+    let unit = literal.trim();
+    if is_percent {
+        Some("%".to_owned())
+    } else if is_scaled {
+        Some("shown in thousands".to_owned())
+    } else {
+        unit.contains(|c: char| c.is_alphabetic() || matches!(c, '%' | '‰' | '°')).then(|| unit.to_owned())
+    }
+}
+
+/// A number with what its format shows behind it.
+pub(crate) fn shown(x: f64, behind: Option<&String>) -> Cell {
+    match behind.map(String::as_str) {
+        None => Cell::Number(x),
+        Some("%") => Cell::Percent(x),
+        Some(unit) => Cell::Text(format!("{x} {unit}")),
+    }
 }
 
 /// Whether a formula refers to another file: `[1]Sheet1!A1`, `'[1]My sheet'!A1`, `'C:\[tank.xlsx]Sheet1'!A1`.
@@ -105,12 +148,33 @@ mod tests {
     }
 
     #[test]
-    fn percent_is_a_sign_of_the_format_and_not_of_its_texts() {
-        for format in ["0%", "0.00%", "0.0 %;[Red]-0.0 %", "\"slip \"0%"] {
-            assert!(is_percent(format), "{format}");
+    fn a_number_format_shows_percent_or_a_unit() {
+        for (format, expected) in [
+            ("0%", "%"),
+            ("0.00%", "%"),
+            ("0.0 %;[Red]-0.0 %", "%"),
+            ("\"slip \"0%", "%"),
+            ("0.0\"%\"", "%"),
+            ("0.0\\%", "%"),
+            ("0.0\" kN\"", "kN"),
+            ("#,##0.00\\ \\N;-#,##0.00\\ \\N", "N"),
+            ("General\" °C\"", "°C"),
+            ("0.0,", "shown in thousands"),
+            ("#,##0,\" k\"", "shown in thousands"),
+        ] {
+            assert_eq!(behind(format).as_deref(), Some(expected), "{format}");
         }
-        for format in ["0.00", "0.0\"%\"", "0.0\\%", "General"] {
-            assert!(!is_percent(format), "{format}");
+        for format in [
+            "0.00",
+            "General",
+            "#,##0.00",
+            "\"Run \"0",
+            "_(* #,##0.00_);_(* (#,##0.00)",
+            "0.00E+00",
+            "0.0\" \"",
+            "[$€-407] 0.00",
+        ] {
+            assert_eq!(behind(format), None, "{format}");
         }
     }
 

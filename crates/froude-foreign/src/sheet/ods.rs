@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use quick_xml::events::{BytesStart, Event};
 
 use super::SheetName;
-use super::excel::{no_cached_value, refers_elsewhere};
+use super::excel::{no_cached_value, refers_elsewhere, shown};
 use super::grid::{Cell, Cells, Region, Sheet, cell_name};
 use super::package::{Archive, attribute, damaged, xml};
 use crate::ForeignError;
@@ -200,6 +200,14 @@ fn is_beside(tag: &str) -> bool {
     tag == "office:annotation" || tag.starts_with("draw:")
 }
 
+/// What a cell shows behind its number: a unit of its format, as in `12.3 kN`.
+fn unit_shown(text: &str) -> Option<String> {
+    let unit =
+        text.trim_start_matches(|c: char| !c.is_ascii_digit()).trim_start_matches(|c: char| !c.is_alphabetic()).trim();
+    // `1.2E+03`, and hexadecimal numbers.
+    (!unit.is_empty() && !unit.contains(|c: char| c.is_ascii_digit())).then(|| unit.to_owned())
+}
+
 /// A cell while it is read.
 struct Open {
     repeats: usize,
@@ -301,7 +309,8 @@ impl Open {
             return Ok(Cell::Error(self.text));
         }
         Ok(match &*self.kind {
-            "float" | "currency" => Cell::Number(number(self.value)?),
+            "float" => shown(number(self.value)?, unit_shown(&self.text).as_ref()),
+            "currency" => Cell::Number(number(self.value)?),
             "percentage" => Cell::Percent(number(self.value)?),
             "date" | "time" => self.value.map_or(Cell::Empty, Cell::Date),
             "boolean" => Cell::Bool(self.value.as_deref() == Some("true")),

@@ -6,7 +6,7 @@ use calamine::{Data, Reader, SheetType, SheetVisible, Xls};
 
 use super::SheetName;
 use super::biff::{self, SheetNotes};
-use super::excel::{iso, no_cached_value, no_date, refers_elsewhere};
+use super::excel::{iso, no_cached_value, no_date, refers_elsewhere, shown};
 use super::grid::{Cell, Cells, Region, Sheet};
 use super::ole::Ole;
 use super::package::damaged;
@@ -90,13 +90,11 @@ impl<'a> Book<'a> {
         for (row, column, value) in values.used_cells() {
             let place = (start.0 + row as u32, start.1 + column as u32);
             let (row, column) = (place.0 as usize + 1, place.1 as usize + 1);
-            let is_percent = notes.percent.contains(&place);
+            let behind = notes.behind.get(&place);
             let cell = match value {
                 Data::Empty => Cell::Empty,
-                Data::Float(x) if is_percent => Cell::Percent(*x),
-                Data::Int(i) if is_percent => Cell::Percent(*i as f64),
-                Data::Float(x) => Cell::Number(*x),
-                Data::Int(i) => Cell::Number(*i as f64),
+                Data::Float(x) => shown(*x, behind),
+                Data::Int(i) => shown(*i as f64, behind),
                 Data::Bool(is) => Cell::Bool(*is),
                 Data::Error(error) => Cell::Error(error.to_string()),
                 Data::DateTime(date) => match iso(date) {

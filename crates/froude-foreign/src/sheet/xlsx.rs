@@ -1,12 +1,12 @@
 //! `.xlsx` by the crate calamine, cell by cell.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 
 use calamine::{DataRef, Reader, SheetType, SheetVisible, Xlsx, XlsxError, XlsxFormulaMetadata};
 
 use super::SheetName;
-use super::excel::{is_external, is_percent, iso, no_cached_value, no_date, refers_elsewhere, uses};
+use super::excel::{behind, is_external, iso, no_cached_value, no_date, refers_elsewhere, shown, uses};
 use super::grid::{Cell, Cells, Region, Sheet};
 use super::package::{self, Archive, attribute, damaged};
 use crate::{ForeignError, MAX_CELLS};
@@ -71,7 +71,7 @@ impl<'a> Book<'a> {
     /// If a formula has no trustworthy value, or the sheet is damaged or too large.
     pub(crate) fn sheet(&mut self, name: &str, range: Option<Region>) -> Result<Sheet, ForeignError> {
         let broken = |e: XlsxError| damaged(&format!("sheet {name}"), &e);
-        let percent = self.percent(name)?;
+        let (formats, format_of_cell) = self.formats(name)?;
         let merged = self.xlsx.merge_cells_by_sheet_name(name).map_err(broken)?;
         let merged = merged.iter().map(|d| Region {
             first: (d.start.0 as usize + 1, d.start.1 as usize + 1),
@@ -106,12 +106,11 @@ impl<'a> Book<'a> {
             if record.formula.is_some() && (record.value == DataRef::Empty || self.is_stale) {
                 return Err(no_cached_value(name, row, column));
             }
-            let is_percent = percent.contains(&record.pos);
+            let behind = format_of_cell.get(&record.pos).and_then(|at| formats.get(*at)?.as_ref());
             let cell = match record.value {
                 DataRef::Empty => Cell::Empty,
-                DataRef::Float(x) if is_percent => Cell::Percent(x),
-                DataRef::Float(x) => Cell::Number(x),
-                DataRef::Int(i) => Cell::Number(i as f64),
+                DataRef::Float(x) => shown(x, behind),
+                DataRef::Int(i) => shown(i as f64, behind),
                 DataRef::Bool(is) => Cell::Bool(is),
                 DataRef::Error(error) => Cell::Error(error.to_string()),
                 DataRef::DateTime(date) => iso(&date).ok_or_else(|| no_date(name, row, column, date.as_f64()))?,
@@ -126,24 +125,27 @@ impl<'a> Book<'a> {
         cells.finish(merged)
     }
 
-    /// Cells that are shown in percent; rows and columns from 0. Read apart from the values: the reader gives either styles or formulas.
-    fn percent(&mut self, name: &str) -> Result<BTreeSet<(u32, u32)>, ForeignError> {
+    /// What number formats show behind numbers, and the cells that have such a format; rows and columns from 0. Read apart from the values: the reader gives
+    /// either styles or formulas.
+    fn formats(&mut self, name: &str) -> Result<(Vec<Option<String>>, CellFormats), ForeignError> {
         let broken = |e: XlsxError| damaged(&format!("sheet {name}"), &e);
         let mut reader = self.xlsx.worksheet_cells_reader(name).map_err(broken)?;
-        let formats = reader.styles().iter().map(|style| style.number_format.as_ref());
-        let is_percent: Vec<bool> =
-            formats.map(|format| format.is_some_and(|format| is_percent(&format.format_code))).collect();
-        let mut out = BTreeSet::new();
-        if is_percent.contains(&true) {
+        let formats: Vec<Option<String>> =
+            reader.styles().iter().map(|style| behind(&style.number_format.as_ref()?.format_code)).collect();
+        let mut out = CellFormats::new();
+        if formats.iter().any(Option::is_some) {
             while let Some((row, column, style)) = reader.next_style_id().map_err(broken)? {
-                if is_percent.get(style) == Some(&true) {
-                    out.insert((row, column));
+                if matches!(formats.get(style), Some(Some(_))) {
+                    out.insert((row, column), style);
                 }
                 if out.len() > MAX_CELLS {
                     return Err(damaged(name, &"it formats more cells than are read"));
                 }
             }
         }
-        Ok(out)
+        Ok((formats, out))
     }
 }
+
+/// Number formats of cells, by row and column from 0.
+type CellFormats = BTreeMap<(u32, u32), usize>;
