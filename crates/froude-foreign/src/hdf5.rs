@@ -5,7 +5,7 @@
 //! | datasets of numbers with one or two dimensions | columns; whole numbers above 2⁵³ are rounded to 53 bits |
 //! | datasets of texts | columns of texts |
 //! | the attributes `units`, `unit`, `Units`, `Unit` | the unit of the column |
-//! | numbers equal to the attribute `_FillValue` or `missing_value` | NaN |
+//! | numbers equal to the attribute `_FillValue` or `missing_value`, or outside of `valid_range`, `valid_min` and `valid_max` | NaN |
 //! | groups, compound datasets, structures of MATLAB | tables of their own, by their path: `run.force` |
 //! | a frame of pandas, format "fixed" | a table with its columns |
 //! | complex numbers, references, objects, packed numbers, three dimensions | left out, with what to do |
@@ -16,6 +16,8 @@
 //!
 //! MATLAB's conventions are not published; they are those of files that it wrote, as SciPy's and h5py's users describe them: the attribute
 //! `MATLAB_class`, reversed dimensions, texts as numbers of 16 bits, references from arrays of structures into `#refs#`.
+
+use std::collections::BTreeSet;
 
 use hdf5_pure::{AttrValue, Dataset, Datatype, Error, File, Group, Object, is_hdf5_bytes};
 
@@ -171,6 +173,9 @@ impl Walk {
             Ok(datatype) => datatype,
             Err(error) => return unread(format!("has a type that is not read: {error}")),
         };
+        if let Some(reason) = attributes.doubt(matches!(datatype, Datatype::FixedPoint { .. })) {
+            return unread(reason);
+        }
         let (shape, chunk) = match (dataset.shape(), dataset.chunk_shape()) {
             (Ok(shape), Ok(chunk)) => (shape, chunk.unwrap_or_default()),
             (Err(error), _) | (_, Err(error)) => return unread(unreadable(&error)),
@@ -243,8 +248,10 @@ impl Walk {
                 data.iter_mut().filter(|x| **x == fill || **x == single).for_each(|x| *x = f64::NAN);
             }
         }
-        let units = ["units", "unit", "Units", "Unit"];
-        let unit = units.iter().find_map(|key| attributes.text(key)).unwrap_or_default();
+        if let Some([low, high]) = attributes.valid() {
+            data.iter_mut().filter(|x| **x < low || **x > high).for_each(|x| *x = f64::NAN);
+        }
+        let unit = attributes.units().next().unwrap_or_default();
         let (outer, inner) = (shape.first().copied().unwrap_or(1), shape.get(1).copied().unwrap_or(1));
         if self.is_matlab && shape.len() == 2 {
             return Value::Numbers { rows: inner, columns: outer, data, unit };
@@ -355,6 +362,12 @@ fn matlab_texts(units: &[u16], shape: &[usize]) -> Vec<String> {
     (0..rows.min(units.len().max(1))).map(row).collect()
 }
 
+/// Attributes that state a unit.
+const UNITS: [&str; 4] = ["units", "unit", "Units", "Unit"];
+/// Attributes by which programs turn whole numbers into values, in small letters.
+const RAW: [&str; 9] =
+    ["scale", "scaling", "offset", "gain", "slope", "factor", "sensitivity", "calibration", "conversion_factor"];
+
 /// Attributes of a group or dataset.
 struct Attributes(Vec<(String, AttrValue)>);
 
@@ -385,24 +398,69 @@ impl Attributes {
         }
     }
 
+    /// What units the attributes state.
+    fn units(&self) -> impl Iterator<Item = String> {
+        UNITS.iter().filter_map(|key| self.text(key))
+    }
+
+    /// Why numbers with these attributes are not what they stand for, or can be two things.
+    fn doubt(&self, is_whole: bool) -> Option<String> {
+        let units: BTreeSet<String> = self.units().map(|unit| unit.trim().to_owned()).collect();
+        let is_unsigned = |text: String| text.eq_ignore_ascii_case("true");
+        let of_raw = |name: &&String| RAW.contains(&name.to_lowercase().as_str());
+        if units.len() > 1 {
+            let units: Vec<String> = units.into_iter().collect();
+            return Some(format!("states two units, {}; delete the attribute that is wrong", units.join(" and ")));
+        }
+        if self.text("_Unsigned").is_some_and(is_unsigned) {
+            return Some(
+                "holds unsigned numbers in a signed type (attribute _Unsigned); write them in an unsigned one"
+                    .to_owned(),
+            );
+        }
+        let raw = self.0.iter().map(|(name, _)| name).find(of_raw).filter(|_| is_whole)?;
+        Some(format!("has whole numbers with the attribute {raw}, which may turn them into values; write the values"))
+    }
+
+    /// The range that numbers of netCDF are valid in: `valid_range`, `valid_min`, `valid_max`.
+    fn valid(&self) -> Option<[f64; 2]> {
+        if let Ok(both) = <[f64; 2]>::try_from(self.numbers("valid_range")) {
+            return Some(both);
+        }
+        let [low, high] = ["valid_min", "valid_max"].map(|key| self.number(key));
+        (low.is_some() || high.is_some()).then(|| [low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)])
+    }
+
     fn number(&self, name: &str) -> Option<f64> {
-        Some(match self.get(name)? {
-            AttrValue::F64(x) => *x,
-            AttrValue::F32(x) => f64::from(*x),
-            AttrValue::I8(i) => f64::from(*i),
-            AttrValue::I16(i) => f64::from(*i),
-            AttrValue::I32(i) => f64::from(*i),
-            AttrValue::I64(i) => *i as f64,
-            AttrValue::U8(i) => f64::from(*i),
-            AttrValue::U16(i) => f64::from(*i),
-            AttrValue::U32(i) => f64::from(*i),
-            AttrValue::U64(i) => *i as f64,
-            AttrValue::F64Array(all) if all.len() == 1 => *all.first()?,
-            AttrValue::F32Array(all) if all.len() == 1 => f64::from(*all.first()?),
-            AttrValue::I16Array(all) if all.len() == 1 => f64::from(*all.first()?),
-            AttrValue::I32Array(all) if all.len() == 1 => f64::from(*all.first()?),
-            AttrValue::I64Array(all) if all.len() == 1 => *all.first()? as f64,
-            _ => return None,
-        })
+        <[f64; 1]>::try_from(self.numbers(name)).ok().map(|[x]| x)
+    }
+
+    fn numbers(&self, name: &str) -> Vec<f64> {
+        fn all<T: Copy>(many: &[T], of: impl Fn(T) -> f64) -> Vec<f64> {
+            many.iter().map(|x| of(*x)).collect()
+        }
+        match self.get(name) {
+            Some(AttrValue::F64(x)) => vec![*x],
+            Some(AttrValue::F32(x)) => vec![f64::from(*x)],
+            Some(AttrValue::I8(i)) => vec![f64::from(*i)],
+            Some(AttrValue::I16(i)) => vec![f64::from(*i)],
+            Some(AttrValue::I32(i)) => vec![f64::from(*i)],
+            Some(AttrValue::I64(i)) => vec![*i as f64],
+            Some(AttrValue::U8(i)) => vec![f64::from(*i)],
+            Some(AttrValue::U16(i)) => vec![f64::from(*i)],
+            Some(AttrValue::U32(i)) => vec![f64::from(*i)],
+            Some(AttrValue::U64(i)) => vec![*i as f64],
+            Some(AttrValue::F64Array(many)) => many.clone(),
+            Some(AttrValue::F32Array(many)) => all(many, f64::from),
+            Some(AttrValue::I8Array(many)) => all(many, f64::from),
+            Some(AttrValue::I16Array(many)) => all(many, f64::from),
+            Some(AttrValue::I32Array(many)) => all(many, f64::from),
+            Some(AttrValue::I64Array(many)) => all(many, |i| i as f64),
+            Some(AttrValue::U8Array(many)) => all(many, f64::from),
+            Some(AttrValue::U16Array(many)) => all(many, f64::from),
+            Some(AttrValue::U32Array(many)) => all(many, f64::from),
+            Some(AttrValue::U64Array(many)) => all(many, |i| i as f64),
+            _ => Vec::new(),
+        }
     }
 }

@@ -39,6 +39,36 @@ fn written(script: &str) -> impl Fn(&str) -> Result<Contents, String> {
 }
 
 #[test]
+fn attributes_that_change_what_numbers_mean_are_heeded() {
+    let read = written(
+        r#"
+import h5py, numpy as np
+with h5py.File("t.h5", "w") as file:
+    for name, key, value, kind in [
+        ("two", "unit", "mm", "f8"), ("unsigned", "_Unsigned", "true", "i2"), ("raw", "Gain", 0.5, "i2"), ("fine", "Gain", 0.5, "f8"),
+        ("range", "valid_range", np.array([0, 2], "f4"), "f4"), ("low", "valid_min", 1.0, "f8"),
+    ]:
+        file[name] = np.arange(4).astype(kind)
+        file[name].attrs[key] = value
+    file["two"].attrs["units"] = "m"
+"#,
+    );
+    let read = read("t.h5").unwrap();
+    assert_eq!(shape(&read), [": fine low range"]);
+    let of =
+        |name: &str| numbers(column(&read, "", name)).iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
+    assert_eq!([of("fine"), of("low"), of("range")], ["0 1 2 3", "NaN 1 2 3", "0 1 2 NaN"]);
+    let out = left_out(&read).join("; ");
+    for expected in [
+        "two states two units, m and mm",
+        "unsigned holds unsigned numbers",
+        "raw has whole numbers with the attribute Gain",
+    ] {
+        assert!(out.contains(expected), "{out}");
+    }
+}
+
+#[test]
 fn datasets_of_h5py_are_columns_with_units_or_are_named() {
     let read = written(
         r#"
