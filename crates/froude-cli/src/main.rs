@@ -25,6 +25,8 @@ use clap::Parser;
 use failure::Failure;
 use froude::identify::prediction;
 use froude::pipeline::{self, Identified, Input, Job};
+use froude::records::question::asked_by;
+use froude::records::settle::settle;
 use froude::report::write::write_files;
 use froude::swim::verb::look;
 use froude::{demo, inspect, plan, twin};
@@ -39,7 +41,7 @@ fn main() -> ExitCode {
             Ok(cli) => cli,
             Err(error) => return out::usage(&error),
         };
-        let done = run(cli);
+        let done = answered(cli);
         signals::wait_if_leaving();
         match done {
             Ok(()) => ExitCode::SUCCESS,
@@ -49,6 +51,23 @@ fn main() -> ExitCode {
             }
         }
     })
+}
+
+/// Does what was asked; where a file can be read in several ways and a person is there, asks them, writes the answer into the sidecar, and tries again.
+fn answered(cli: Cli) -> Result<(), Failure> {
+    let mut done = run(cli);
+    let mut settled = None;
+    while let Err(error) = &done
+        && let Some(question) = asked_by(error).filter(|question| settled.as_ref() != Some(*question)).cloned()
+        && let Some(answer) = out::ask(&question)?
+        && let Ok(again) = Cli::try_parse()
+    {
+        settle(&question, answer)?;
+        out::note!("written in {}", question.sidecar.display());
+        settled = Some(question);
+        done = run(again);
+    }
+    done
 }
 
 fn run(cli: Cli) -> Result<(), Failure> {

@@ -1,7 +1,7 @@
 //! Lines on standard output and standard error. Here alone text reaches a terminal, and here it is made harmless: names, cells, paths
 //! and messages of other programs may hold a terminal's commands, and are shown as text.
 
-use std::io::Write as _;
+use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -9,10 +9,12 @@ use std::time::{Duration, Instant};
 
 use clap::CommandFactory as _;
 use clap::builder::Styles;
+use froude::records::question::Question;
 use froude::records::text::visible;
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 use crate::args::Cli;
+use crate::failure::Failure;
 
 /// What is done does not end with whoever reads about it.
 static GOES_ON_UNREAD: AtomicBool = AtomicBool::new(false);
@@ -62,6 +64,21 @@ pub fn usage(error: &clap::Error) -> ExitCode {
         return ExitCode::FAILURE;
     }
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
+/// Asks the person at the terminal which of several readings is meant; `None` where nobody is there, or they do not choose one.
+pub fn ask(question: &Question) -> Result<Option<usize>, Failure> {
+    if !std::io::stdin().is_terminal() || !std::io::stderr().is_terminal() {
+        return Ok(None);
+    }
+    error_line(format_args!("{}:", question.problem));
+    for (k, answer) in question.answers.iter().enumerate() {
+        error_line(format_args!("  {}) {}", k + 1, answer.means));
+    }
+    error_line(format_args!("Which is it? Its number goes into {}; Enter alone ends.", question.sidecar.display()));
+    let mut line = String::new();
+    std::io::stdin().read_line(&mut line).map_err(Failure::system)?;
+    Ok(line.trim().parse::<usize>().ok().and_then(|k| k.checked_sub(1)).filter(|k| *k < question.answers.len()))
 }
 
 /// How often a file or a pipe hears what a spinner shows.

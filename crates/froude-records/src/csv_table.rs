@@ -9,14 +9,14 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use froude_foreign::decode::{Decoded, decode};
 use froude_foreign::marks::{Marks, Shape, Undecided, Witness, shape};
 
 use crate::assemble::{Room, Want, assemble, number, plan};
 use crate::error::{Place, RecordError, decimal_comma};
-use crate::file_words::{FileWords, is_sum, is_summary, of_summary, sidecar_name};
+use crate::file_words::{FileWords, is_sum, is_summary, of_summary, words_below_numbers};
 use crate::guard::{guarded, unguarded};
 use crate::memory;
 use crate::obstacles;
@@ -105,6 +105,8 @@ fn parse(
 /// What the columns of a table of text are.
 pub(crate) struct Head<'a, 's> {
     path: &'a Path,
+    /// The sidecar that takes answers about the file.
+    answers: PathBuf,
     sidecar: Option<&'s Sidecar>,
     file: &'s FileWords,
     place: Place,
@@ -141,8 +143,9 @@ impl<'a, 's> Head<'a, 's> {
         sidecar: Option<&'s Sidecar>,
         file: &'s FileWords,
     ) -> Result<Self, RecordError> {
+        let answers = sidecar.map_or_else(|| path.with_extension("toml"), |sidecar| sidecar.path.clone());
         if let Some(found) = &reading.undecided {
-            return Err(undecided(path, found, &sidecar_name(path)));
+            return Err(undecided(path, found, &answers));
         }
         let sidecar = sidecar.filter(|sidecar| !sidecar.columns.is_empty());
         let header: Vec<String> = reading.headings.iter().map(crate::heading::Heading::header).collect();
@@ -152,6 +155,7 @@ impl<'a, 's> Head<'a, 's> {
         }
         Ok(Self {
             path,
+            answers,
             sidecar,
             file,
             place: reading.place.clone(),
@@ -218,6 +222,12 @@ impl<'a, 's> Head<'a, 's> {
             }
             memory::push(&mut lines, line).map_err(|e| RecordError::memory(path, e))?;
         }
+        if let (None, Some(Raw::Texts(first))) = (&self.file.leave_out, raws.first())
+            && let Some(row) = words_below_numbers(first)
+            && let (Some(cell), Some(line)) = (first.get(row), lines.get(row))
+        {
+            return Err(RecordError::syntax(Place::in_table(path, *line), of_summary(path, cell)));
+        }
         Ok(Rows { raws, lines, left_out })
     }
 
@@ -230,7 +240,7 @@ impl<'a, 's> Head<'a, 's> {
         let place = || Place::in_table(self.path, line);
         if self.is_open && matches!(shape(cell), Some(Shape::Either(_))) {
             let either = Undecided::Either(Witness { cell: cell.to_owned(), line });
-            return Err(undecided(self.path, &either, &sidecar_name(self.path)));
+            return Err(undecided(self.path, &either, &self.answers));
         }
         let is_plain = self.marks == Marks::default() && !cell.contains(['d', 'D', '−']);
         let value = if is_plain {

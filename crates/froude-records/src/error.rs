@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use crate::memory::Exhausted;
+use crate::question::Question;
 use crate::units::LARGEST_SI;
 
 /// Where in a file something stands.
@@ -177,6 +178,15 @@ pub enum RecordError {
         place: Place,
         /// What is wrong and what to do.
         problem: String,
+    },
+    /// What stands at a place can be read in several ways, and only a person knows which is meant.
+    #[error("{place}: {question}")]
+    Asked {
+        /// Where.
+        place: Place,
+        /// What is to be decided.
+        #[source]
+        question: Question,
     },
     /// A binary file is cut off or damaged.
     #[error(

@@ -178,6 +178,19 @@ pub fn is_sum(cell: &str) -> bool {
     cell.starts_with(char::is_alphabetic) && SUMMARIES.contains(&cell.trim_end_matches(':').to_lowercase().as_str())
 }
 
+/// Most rows at the end of a table that are no runs.
+const ODD_ROWS: usize = 3;
+
+/// The row of a first column from which on words stand below whole numbers, `1, 2, 3, Tara`: sums, tares and notes rather than runs.
+#[must_use]
+pub fn words_below_numbers(cells: &[String]) -> Option<usize> {
+    let is_whole = |cell: &String| cell.parse::<u64>().is_ok();
+    let row = cells.iter().rposition(is_whole)? + 1;
+    let are_words = cells.get(row..)?.iter().all(|cell| cell.starts_with(char::is_alphabetic));
+    let is_odd = (1..=ODD_ROWS).contains(&(cells.len() - row)) && row >= ODD_ROWS;
+    (is_odd && are_words && cells.iter().take(row).all(is_whole)).then_some(row)
+}
+
 /// First words of longer names of such rows.
 const STEMS: [&str; 18] = [
     "mean",
@@ -201,7 +214,16 @@ const STEMS: [&str; 18] = [
 ];
 
 /// Round numbers that programs write where there is none.
-const SENTINELS: [f64; 24] = [
+const SENTINELS: [f64; 33] = [
+    32767.0,
+    -32768.0,
+    65535.0,
+    1e6,
+    -1e6,
+    -99.0,
+    -99.9,
+    99.99,
+    -99.99,
     -9999.0,
     9999.0,
     -999.0,

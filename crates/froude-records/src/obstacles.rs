@@ -61,7 +61,7 @@ pub(crate) fn of(
     sidecar: Option<&Sidecar>,
     first: RecordError,
 ) -> RecordError {
-    if !matches!(first, RecordError::Syntax { .. }) {
+    if !matches!(first, RecordError::Syntax { .. } | RecordError::Asked { .. }) {
         return first;
     }
     let told = first.to_string();

@@ -10,6 +10,7 @@ use crate::error::{Place, Position, RecordError};
 use crate::file_words::FileWords;
 use crate::guard::unguarded;
 use crate::heading::{Heading, headings, rename_sname, split_header};
+use crate::question::{Answer, Question};
 use crate::records::{Dialect, NextRow as _, Records, Skipped};
 use crate::text::counted;
 use crate::units::parse_unit;
@@ -226,53 +227,53 @@ fn renamed(sname: &[(String, &'static str)]) -> Option<String> {
     (!letters.is_empty()).then(|| format!("{} by SNAME as {}", letters.join(", "), names.join(", ")))
 }
 
-/// What nobody can decide, with both lines to write.
-pub(crate) fn undecided(path: &Path, found: &Undecided, sidecar: &str) -> RecordError {
-    let write = |line: &str| format!("\n  schema = 1\n  [file]\n  {line}");
-    let (at, problem) = match found {
+/// What nobody can decide but a person, with what to write in the sidecar.
+pub(crate) fn undecided(path: &Path, found: &Undecided, sidecar: &Path) -> RecordError {
+    let asked = |line: usize, problem: String, answers: Vec<Answer>| RecordError::Asked {
+        place: Place::line(path, line),
+        question: Question { problem, sidecar: sidecar.to_owned(), answers },
+    };
+    let answer = |means: String, lines: &[(&str, char)]| Answer {
+        means,
+        lines: lines.iter().map(|(key, mark)| format!("{key} = \"{mark}\"")).collect(),
+    };
+    match found {
         Undecided::Either(Witness { cell, line }) => {
             let mark = if cell.contains(',') { ',' } else { '.' };
             let [fraction, whole] = [cell.replace(mark, "."), cell.replace(mark, "")];
-            (
-                line,
-                format!(
-                    "`{cell}` can be {fraction} or {whole}, and nothing else in the file decides; write in {sidecar}, for {fraction}:{}\nor for {whole}:{}",
-                    write(&format!("decimal = \"{mark}\"")),
-                    write(&format!("thousands = \"{mark}\"")),
-                ),
-            )
+            let problem = format!("`{cell}` can be {fraction} or {whole}, and nothing else in the file decides");
+            asked(*line, problem, vec![answer(fraction, &[("decimal", mark)]), answer(whole, &[("thousands", mark)])])
         }
-        Undecided::Both(point, comma) => (
-            &comma.line,
-            format!(
-                "`{}` has a decimal comma and `{}` in line {} a decimal point; export the file with one of them, or write in {sidecar} which marks it has:{}",
-                comma.cell,
-                point.cell,
-                point.line,
-                write("decimal = \",\"\n  thousands = \".\""),
-            ),
-        ),
+        Undecided::Both(point, comma) => {
+            let problem = format!(
+                "`{}` has a decimal comma and `{}` in line {} a decimal point; export the file with one of them",
+                comma.cell, point.cell, point.line
+            );
+            let stated = |decimal, thousands| {
+                answer(format!("a decimal {}", word(decimal)), &[("decimal", decimal), ("thousands", thousands)])
+            };
+            asked(comma.line, problem, vec![stated(',', '.'), stated('.', ',')])
+        }
         Undecided::Mixed { certain, other } => {
             let mark = if other.cell.contains(',') { ',' } else { '.' };
-            (
-                &other.line,
-                format!(
-                    "`{}` stands beside `{}` in line {}: with that decimal mark it is {}; if so, write in {sidecar}:{}\nelse export the file with one decimal mark",
-                    other.cell,
-                    certain.cell,
-                    certain.line,
-                    other.cell.replace(mark, ""),
-                    write(&format!("decimal = \"{}\"\n  thousands = \"{mark}\"", if mark == ',' { '.' } else { ',' })),
-                ),
-            )
+            let decimal = if mark == ',' { '.' } else { ',' };
+            let whole = other.cell.replace(mark, "");
+            let problem = format!(
+                "`{}` stands beside `{}` in line {}: with that decimal mark it is {whole}; if it is not, export the file with one decimal mark",
+                other.cell, certain.cell, certain.line
+            );
+            asked(other.line, problem, vec![answer(whole, &[("decimal", decimal), ("thousands", mark)])])
         }
-        Undecided::Thousands(one, other) => (
-            &other.line,
-            format!(
+        Undecided::Thousands(one, other) => {
+            let problem = format!(
                 "`{}` and `{}` in line {} use two different thousands separators; export the file with one of them",
                 other.cell, one.cell, one.line
-            ),
-        ),
-    };
-    RecordError::syntax(Place::line(path, *at), problem)
+            );
+            RecordError::syntax(Place::line(path, other.line), problem)
+        }
+    }
+}
+
+fn word(mark: char) -> &'static str {
+    if mark == ',' { "comma" } else { "point" }
 }

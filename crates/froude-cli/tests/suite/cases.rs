@@ -1,6 +1,8 @@
 //! Small inputs as people write them, with known answers, at the verbs that their owners would run.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
@@ -104,4 +106,36 @@ fn a_servo_log_of_rounded_stamps_says_how_they_were_read() {
     holds(&record, "servo_symmetric", &[("M", 12.0), ("F_v", 30.0), ("F_c", 4.0)], 0.3);
     let findings = record["findings"].to_string();
     assert!(findings.contains("the stamps are rounded to 1 ms"), "{findings}");
+}
+
+/// `script` of Debian's bsdutils gives the program a terminal.
+#[test]
+fn a_number_that_can_be_two_is_asked_at_a_terminal_and_the_answer_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), "speed [m/s];f_x [N]\n1,250;-2\n1,500;-3\n").unwrap();
+    let at_terminal = |typed: &str| {
+        let command = format!("'{}' inspect t.csv", env!("CARGO_BIN_EXE_froude"));
+        let mut child = Command::new("script")
+            .args(["-qec", &command, "/dev/null"])
+            .current_dir(folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        child.stdin.take().unwrap().write_all(typed.as_bytes()).unwrap();
+        let output = child.wait_with_output().unwrap();
+        (output.status.code(), String::from_utf8(output.stdout).unwrap())
+    };
+    let sidecar = folder.path().join("t.toml");
+    let (code, told) = at_terminal("\n");
+    assert!(code == Some(2) && told.contains("1) 1.250") && told.contains("2) 1250") && !sidecar.exists(), "{told}");
+    let (code, told) = at_terminal("1\n");
+    assert_eq!(code, Some(0), "{told}");
+    assert_eq!(std::fs::read_to_string(&sidecar).unwrap(), "schema = 1\n[file]\ndecimal = \",\"\n");
+    let read = done(&["inspect", text(&folder.path().join("t.csv")), "--csv"]);
+    assert!(read.contains("speed,m/s,1.25,1.5"), "{read}");
+    // Nobody is asked where nobody is there.
+    std::fs::remove_file(&sidecar).unwrap();
+    let refused = froude(&["inspect", text(&folder.path().join("t.csv"))]);
+    assert_eq!(refused.status.code(), Some(2));
 }

@@ -121,7 +121,14 @@ fn sums_and_numbers_that_were_not_measured_are_named_and_asked() {
         let text = format!("Lauf;speed [m/s]\n1;0,5\n{word};1,5\n");
         assert!(read(text.as_bytes(), "").is_err(), "{word}");
     }
-    for (number, written) in [("-9999", "-9999"), ("-999.25", "-999.25"), ("1e30", "1E+30"), ("9999", "9999.0")] {
+    // Neither is a word below the numbers of runs, unless somebody says so.
+    let tare = b"run,speed [m/s],f_x [N]\n1,0.5,-2\n2,1,-8\n3,1.25,-12.5\nTara,0,-0.1\n";
+    assert!(read(tare, "").unwrap_err().starts_with("t.csv:5: the row begins with `Tara`"));
+    assert_eq!(read(tare, "schema = 1\n[file]\nleave_out = []\n").unwrap().n_rows, 4);
+    assert!(read(b"run,f_x [N]\n1,-2\n2,-8\n3,-9\n3b,-9.1\n", "").is_ok());
+    for (number, written) in
+        [("32767", "32767"), ("-9999", "-9999"), ("-999.25", "-999.25"), ("1e30", "1E+30"), ("9999", "9999.0")]
+    {
         let text = format!("speed [m/s],f_x [N]\n0.5,-2\n1,{written}\n1.25,-12.5\n");
         let said = read(text.as_bytes(), "").unwrap_err();
         assert!(said.starts_with("t.csv:3: column `f_x [N]`: ") && said.contains("not_measured = ["), "{said}");
