@@ -19,7 +19,7 @@ const fn row(
     Refused { endings, magic, what, instead }
 }
 
-const FORMATS: [Refused; 19] = [
+const FORMATS: [Refused; 23] = [
     row(
         &["outb"],
         b"",
@@ -101,8 +101,22 @@ const FORMATS: [Refused; 19] = [
         "an Arrow file",
         "write it as Parquet: pandas.read_feather(\"run.feather\").to_parquet(\"run.parquet\")",
     ),
-    row(&["zip", "7z", "gz", "rar", "zst", "xz"], b"", "a compressed file", "unpack it, and name the file in it"),
+    row(
+        &["zip", "7z", "gz", "rar", "zst", "xz", "tar", "tgz", "bz2"],
+        b"",
+        "a compressed file",
+        "unpack it, and name the file in it",
+    ),
     row(&["pdf"], b"%PDF-", "a document", "save the table itself as CSV"),
+    row(&["doc", "docx", "odt", "rtf"], b"", "a document", "copy the table into a spreadsheet, and save that as .xlsx"),
+    row(&["html", "htm"], b"<!DOCTYPE html", "a web page", "copy the table into a spreadsheet, and save that as .xlsx"),
+    row(
+        &["mp4", "avi", "mov", "mkv", "wmv"],
+        b"",
+        "a video",
+        "track the motion in it, for example with Tracker (physlets.org) or Kinovea, and export the track as CSV",
+    ),
+    row(&["wav", "flac", "mp3"], b"", "a recording of sound", "write its samples as CSV, with their times"),
     row(
         &["png", "jpg", "jpeg", "tif", "tiff"],
         b"\x89PNG",

@@ -17,10 +17,13 @@ use crate::sidecar::Sidecar;
 use crate::table::Table;
 use crate::text::counted;
 
+/// Between the name of what was left out and the reason.
+const LEFT_OUT: &str = " left out: ";
+
 /// The part of a file that is meant, its headings, and what is to be said of the file.
 fn meant(path: &Path, contents: Contents, file: &FileWords) -> Result<(Part, Vec<Heading>, Vec<String>), RecordError> {
     let several = contents.parts.len() > 1;
-    let left_out = contents.left_out.iter().map(|left| format!("{} left out: {}", left.name, left.reason));
+    let left_out = contents.left_out.iter().map(|left| format!("{}{LEFT_OUT}{}", left.name, left.reason));
     let mut words: Vec<String> = left_out.chain(contents.notes.iter().cloned()).collect();
     let part = chosen(path, contents.parts, file)?;
     if several {
@@ -86,7 +89,7 @@ pub(crate) fn read_columns(
     let header: Vec<String> = headings.iter().map(Heading::header).collect();
     let fitted = sidecar.map(|sidecar| sidecar.fitted(&headings)).transpose()?;
     let columns = fitted.as_ref().filter(|sidecar| !sidecar.columns.is_empty());
-    let wants = plan(path, &header, columns, &place)?;
+    let wants = plan(path, &header, columns, &place).map_err(|error| with_reason(error, &words))?;
     let n_rows = part.columns.first().map_or(0, |column| column.cells.len());
     let mut room = Room::new(path);
     let mut raws = Vec::new();
@@ -116,6 +119,20 @@ pub(crate) fn read_columns(
     let table = assemble(path, &header, &wants, raws, columns, &place, (1..=n_rows).collect())?;
     let understood = (!words.is_empty()).then(|| words.join(", "));
     Ok(Table { sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..table }.also(understood))
+}
+
+/// An error about a column that was left out, with the reason; `words` are of the file.
+fn with_reason(error: RecordError, words: &[String]) -> RecordError {
+    let RecordError::Syntax { place, problem } = error else { return error };
+    let is_meant = |words: &&String| {
+        let name = words.split(LEFT_OUT).next().unwrap_or_default();
+        let last = name.rsplit(['.', '/']).next().unwrap_or_default();
+        words.contains(LEFT_OUT) && [name, last].iter().any(|name| problem.contains(&format!("`{name}`")))
+    };
+    match words.iter().find(is_meant) {
+        Some(reason) => RecordError::syntax(place, format!("{problem}; {reason}")),
+        None => RecordError::Syntax { place, problem },
+    }
 }
 
 /// The part that is declared, or the only one.

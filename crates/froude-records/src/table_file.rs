@@ -66,7 +66,7 @@ fn first_bytes(path: &Path) -> Vec<u8> {
 }
 
 /// Endings of tables of text.
-const TEXT_ENDINGS: [&str; 8] = ["csv", "txt", "dat", "tsv", "out", "exp", "asc", "prn"];
+const TEXT_ENDINGS: [&str; 12] = ["csv", "txt", "dat", "tsv", "out", "exp", "asc", "prn", "lvm", "tab", "xy", "dlm"];
 
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,7 +90,9 @@ impl Format {
             ending => {
                 let first = first_bytes(path);
                 let what = refusal_for(ending.unwrap_or_default(), &first).unwrap_or_else(|| {
-                    "tables are read from text (.csv, .txt, .dat, .tsv, .out), .parquet, spreadsheets (.xlsx, .xls, .ods), .mat, .h5, .tdms, .ulg and .mcap files".to_owned()
+                    let is_text = !first.is_empty() && !first.iter().any(|b| *b < b' ' && !b.is_ascii_whitespace());
+                    let rename = if is_text { "; a table of text under another ending is renamed to .txt" } else { "" };
+                    format!("it is not known what it is; tables are read from text (.csv, .txt, .dat, .tsv, .out), .parquet, spreadsheets (.xlsx, .xls, .ods), .mat, .h5, .tdms, .ulg and .mcap files{rename}")
                 });
                 Err(RecordError::Refused(format!("{}: {what}", path.display())))
             }
