@@ -42,6 +42,7 @@ mod sidecars;
 mod small_disk;
 mod starters;
 mod steady;
+mod stories;
 mod sway;
 mod swim;
 mod swim_3d;
