@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 2,000 to 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, predict, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, sway, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-moved, cfd-campaign, clocks,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, predict, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, sway, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-moved, cfd-campaign, foreign, clocks,
 //! dynamic, potential, facets, intervals, lints, power, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -34,6 +34,7 @@ mod flexible;
 mod flexible_axis;
 #[path = "../../../froude-cfd/examples/known_flows/flows.rs"]
 mod flows;
+mod foreign;
 mod hour;
 mod intervals;
 mod kvlcc2;
@@ -176,6 +177,9 @@ fn main() -> ExitCode {
         }
         if wants("swim-coverage") {
             swim_coverage::all(claims, &root, if full { 200 } else { 6 })?;
+        }
+        if wants("foreign") {
+            foreign::all(claims, &root)?;
         }
         if wants("clocks") {
             clocks::all(claims, &shared)?;
