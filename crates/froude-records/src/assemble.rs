@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::error::{Place, RecordError, decimal_comma};
-use crate::file_words::{refuse_sentinel, sidecar_name};
+use crate::file_words::{FileWords, refuse_sentinel, sidecar_name};
 use crate::heading::split_header;
 use crate::known_columns::{is_text_column, known_dimension, usual_unit};
 use crate::memory;
@@ -275,13 +275,13 @@ pub(crate) fn number(cell: &str, header: &str, place: &dyn Fn() -> Place) -> Res
     }
 }
 
-/// Makes the table of what was read, and checks what concerns more than one cell.
+/// Makes the table of what was read, and checks what concerns more than one cell; the sidecar is one that maps columns.
 pub(crate) fn assemble(
     path: &Path,
     header: &[String],
     wants: &[Want<'_>],
     raws: Vec<Raw>,
-    sidecar: Option<&Sidecar>,
+    (sidecar, file): (Option<&Sidecar>, &FileWords),
     header_place: &Place,
     line_of_row: Vec<usize>,
 ) -> Result<Table, RecordError> {
@@ -308,7 +308,7 @@ pub(crate) fn assemble(
     table.understood = (!notes.is_empty()).then(|| notes.join(", "));
     for (name, raw) in header.iter().zip(&raws) {
         if let Raw::Numbers(values) = raw {
-            refuse_sentinel(values, name, &|row| table.place_of_row(row))?;
+            refuse_sentinel(values, name, file, &|row| table.place_of_row(row))?;
         }
     }
     match sidecar {

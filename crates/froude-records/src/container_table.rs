@@ -116,7 +116,7 @@ pub(crate) fn read_columns(
             }
         });
     }
-    let table = assemble(path, &header, &wants, raws, columns, &place, (1..=n_rows).collect())?;
+    let table = assemble(path, &header, &wants, raws, (columns, file), &place, (1..=n_rows).collect())?;
     let understood = (!words.is_empty()).then(|| words.join(", "));
     Ok(Table { sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..table }.also(understood))
 }

@@ -233,7 +233,7 @@ impl<'a, 's> Head<'a, 's> {
 
     /// The number in a cell; `None` where it is empty or stands for no measurement.
     fn value(&self, j: usize, cell: &str, line: usize) -> Result<Option<f64>, RecordError> {
-        let has_words = !self.file.not_measured.is_empty();
+        let has_words = self.file.not_measured.is_some();
         if cell.is_empty() || (has_words && self.file.is_not_measured(cell, None)) {
             return Ok(None);
         }
@@ -281,7 +281,7 @@ impl<'a, 's> Head<'a, 's> {
 
     /// The table of some rows.
     pub(crate) fn table(&self, rows: Rows) -> Result<Table, RecordError> {
-        assemble(self.path, &self.header, &self.wants, rows.raws, self.sidecar, &self.place, rows.lines)
+        assemble(self.path, &self.header, &self.wants, rows.raws, (self.sidecar, self.file), &self.place, rows.lines)
     }
 }
 

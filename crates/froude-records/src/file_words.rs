@@ -8,7 +8,7 @@
 //! | `names`, `units` | the line of the names, and that of the units (0: none) |
 //! | `sheet`, `range` | of a spreadsheet: the sheet's name, and its cells as `"B3:H40"` |
 //! | `part` | of a file of several tables: the group, topic or variable |
-//! | `not_measured` | cells that stand for no measurement: `["NaN", "-9999"]` |
+//! | `not_measured` | cells that stand for no measurement: `["NaN", "-9999"]`; `[]` where none is |
 //! | `leave_out` | rows that begin with one of these words and are no observations: `["Mean", "Std"]`; `[]` where none is |
 
 use std::path::Path;
@@ -33,8 +33,8 @@ pub struct FileWords {
     pub range: Option<String>,
     /// The group, topic or variable.
     pub part: Option<String>,
-    /// Cells that stand for no measurement.
-    pub not_measured: Vec<String>,
+    /// Cells that stand for no measurement; where nobody said, numbers that many programs write so are asked about.
+    pub not_measured: Option<Vec<String>>,
     /// First words of rows that are no observations; none where nobody said.
     pub leave_out: Option<Vec<String>>,
 }
@@ -76,7 +76,7 @@ impl FileWords {
             sheet: text("sheet")?,
             range: text("range")?,
             part: text("part")?,
-            not_measured: file.texts("not_measured")?,
+            not_measured: file.get("not_measured").map(|_| file.texts("not_measured")).transpose()?,
             leave_out: file.get("leave_out").map(|_| file.texts("leave_out")).transpose()?,
         })
     }
@@ -86,6 +86,7 @@ impl FileWords {
     pub fn is_not_measured(&self, cell: &str, value: Option<f64>) -> bool {
         self.not_measured
             .iter()
+            .flatten()
             .any(|word| word.eq_ignore_ascii_case(cell) || (value.is_some() && word.parse::<f64>().ok() == value))
     }
 
@@ -214,7 +215,7 @@ const STEMS: [&str; 18] = [
 ];
 
 /// Round numbers that programs write where there is none.
-const SENTINELS: [f64; 33] = [
+const SENTINELS: [f64; 31] = [
     32767.0,
     -32768.0,
     65535.0,
@@ -222,8 +223,6 @@ const SENTINELS: [f64; 33] = [
     -1e6,
     -99.0,
     -99.9,
-    99.99,
-    -99.99,
     -9999.0,
     9999.0,
     -999.0,
@@ -309,13 +308,18 @@ pub(crate) fn of_summary(path: &Path, first: &str) -> String {
 /// What to do about a number that stands for no measurement.
 pub(crate) fn of_sentinel(value: f64) -> String {
     format!(
-        "{value} is far from all other numbers, and many programs write it where nothing was measured; if so, declare not_measured = [\"{value}\"]"
+        "{value} is far from all other numbers, and many programs write it where nothing was measured; if so, declare not_measured = [\"{value}\"], or not_measured = [] where it was"
     )
 }
 
-/// Refuses a number that stands for no measurement.
-pub(crate) fn refuse_sentinel(values: &[f64], header: &str, place: &dyn Fn(usize) -> Place) -> Result<(), RecordError> {
-    match sentinel(values) {
+/// Refuses a number that stands for no measurement, unless somebody said that all were measured.
+pub(crate) fn refuse_sentinel(
+    values: &[f64],
+    header: &str,
+    file: &FileWords,
+    place: &dyn Fn(usize) -> Place,
+) -> Result<(), RecordError> {
+    match sentinel(values).filter(|_| file.not_measured.as_ref().is_none_or(|words| !words.is_empty())) {
         Some((row, value)) => Err(RecordError::column(
             place(row),
             header,

@@ -192,7 +192,9 @@ fn of_rows(reading: &Reading, file: &FileWords, data: &[&Row<'_>]) -> Vec<Obstac
             }
         }
         let numbers: Vec<f64> = values.iter().map(|(value, _)| *value).collect();
-        if let Some((row, value)) = sentinel(&numbers) {
+        if let Some((row, value)) =
+            sentinel(&numbers).filter(|_| file.not_measured.as_ref().is_none_or(|words| !words.is_empty()))
+        {
             add(values[row].1, format!("column `{}`: {}", heading.header(), of_sentinel(value)));
         }
     }

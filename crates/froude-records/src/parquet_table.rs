@@ -20,6 +20,7 @@ use parquet::file::reader::{ChunkReader, FileReader as _, Length as _, Serialize
 
 use crate::assemble::{CHUNK_ROWS, Room, Want, assemble, plan};
 use crate::error::{Place, RecordError};
+use crate::file_words::FileWords;
 use crate::heading::Heading;
 use crate::parquet_cells::{Blanks, Cells, describe};
 use crate::parquet_columns::{FileColumn, check_packing};
@@ -169,6 +170,7 @@ fn fitted<R: ChunkReader + 'static>(
 struct Opened<'a, R: ChunkReader + 'static> {
     path: &'a Path,
     sidecar: Option<&'a Sidecar>,
+    file: FileWords,
     reader: SerializedFileReader<R>,
     header: Vec<String>,
     columns: Vec<FileColumn>,
@@ -186,6 +188,7 @@ impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
         length: u64,
         sidecar: Option<&'a Sidecar>,
     ) -> Result<Self, RecordError> {
+        let file = sidecar.map(|sidecar| sidecar.file.clone()).unwrap_or_default();
         let sidecar = sidecar.filter(|sidecar| !sidecar.columns.is_empty());
         check_sizes(path, reader.metadata(), length)?;
         let columns = FileColumn::all(reader.metadata().file_metadata(), sidecar.is_some());
@@ -205,7 +208,7 @@ impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
         });
         let kinds = kinds.collect::<Result<_, _>>()?;
         check_packing(path, reader.metadata())?;
-        Ok(Self { path, sidecar, reader, header, columns, kinds, wants, origin_ns: Cell::new(None) })
+        Ok(Self { path, sidecar, file, reader, header, columns, kinds, wants, origin_ns: Cell::new(None) })
     }
 
     /// Its columns without cells.
@@ -279,7 +282,7 @@ impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
     }
 
     fn table(&self, raws: Vec<Raw>, rows: Vec<usize>) -> Result<Table, RecordError> {
-        assemble(self.path, &self.header, &self.wants, raws, self.sidecar, &Place::whole(self.path), rows)
+        assemble(self.path, &self.header, &self.wants, raws, (self.sidecar, &self.file), &Place::whole(self.path), rows)
     }
 
     /// The stated checksum of every column that is read beside its own, begun; none where the file has none.

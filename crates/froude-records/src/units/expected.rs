@@ -55,6 +55,15 @@ const RATES: &[&str] = &[
     "revs",
     "revolutions",
     "drehzahl",
+    "drehrate",
+    "gierrate",
+    "winkelgeschwindigkeit",
+    "régime",
+    "tours",
+    "vitesse_angulaire",
+    "velocidad_angular",
+    "vinkelhastighet",
+    "角速度",
     "vitesse_de_rotation",
     "turtall",
     "回転数",
@@ -155,7 +164,7 @@ pub fn question(name: &str, unit: &Unit) -> Option<String> {
                 "`{text}` is ambiguous for a rate of rotation; write `{turns}` where turns are counted, or `{radians}`"
             ))
         }
-        Dimension::ANGLE if plain == "angle" && !says_angle && text != "1" => {
+        Dimension::ANGLE if plain == "angle" && !says_angle => {
             Some(format!("`{text}` is not a unit of angle; convert the numbers and write `deg` or `rad`"))
         }
         _ => None,

@@ -176,7 +176,7 @@ fn all_obstacles_are_named_at_once() {
             "  - column `Widerstand [N]`: would not be used; is it f_x?",
             "  - column `Winkel [°]`: would not be used; is it angle?",
             "  - line 6: the row begins with `Mittelwert`; where it sums up others, declare it in leave_out",
-            "  - line 5: column `Widerstand [N]`: -9999 is far from all other numbers, and many programs write it where nothing was measured; if so, declare not_measured = [\"-9999\"]",
+            "  - line 5: column `Widerstand [N]`: -9999 is far from all other numbers, and many programs write it where nothing was measured; if so, declare not_measured = [\"-9999\"], or not_measured = [] where it was",
             "  - line 4: `NaN` is not a number; where it means not measured, declare it in not_measured",
             "froude inspect t.csv --write-sidecar writes t.toml, which proposes names, units and signs for you to check and correct",
         ]
