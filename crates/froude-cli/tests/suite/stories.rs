@@ -91,6 +91,7 @@ fn an_export_of_drift_tests_with_a_strut_becomes_derivatives() {
 
 /// Twelve cases of half the body, each settling by an oscillation that decays: X_uu −3.9, Y_uv −24, Y_vv −98 kg/m, N_uv −11 kg of the whole body.
 fn cases(lab: &Path) {
+    let mut noise = noise();
     for speed in [1.0, 1.5, 2.0] {
         for degrees in [0.0, 4.0, 8.0, 12.0_f64] {
             let (sin, cos) = degrees.to_radians().sin_cos();
@@ -99,9 +100,10 @@ fn cases(lab: &Path) {
             std::fs::create_dir_all(&place).unwrap();
             // Along the axes of the mesh, x with the flow and z up, over the density, of half of the body.
             let force = [3.9 * u * u, -24.0 * u * v - 98.0 * v * v.abs(), 0.0];
-            for (file, title, steady) in
-                [("force.dat", "Force", force), ("moment.dat", "Moment", [0.0, 0.0, 11.0 * u * v])]
-            {
+            let moment = [0.0, 0.0, 11.0 * u * v];
+            // What the mesh and the scheme leave, from case to case.
+            let [force, moment] = [force, moment].map(|loads| loads.map(|load| load * (1.0 + 2e-3 * noise())));
+            for (file, title, steady) in [("force.dat", "Force", force), ("moment.dat", "Moment", moment)] {
                 let mut text = format!(
                     "# {title}\n# CofR : (0 0 0)\n# Time total_x total_y total_z pressure_x pressure_y pressure_z viscous_x viscous_y viscous_z\n"
                 );
@@ -128,7 +130,7 @@ fn folders_of_openfoam_cases_become_derivatives() {
     let campaign = std::fs::read_to_string(at.join("campaign.toml")).unwrap();
     std::fs::write(at.join("campaign.toml"), campaign.replace("symmetry = \"none\"", "symmetry = \"z = 0\"")).unwrap();
     let record: Value = serde_json::from_str(&done(at, &["identify", "campaign.toml", "--json"])).unwrap();
-    holds(&record, &[("Y_uv", -24.0), ("D_y_II", 98.0), ("N_uv", -11.0)], 0.02);
+    holds(&record, &[("Y_uv", -24.0), ("D_y_II", 98.0), ("N_uv", -11.0)], 0.05);
     // The model of turbulence is 10 % of the drag.
     holds(&record, &[("D_x_II", 3.9)], 0.25);
 }
