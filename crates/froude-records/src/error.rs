@@ -110,7 +110,7 @@ pub enum RecordError {
     /// A log of another program where a recorded run is expected.
     #[error(
         "{}: an MCAP log of another program (topics {topics}); expected a run that `froude run` recorded. `froude inspect {}` lists its \
-         topics and their fields; write the topic that you need as CSV, with its times, and name that file",
+         topics and their fields; a sidecar with [columns] reads a topic as a table, and `froude convert` writes it as CSV",
         path.display(), path.display()
     )]
     ForeignLog {

@@ -9,6 +9,7 @@ pub use froude_identify::inspect::{BudgetFacts, ChannelFacts, ColumnFacts, Inspe
 use froude_identify::inspect::{campaign, estimates, table};
 use froude_records::campaign::Input;
 use froude_records::run::is_servo_log;
+use froude_records::sidecar_file::sidecar_path;
 use froude_rig::carriage::declared;
 
 use crate::{Error, method};
@@ -35,7 +36,7 @@ pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error>
             Err(_) => of_campaign(path)?,
         },
         Some("json") => estimates(path)?,
-        Some("mcap") => run(path)?,
+        Some("mcap") if sidecar.is_none() && sidecar_path(path)?.is_none() => run(path)?,
         _ => table(path, sidecar)?,
     })
 }

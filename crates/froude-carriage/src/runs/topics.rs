@@ -25,7 +25,7 @@ pub(super) fn inspect(path: &Path) -> Result<Inspection, MethodError> {
         format!("of another program, with {} that can be read", counted(contents.parts.len(), "topic", "topics")),
     )];
     facts.extend(contents.parts.iter().map(|part| (part.name.clone(), described(part))));
-    let next = "write the topic that you need as CSV, with its times; a sidecar beside it states what the columns are";
+    let next = "a sidecar with [columns], and [file] part = \"TOPIC\" where there are several, reads a topic as a table; froude inspect FILE --write-sidecar proposes one";
     facts.push(("next".to_owned(), next.to_owned()));
     let findings = contents.notes.into_iter().map(|note| Finding::new(Severity::Note, "log-topic", note)).collect();
     Ok(Inspection::new("topics", facts, findings))

@@ -593,7 +593,7 @@ fn a_log_of_another_program_is_refused_by_name() {
             read_run(&path).unwrap_err().to_string(),
             format!(
                 "{}: an MCAP log of another program (topics /imu, /thruster); expected a run that `froude run` recorded. `froude inspect \
-                 {}` lists its topics and their fields; write the topic that you need as CSV, with its times, and name that file",
+                 {}` lists its topics and their fields; a sidecar with [columns] reads a topic as a table, and `froude convert` writes it as CSV",
                 path.display(),
                 path.display()
             )
