@@ -139,3 +139,90 @@ fn a_number_that_can_be_two_is_asked_at_a_terminal_and_the_answer_kept() {
     let refused = froude(&["inspect", text(&folder.path().join("t.csv"))]);
     assert_eq!(refused.status.code(), Some(2));
 }
+
+/// The record that `identify` prints of a table, and the message of one of its findings.
+fn identified(table: &Path) -> Value {
+    serde_json::from_str(&done(&["identify", text(table), "--json"])).unwrap()
+}
+
+fn finding<'r>(record: &'r Value, code: &str) -> &'r str {
+    let all = record["findings"].as_array().unwrap();
+    let found = all.iter().find(|finding| finding["code"] == code);
+    found.and_then(|finding| finding["message"].as_str()).unwrap_or_else(|| panic!("{code} is not in {all:?}"))
+}
+
+#[test]
+fn a_cell_that_was_not_zeroed_is_reported_with_its_offset() {
+    let (_folder, paths) = copied(&["zero-norest.csv", "zero-rest.csv"]);
+    for (table, rest) in paths.iter().zip(["", "at rest it reads −0.843 N (1 row)"]) {
+        let record = identified(table);
+        let said = finding(&record, "load-at-rest");
+        assert!(said.contains("a constant of −0.84 N is significant (p < 0.001)") && said.contains(rest), "{said}");
+    }
+}
+
+#[test]
+fn axes_that_were_towed_one_at_a_time_are_each_fitted_by_their_own_rows() {
+    let (_folder, paths) = copied(&["idle-zeros.csv", "idle-blank.csv"]);
+    let records: Vec<Value> = paths.iter().map(|table| identified(table)).collect();
+    for record in &records {
+        holds(record, "quadratic", &[("D_x_II", 55.0), ("D_y_II", 98.0), ("D_z_II", 120.0)], 0.05);
+    }
+    assert_eq!(records[0]["estimates"][0]["coefficients"], records[1]["estimates"][0]["coefficients"]);
+}
+
+#[test]
+fn a_row_that_decides_the_fit_is_named_and_the_true_law_is_accepted() {
+    let (folder, paths) = copied(&["weights-fit.csv", "weights-new.csv"]);
+    let out = folder.path().join("out");
+    done(&["identify", text(&paths[0]), "--out", text(&out)]);
+    let record: Value = serde_json::from_slice(&std::fs::read(out.join("estimate.json")).unwrap()).unwrap();
+    holds(&record, "quadratic", &[("D_x_II", 3.0)], 0.02);
+    let said = finding(&record, "one-row-dominates");
+    assert!(said.contains("line 2") && said.contains("leverage 98 %"), "{said}");
+    let predicted = done(&["predict", text(&out.join("estimate.json")), text(&paths[1])]);
+    assert!(predicted.contains("no more than its errors and its scatter together explain"), "{predicted}");
+}
+
+#[test]
+fn a_column_of_the_table_wins_over_an_alias_of_its_letter() {
+    let (folder, _) = copied(&["own-column.csv"]);
+    let campaign = folder.path().join("c.toml");
+    std::fs::write(
+        &campaign,
+        "schema = 1\nname = \"pressure\"\n[[source]]\nname = \"t\"\nkind = \"tank\"\ntable = \"own-column.csv\"\n[identify]\nmodels = [\"own\"]\n\
+         [[identify.model]]\nname = \"own\"\nf_x = \"A*p\"\n",
+    )
+    .unwrap();
+    let record = identified(&campaign);
+    holds(&record, "own", &[("A", 0.01)], 0.01);
+    assert!(record["findings"].to_string().contains("alias"), "{}", record["findings"]);
+}
+
+#[test]
+fn a_slow_row_that_does_not_belong_is_named() {
+    let (_folder, paths) = copied(&["outlier.csv"]);
+    let record = identified(&paths[0]);
+    holds(&record, "quadratic", &[("D_x_II", 12.0)], 0.02);
+    assert!(finding(&record, "outlying-row").contains("line 4 (0.4 m/s)"));
+}
+
+#[test]
+fn two_tables_are_compared_load_by_load() {
+    let (folder, paths) = copied(&["compare-a.csv", "compare-b.csv"]);
+    let records = paths.iter().enumerate().map(|(k, table)| {
+        let out = folder.path().join(k.to_string());
+        done(&["identify", text(table), "--out", text(&out)]);
+        out.join("estimate.json")
+    });
+    let records: Vec<PathBuf> = records.collect();
+    let compared = done(&["compare", text(&records[0]), text(&records[1])]);
+    // E_n of rows of a load, by its last cell.
+    let e_n = |load: &str| -> Vec<f64> {
+        let rows = compared.lines().filter(|line| line.trim_start().starts_with(load));
+        rows.filter_map(|row| row.split_whitespace().next_back()?.replace('−', "-").parse().ok()).collect()
+    };
+    assert!(e_n("f_x [N]").iter().all(|e_n| *e_n > 3.0), "{compared}");
+    assert!(e_n("f_y [N]").iter().chain(&e_n("m_z [N m]")).all(|e_n| e_n.abs() < 1.0), "{compared}");
+    assert!(!e_n("f_y [N]").is_empty() && !e_n("m_z [N m]").is_empty(), "{compared}");
+}
