@@ -107,6 +107,9 @@ struct Channel {
     waveform: Option<Waveform>,
 }
 
+/// Properties of a channel that state its unit.
+const UNITS: [&str; 5] = ["unit_string", "NI_UnitDescription", "Unit", "unit", "Units"];
+
 /// Times of a channel's values.
 #[derive(Debug, Clone, PartialEq)]
 struct Waveform {
@@ -129,7 +132,12 @@ impl Channel {
             return Err("changes from one kind of values to another".to_owned());
         }
         let stated = |key: &str| own.get(key).and_then(Value::text).filter(|text| !text.is_empty());
-        let mut unit = stated("unit_string").or_else(|| stated("NI_UnitDescription")).unwrap_or_default().to_owned();
+        let mut units: Vec<&str> = UNITS.iter().filter_map(|key| stated(key)).map(str::trim).collect();
+        units.dedup();
+        if let [one, other, ..] = units.as_slice() {
+            return Err(format!("states two units, {one} and {other}"));
+        }
+        let mut unit = units.first().copied().unwrap_or_default().to_owned();
         let cells = match (raw.stamps.first(), raw.texts.is_empty()) {
             (Some(first), _) => {
                 let origin = *first_stamp.get_or_insert(*first);

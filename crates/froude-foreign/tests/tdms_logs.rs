@@ -167,6 +167,7 @@ with TdmsWriter("wave.tdms") as w:
         wave("tank", "force", np.array([1.0, 2.0, 3.0]), 0.01, start, unit_string="N"),
         wave("tank", "o'clock", np.array([4, 5, 6], dtype=np.int16), 0.01, start, NI_UnitDescription="mm")])
     w.write_segment([wave("two rates", "fast", np.arange(4.0), 0.5, start), wave("two rates", "slow", np.arange(2.0), 1.0, start + np.timedelta64(250, "ms"))])
+    w.write_segment([ChannelObject("scaled", "both", np.array([1.0, 2.0]), properties={"unit_string": "N", "Unit": "kN"})])
     w.write_segment([ChannelObject("plain", "note", ["a", "bc"]), ChannelObject("plain", "x", np.array([1.5, 2.5], dtype=np.float32)),
         ChannelObject("scaled", "volts", np.array([0, 100], dtype=np.int16), properties={"NI_Number_Of_Scales": 1, "NI_Scale[0]_Scale_Type": "Linear",
             "NI_Scale[0]_Linear_Slope": 0.5, "NI_Scale[0]_Linear_Y_Intercept": 1.0, "NI_Scale[0]_Linear_Input_Source": np.uint32(0xFFFFFFFF), "unit_string": "V"}),
@@ -213,6 +214,7 @@ fn waveforms_give_times_and_units_come_from_their_properties() {
     assert_eq!(
         contents.notes,
         [
+            "channel scaled/both is not read: it states two units, N and kN",
             "channel scaled/strain is not read: it has a scale of the kind Strain, which is not read; write scaled values",
             "times count from 1774951200.000000 s after 1970-01-01 00:00 UTC",
         ]
