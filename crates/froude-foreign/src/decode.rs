@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 
 use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
-use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE};
+use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 /// Text, and how it was encoded.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -70,8 +70,14 @@ pub fn decode<'b>(bytes: &'b [u8], declared: Option<&str>) -> Result<Decoded<'b>
     if let Some(at) = bytes.iter().position(|b| is_control(*b)) {
         return Err(format!("is binary, not text: byte {at} is {:#04x}", bytes[at]));
     }
+    // Old programs end a text by Ctrl-Z.
+    let bytes = bytes.strip_suffix(b"\x1a").unwrap_or(bytes);
     if let Ok(text) = std::str::from_utf8(bytes) {
         return Ok(Decoded { text: Cow::Borrowed(text), encoding: UTF_8.name(), is_guess: false });
+    }
+    // Signs of units alone, ° ± ² ³ µ · × ‰, say nothing of a language: they are those of western Windows.
+    if bytes.iter().filter(|b| !b.is_ascii()).all(|b| matches!(b, 0x89 | 0xb0..=0xb3 | 0xb5 | 0xb7 | 0xd7)) {
+        return all(WINDOWS_1252, bytes, true);
     }
     let mut detector = EncodingDetector::new(Iso2022JpDetection::Deny);
     detector.feed(bytes, true);
@@ -135,6 +141,11 @@ mod tests {
         let japanese = encoding_rs::SHIFT_JIS.encode("時間;速度;抵抗\n1,0;2,0;3,0\n").0.into_owned();
         assert_eq!(read(&japanese), ("時間;速度;抵抗\n1,0;2,0;3,0\n".to_owned(), "Shift_JIS", true));
         assert_eq!(decode(&latin, Some("latin1")).unwrap().text, text);
+        for text in ["f_x [\u{b5}N],h [mm]\n1,2\n", "rho [kg/m\u{b3}],I [kg\u{b7}m\u{b2}]\n1,2\n"] {
+            let latin: Vec<u8> = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
+            assert_eq!(read(&latin), (text.to_owned(), "windows-1252", true));
+        }
+        assert_eq!(read(b"a,b\n1,2\n\x1a").0, "a,b\n1,2\n");
     }
 
     #[test]

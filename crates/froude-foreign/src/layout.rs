@@ -17,6 +17,21 @@ pub struct Head {
     pub unit: Option<String>,
 }
 
+/// A line that is no part of the table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Line {
+    /// Its number.
+    pub number: usize,
+    /// Its cells.
+    pub cells: Vec<String>,
+}
+
+impl Line {
+    fn of(row: &&Row<'_>) -> Self {
+        Self { number: row.line, cells: row.cells.iter().map(ToString::to_string).collect() }
+    }
+}
+
 /// What a look at a table found.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Layout {
@@ -29,9 +44,9 @@ pub struct Layout {
     /// The line above which nothing is data.
     pub data_line: usize,
     /// Lines above the names that are none of these.
-    pub titles: usize,
-    /// Lines below the units that say how the numbers were made.
-    pub below: usize,
+    pub titles: Vec<Line>,
+    /// Lines below the units and above the numbers.
+    pub below: Vec<Line>,
     /// Which columns hold numbers.
     pub is_number: Vec<bool>,
 }
@@ -149,6 +164,8 @@ fn width(rows: &[Row<'_>]) -> (usize, usize) {
 #[must_use]
 pub fn layout(rows: &[Row<'_>], stated: &Stated, is_unit: &dyn Fn(&str) -> bool) -> Layout {
     let (n, _) = width(rows);
+    let rows: Vec<Row<'_>> = rows.iter().map(|row| with_units(row, n)).collect();
+    let rows = rows.as_slice();
     let data: Vec<&Row<'_>> = rows.iter().filter(|row| !row.is_comment).collect();
     let is_number = number_columns(&data, n);
     let is_data = |row: &Row<'_>| {
@@ -221,7 +238,7 @@ pub fn layout(rows: &[Row<'_>], stated: &Stated, is_unit: &dyn Fn(&str) -> bool)
     let names_end = units_at.filter(|at| *at > first).unwrap_or(last + 1);
     let names: Vec<&Row<'_>> =
         (first..names_end).filter(|at| Some(*at) != units_at).filter_map(|at| data.get(at).copied()).collect();
-    let below = units_at.filter(|at| *at > first).map_or(0, |at| last - at);
+    let below = units_at.filter(|at| *at > first).and_then(|at| data.get(at + 1..=last)).unwrap_or_default();
     let units = units_at.and_then(|at| data.get(at));
     let Some(lowest) = names.last() else { return Layout::default() };
     let width = lowest.cells.len().max(n);
@@ -232,10 +249,28 @@ pub fn layout(rows: &[Row<'_>], stated: &Stated, is_unit: &dyn Fn(&str) -> bool)
         units_line: units.map(|row| row.line),
         // A comment below the names is looked at with the rows.
         data_line: end.last_line + 1,
-        titles: first,
-        below,
+        titles: data[..first.min(data.len())].iter().map(Line::of).collect(),
+        below: below.iter().map(Line::of).collect(),
         is_number,
     }
+}
+
+/// A row of names between blanks, with each unit beside its name where that gives the number of columns: `speed [m/s] f_x [N]`.
+fn with_units<'r>(row: &Row<'r>, n: usize) -> Row<'r> {
+    let is_unit = |cell: &str| {
+        [('[', ']'), ('(', ')')].iter().any(|(open, close)| cell.starts_with(*open) && cell.ends_with(*close))
+    };
+    if row.cells.len() <= n || !row.cells.iter().skip(1).any(|cell| is_unit(cell)) {
+        return row.clone();
+    }
+    let mut cells: Vec<Cow<'r, str>> = Vec::new();
+    for cell in &row.cells {
+        match cells.last_mut() {
+            Some(name) if is_unit(cell) => *name = Cow::Owned(format!("{name} {cell}")),
+            _ => cells.push(cell.clone()),
+        }
+    }
+    if cells.len() == n { Row { cells, ..row.clone() } } else { row.clone() }
 }
 
 /// A cell of a row; empty where the row is shorter.
@@ -278,8 +313,8 @@ fn headless(
         names_line: names.line,
         units_line: units.map(|row| row.line),
         data_line: first.line,
-        titles: 0,
-        below: 0,
+        titles: Vec::new(),
+        below: Vec::new(),
         is_number,
     }
 }
@@ -408,6 +443,8 @@ mod tests {
         assert_eq!(names(&found), ["t", "x"]);
         let found = seen("% t, x\n% s, m\n0.0,1.0\n0.1,2.0\n");
         assert_eq!((names(&found), found.layout.heads[1].unit.as_deref()), (vec!["t", "x"], Some("m")));
+        let found = seen("# run 7, June\n# speed [m/s] f_x [N]\n4.0e-01 -1.62e+00\n6.0e-01 -3.71e+00\n");
+        assert_eq!(names(&found), ["speed [m/s]", "f_x [N]"]);
         assert!(seen("0.0,1.0\n0.1,2.0\n").layout.heads.is_empty());
     }
 
@@ -416,6 +453,6 @@ mod tests {
         let found = seen("U,F\n1,x\n2,3\n4,5\n6,7\n");
         assert_eq!((names(&found), found.layout.data_line), (vec!["U", "F"], 2));
         let found = seen("Run;12\nU;F\n1;2\n2;3\n");
-        assert_eq!((names(&found), found.layout.data_line, found.layout.titles), (vec!["U", "F"], 3, 1));
+        assert_eq!((names(&found), found.layout.data_line, found.layout.titles.len()), (vec!["U", "F"], 3, 1));
     }
 }

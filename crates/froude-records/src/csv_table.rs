@@ -16,8 +16,9 @@ use froude_foreign::marks::{Marks, Shape, Undecided, Witness, shape};
 
 use crate::assemble::{Room, Want, assemble, number, plan};
 use crate::error::{Place, RecordError, decimal_comma};
-use crate::file_words::{FileWords, is_sum, is_summary, of_summary, words_below_numbers};
+use crate::file_words::FileWords;
 use crate::guard::{guarded, unguarded};
+use crate::label_rows::{Labels, Odd, advice, odd};
 use crate::memory;
 use crate::obstacles;
 use crate::raw_column::Raw;
@@ -187,7 +188,7 @@ impl<'a, 's> Head<'a, 's> {
         let is_left_out: Vec<bool> = self.wants.iter().map(|want| matches!(want, Want::LeftOut)).collect();
         let (mut cells, mut lines) = (Vec::new(), Vec::new());
         let mut room = Room::new(path);
-        let mut left_out = 0;
+        let (mut left_out, mut labels) = (0, Labels::default());
         while let Some(line) = records.next(&mut cells)? {
             if self.is_summary(&cells, line)? {
                 left_out += 1;
@@ -201,6 +202,9 @@ impl<'a, 's> Head<'a, 's> {
                 let (found, expected) = (counted(cells.len(), "cell", "cells"), self.header.len());
                 let problem = format!("the row has {found}, the header has {expected}");
                 return Err(RecordError::syntax(Place::in_table(path, line), problem));
+            }
+            if let (Some(first), Some(Raw::Texts(_))) = (cells.first(), raws.first()) {
+                labels.see(unguarded(first.trim()), line);
             }
             for (j, (cell, raw)) in cells.iter().zip(&mut raws).enumerate() {
                 match raw {
@@ -222,11 +226,9 @@ impl<'a, 's> Head<'a, 's> {
             }
             memory::push(&mut lines, line).map_err(|e| RecordError::memory(path, e))?;
         }
-        if let (None, Some(Raw::Texts(first))) = (&self.file.leave_out, raws.first())
-            && let Some(row) = words_below_numbers(first)
-            && let (Some(cell), Some(line)) = (first.get(row), lines.get(row))
-        {
-            return Err(RecordError::syntax(Place::in_table(path, *line), of_summary(path, cell)));
+        let is_asked = self.file.leave_out.is_none() && self.wants.iter().any(Want::is_number);
+        if let Some((line, word)) = labels.words().next().filter(|_| is_asked) {
+            return Err(RecordError::syntax(Place::in_table(path, *line), advice(path, word, odd(word))));
         }
         Ok(Rows { raws, lines, left_out })
     }
@@ -264,19 +266,26 @@ impl<'a, 's> Head<'a, 's> {
         }
     }
 
-    /// Whether a row is declared to be left out because it sums up others.
+    /// Whether a row is declared to be left out because it is no observation.
     fn is_summary(&self, cells: &[Cow<'_, str>], line: usize) -> Result<bool, RecordError> {
         let first = cells.iter().map(|cell| cell.trim()).find(|cell| !cell.is_empty()).unwrap_or_default();
-        if self.file.leaves_out(first) {
-            return Ok(true);
+        let texts = cells.iter().zip(&self.wants).filter(|(_, want)| !want.is_number()).map(|(cell, _)| cell.trim());
+        let mut words = std::iter::once(first).chain(texts);
+        if self.file.leave_out.is_some() || !self.wants.iter().any(Want::is_number) {
+            return Ok(words.any(|word| self.file.leaves_out(word)));
         }
-        let has_numbers = self.wants.iter().any(Want::is_number);
-        let is_text = |(cell, want): (&Cow<'_, str>, &Want<'_>)| !want.is_number() && is_sum(cell.trim());
-        let is_sum_by = is_summary(first) || cells.iter().zip(&self.wants).any(is_text);
-        if self.file.leave_out.is_some() || !has_numbers || !is_sum_by {
-            return Ok(false);
+        // Away from the beginning only what is nothing else: a note may speak of a scale.
+        let is_odd = |word: &&str| match odd(word) {
+            Some(Odd::Sum) => *word == first || !word.contains(' '),
+            Some(Odd::Scale) => *word == first,
+            None => false,
+        };
+        match words.find(is_odd) {
+            Some(word) => {
+                Err(RecordError::syntax(Place::in_table(self.path, line), advice(self.path, word, odd(word))))
+            }
+            None => Ok(false),
         }
-        Err(RecordError::syntax(Place::in_table(self.path, line), of_summary(self.path, first)))
     }
 
     /// The table of some rows.

@@ -90,132 +90,21 @@ impl FileWords {
             .any(|word| word.eq_ignore_ascii_case(cell) || (value.is_some() && word.parse::<f64>().ok() == value))
     }
 
-    /// Whether a row that begins with a cell is declared to be left out.
+    /// Whether a row with a cell is declared to be left out.
     #[must_use]
-    pub fn leaves_out(&self, first: &str) -> bool {
-        self.leave_out.iter().flatten().any(|word| word.eq_ignore_ascii_case(first))
+    pub fn leaves_out(&self, cell: &str) -> bool {
+        self.leave_out.iter().flatten().any(|word| word.eq_ignore_ascii_case(cell))
     }
 }
 
-/// Words at the beginning of rows that sum up those above.
-const SUMMARIES: [&str; 64] = [
-    "mean value",
-    "mw",
-    "ø",
-    "x̄",
-    "σ",
-    "cv",
-    "95% ci",
-    "95 % ci",
-    "u95",
-    "±",
-    "gesamt",
-    "gesamtmittel",
-    "ergebnis",
-    "écart type",
-    "desv. est.",
-    "合計",
-    "offset",
-    "factor",
-    "faktor",
-    "scale",
-    "skalierung",
-    "mean",
-    "average",
-    "avg",
-    "avg.",
-    "std",
-    "stdev",
-    "std.",
-    "std dev",
-    "stddev",
-    "standard deviation",
-    "std.-abw.",
-    "std. dev.",
-    "sd",
-    "sigma",
-    "variance",
-    "min",
-    "max",
-    "minimum",
-    "maximum",
-    "sum",
-    "total",
-    "median",
-    "rms",
-    "count",
-    "mittelwert",
-    "mittel",
-    "standardabweichung",
-    "stabw",
-    "summe",
-    "moyenne",
-    "écart-type",
-    "ecart-type",
-    "somme",
-    "media",
-    "promedio",
-    "desviación estándar",
-    "gjennomsnitt",
-    "snitt",
-    "middelverdi",
-    "standardavvik",
-    "平均",
-    "平均値",
-    "標準偏差",
-];
-
-/// Whether a cell at the beginning of a row says that the row sums up others: `Mean`, `Mean (n = 5)`, `Std. dev.:`.
-#[must_use]
-pub fn is_summary(cell: &str) -> bool {
-    let lower = cell.trim().trim_end_matches(':').to_lowercase();
-    let first = lower.split([' ', '(', '-', '_', '=']).next().unwrap_or_default();
-    SUMMARIES.contains(&lower.as_str()) || (lower.len() > first.len() && STEMS.contains(&first))
-}
-
-/// Whether a cell, wherever it stands, is the name of a row that sums up others.
-#[must_use]
-pub fn is_sum(cell: &str) -> bool {
-    cell.starts_with(char::is_alphabetic) && SUMMARIES.contains(&cell.trim_end_matches(':').to_lowercase().as_str())
-}
-
-/// Most rows at the end of a table that are no runs.
-const ODD_ROWS: usize = 3;
-
-/// The row of a first column from which on words stand below whole numbers, `1, 2, 3, Tara`: sums, tares and notes rather than runs.
-#[must_use]
-pub fn words_below_numbers(cells: &[String]) -> Option<usize> {
-    let is_whole = |cell: &String| cell.parse::<u64>().is_ok();
-    let row = cells.iter().rposition(is_whole)? + 1;
-    let are_words = cells.get(row..)?.iter().all(|cell| cell.starts_with(char::is_alphabetic));
-    let is_odd = (1..=ODD_ROWS).contains(&(cells.len() - row)) && row >= ODD_ROWS;
-    (is_odd && are_words && cells.iter().take(row).all(is_whole)).then_some(row)
-}
-
-/// First words of longer names of such rows.
-const STEMS: [&str; 18] = [
-    "mean",
-    "average",
-    "avg",
-    "avg.",
-    "std",
-    "std.",
-    "stddev",
-    "stdev",
-    "standard",
-    "grand",
-    "sum",
-    "total",
-    "median",
-    "mittelwert",
-    "moyenne",
-    "promedio",
-    "gjennomsnitt",
-    "summe",
-];
-
 /// Round numbers that programs write where there is none.
-const SENTINELS: [f64; 31] = [
+const SENTINELS: [f64; 37] = [
+    8_388_607.0,
+    -8_388_608.0,
+    -65535.0,
+    999_999_999.0,
+    -1e36,
+    1e36,
     32767.0,
     -32768.0,
     65535.0,
@@ -250,7 +139,10 @@ const SENTINELS: [f64; 31] = [
 ];
 
 /// Those that no measurement is by chance: fill values and flags of loggers, netCDF, Fortran and single precision.
-const CERTAIN: [f64; 12] = [
+const CERTAIN: [f64; 15] = [
+    9.9e37,
+    -9.9e37,
+    9.91e37,
     -999.25,
     -999.9,
     -999.99,
@@ -295,14 +187,6 @@ pub fn sentinel(values: &[f64]) -> Option<(usize, f64)> {
 pub(crate) fn sidecar_name(path: &Path) -> String {
     let sidecar = path.with_extension("toml");
     sidecar.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
-}
-
-/// What to do about a row that begins as one of sums does.
-pub(crate) fn of_summary(path: &Path, first: &str) -> String {
-    format!(
-        "the row begins with `{first}`: where it sums up others it is no observation; write in {}:\n  schema = 1\n  [file]\n  leave_out = [\"{first}\"]\nor leave_out = [] where it is one",
-        sidecar_name(path)
-    )
 }
 
 /// What to do about a number that stands for no measurement.

@@ -3,7 +3,7 @@
 use froude_foreign::layout::{Head, bare};
 
 use crate::foreign_names::{meant, of_sname};
-use crate::known_columns::known_dimension;
+use crate::known_columns::{is_text_column, known_dimension};
 use crate::units::{Dimension, parse_unit};
 
 /// What stands above a column.
@@ -85,6 +85,9 @@ pub(crate) fn split_header(header: &str) -> Result<(&str, Option<&str>), &'stati
 /// Marks between a name and its unit that may also mean something else: `x / L`.
 const BETWEEN: [&str; 3] = [" / ", " in ", ", "];
 
+/// What stands behind a unit and says where or by what it was measured.
+const BEHIND: [&str; 6] = ["- ", "at ", "Run ", "@ ", "Ch", "AI"];
+
 /// Name and unit of a header in round parentheses, or with a mark between them; the mark is empty for parentheses.
 fn split(written: &str) -> Option<(&str, &str, &'static str)> {
     let is_unit = |unit: &str| unit.parse::<f64>().is_err() && parse_unit(unit).is_ok();
@@ -95,6 +98,15 @@ fn split(written: &str) -> Option<(&str, &str, &'static str)> {
         let found =
             parts.into_iter().find(|(name, unit)| !name.trim().is_empty() && is_unit(unit) && !is_argument(name, unit));
         return found.map(|(name, unit)| (name.trim().trim_end_matches(['/', ',']).trim_end(), unit, ""));
+    }
+    // Where and by what it was measured stands behind the unit: `Fx (kN) - AI 1`, `tension (kN) at End A`.
+    if let Some((before, rest)) = written.split_once(") ")
+        && let Some((name, unit)) = before.rsplit_once('(')
+        && BEHIND.iter().any(|start| rest.starts_with(start))
+        && !name.trim().is_empty()
+        && is_unit(unit.trim())
+    {
+        return Some((name.trim(), unit.trim(), ""));
     }
     BETWEEN.iter().find_map(|mark| {
         let (name, unit) = written.split_once(mark)?;
@@ -126,7 +138,9 @@ pub(crate) fn headings(heads: &[Head], is_number: &[bool]) -> Result<Vec<Heading
         };
         let is_number = is_number.get(at).copied().unwrap_or(false);
         let below = head.unit.as_deref().filter(|_| is_number).and_then(|unit| match unit {
-            "" => None,
+            // `TS` and `RN` of Campbell's loggers: a stamp, the number of a record.
+            "" | "TS" | "RN" => None,
+            "-" | "--" | "–" if is_text_column(&name) => None,
             "-" | "--" | "–" => Some("1"),
             unit => Some(unit),
         });
@@ -192,6 +206,7 @@ mod tests {
             ["Carriage speed [mm/s]", "drag (tare)", "run (1)"]
         );
         assert_eq!(of(&["strain (N) (N)", "mu (kg/(m s))"]), ["strain (N) [N]", "mu [kg/(m s)]"]);
+        assert_eq!(of(&["Fx (kN) - AI 1", "mass (kg) ratio"]), ["Fx [kN]", "mass (kg) ratio"]);
         assert_eq!(of(&["t / s", "F / N"]), ["t [s]", "F [N]"]);
         assert_eq!(of(&["Geschwindigkeit in m/s"]), ["Geschwindigkeit [m/s]"]);
         assert_eq!(of(&["Speed, m/s", "Force, [N]"]), ["Speed [m/s]", "Force [N]"]);

@@ -47,6 +47,7 @@ pub mod json;
 pub mod keep;
 pub mod kind;
 pub mod known_columns;
+mod label_rows;
 pub mod manifest;
 pub mod measured;
 pub mod memory;

@@ -11,10 +11,11 @@ use froude_foreign::split::{Row, rows};
 use indexmap::IndexMap;
 
 use crate::error::{Place, Position, RecordError};
-use crate::file_words::{FileWords, is_summary, of_sentinel, sentinel};
+use crate::file_words::{FileWords, of_sentinel, sentinel};
 use crate::foreign_names::meant_without_unit;
 use crate::heading::{Heading, passed_over};
 use crate::known_columns::is_text_column;
+use crate::label_rows::odd;
 use crate::reading::Reading;
 use crate::records::Skipped;
 use crate::sidecar::Sidecar;
@@ -161,7 +162,7 @@ fn of_rows(reading: &Reading, file: &FileWords, data: &[&Row<'_>]) -> Vec<Obstac
     let width = reading.headings.len();
     let first =
         |row: &Row<'_>| row.cells.iter().find(|cell| !cell.is_empty()).map_or_else(String::new, ToString::to_string);
-    let is_sum = |row: &Row<'_>| file.leave_out.is_none() && is_summary(&first(row));
+    let is_sum = |row: &Row<'_>| file.leave_out.is_none() && odd(&first(row)).is_some();
     for row in data.iter().filter(|row| is_sum(row)) {
         add(
             row.line,

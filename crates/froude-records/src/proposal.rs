@@ -9,10 +9,11 @@ use froude_foreign::split::{Row, rows};
 use crate::block::{Block, TableBuilder};
 use crate::csv_table::text;
 use crate::error::{Place, RecordError};
-use crate::file_words::{FileWords, is_summary, sentinel};
+use crate::file_words::{FileWords, sentinel};
 use crate::foreign_names::meant_without_unit;
 use crate::heading::Heading;
 use crate::known_columns::{is_text_column, usual_unit};
+use crate::label_rows::{Labels, Odd, odd};
 use crate::outcome::Outcome;
 use crate::reading::Reading;
 use crate::records::Skipped;
@@ -110,16 +111,23 @@ fn proposed(table: &Path, reading: &Reading, rows: &[Row<'_>]) -> String {
 /// `[file]`, where something about it has to be stated.
 fn of_file(reading: &Reading, rows: &[Row<'_>]) -> String {
     let data = || rows.iter().filter(|row| !row.is_comment && row.line >= reading.line);
-    let (mut missing, mut sums) = (Vec::<String>::new(), Vec::<String>::new());
+    let (mut missing, mut sums, mut scales) = (Vec::<String>::new(), Vec::<String>::new(), Vec::<String>::new());
+    let mut labels = Labels::default();
+    let first =
+        |row: &Row<'_>| row.cells.iter().find(|cell| !cell.is_empty()).map(ToString::to_string).unwrap_or_default();
     for row in data() {
-        let first = row.cells.iter().find(|cell| !cell.is_empty()).map(ToString::to_string).unwrap_or_default();
-        if is_summary(&first) && !sums.contains(&first) {
-            sums.push(first);
+        labels.see(row.cells.first().map_or("", |cell| cell.trim()), row.line);
+        let word = first(row);
+        match odd(&word) {
+            Some(Odd::Sum) if !sums.contains(&word) => sums.push(word),
+            Some(Odd::Scale) if !scales.contains(&word) => scales.push(word),
+            _ => {}
         }
     }
-    let is_sum = |row: &Row<'_>| row.cells.iter().find(|cell| !cell.is_empty()).is_some_and(|cell| is_summary(cell));
+    scales.extend(labels.words().map(|(_, word)| word.clone()).filter(|word| odd(word).is_none()));
+    let is_odd = |row: &Row<'_>| odd(&first(row)).is_some() || scales.contains(&first(row));
     for at in (0..reading.headings.len()).filter(|at| reading.is_number.get(*at) == Some(&true)) {
-        let cells: Vec<_> = data().filter(|row| !is_sum(row)).filter_map(|row| row.cells.get(at)).collect();
+        let cells: Vec<_> = data().filter(|row| !is_odd(row)).filter_map(|row| row.cells.get(at)).collect();
         let words = cells.iter().filter(|cell| !cell.is_empty() && is_missing(cell)).map(ToString::to_string);
         let numbers: Vec<f64> =
             cells.iter().filter_map(|cell| reading.dialect.marks.plain(cell)?.parse().ok()).collect();
@@ -138,8 +146,15 @@ fn of_file(reading: &Reading, rows: &[Row<'_>]) -> String {
     if !missing.is_empty() {
         out += &format!("# Cells that stand for no measurement.\nnot_measured = [{}]\n", list(&missing));
     }
-    if !sums.is_empty() {
+    if !sums.is_empty() && scales.is_empty() {
         out += &format!("# Rows that sum up others and are no observations.\nleave_out = [{}]\n", list(&sums));
+    }
+    if !scales.is_empty() {
+        sums.extend(scales);
+        out += &format!(
+            "# Other rows that may be no observations, as a tare, or may scale the others, which nothing applies: look at each, and then remove the # in front.\n# leave_out = [{}]\n",
+            list(&sums)
+        );
     }
     if out.is_empty() { out } else { format!("\n[file]\n{out}") }
 }

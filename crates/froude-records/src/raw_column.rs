@@ -5,7 +5,7 @@ use froude_foreign::marks::shape;
 
 use crate::error::{Place, RecordError, briefly};
 use crate::known_columns::{expected, known_dimension, usual_unit};
-use crate::units::{Dimension, Unit, UnitError, is_plausible, parse_unit, parse_unit_for, question};
+use crate::units::{Dimension, Unit, UnitError, foreign_part, is_plausible, parse_unit, parse_unit_for, question};
 
 /// The cells of one column as the format gives them.
 pub(crate) enum Raw {
@@ -56,6 +56,12 @@ pub(crate) fn check_dimension(place: &Place, header: &str, name: &str, unit: &Un
     match expected(name) {
         Some((dimension, words)) if dimension != unit.dimension => {
             Err(RecordError::wrong_dimension(place.clone(), header, &words, &unit.dimension.describe()))
+        }
+        Some((dimension, words)) if foreign_part(&unit.text, dimension).is_some() => {
+            let part = foreign_part(&unit.text, dimension).unwrap_or_default();
+            let problem =
+                format!(": `{}` has {part} in it, as a slope or a calibration has; expected {words}", unit.text);
+            Err(RecordError::column(place.clone(), header, problem))
         }
         _ => match question(name, unit) {
             Some(question) => Err(RecordError::column(place.clone(), header, format!(": {question}"))),

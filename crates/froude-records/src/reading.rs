@@ -3,17 +3,18 @@
 use std::path::Path;
 
 use froude_foreign::decode::Decoded;
-use froude_foreign::layout::{Layout, Seen, look};
+use froude_foreign::layout::{Layout, Line, Seen, look};
 use froude_foreign::marks::{Marks, Undecided, Witness};
 
 use crate::error::{Place, Position, RecordError};
 use crate::file_words::FileWords;
 use crate::guard::unguarded;
 use crate::heading::{Heading, headings, rename_sname, split_header};
+use crate::label_rows::{Odd, is_scale, odd};
 use crate::question::{Answer, Question};
 use crate::records::{Dialect, NextRow as _, Records, Skipped};
 use crate::text::counted;
-use crate::units::parse_unit;
+use crate::units::{Dimension, parse_unit};
 
 /// As much of a file as is looked at.
 const SAMPLE_BYTES: usize = 1 << 18;
@@ -61,7 +62,7 @@ impl Reading {
             return Self::own(path, decoded);
         }
         let seen = look(sample(text), &file.stated, &|unit| parse_unit(unit).is_ok());
-        let reading = Self::seen(path, &seen, of_encoding(decoded).into_iter().collect())?;
+        let reading = Self::seen(path, &seen, of_encoding(decoded).into_iter().collect(), file)?;
         let at = text.split_inclusive('\n').take(reading.line - 1).map(str::len).sum();
         Ok(Self { at, ..reading })
     }
@@ -71,8 +72,9 @@ impl Reading {
     /// # Errors
     ///
     /// As [`Self::of`].
-    pub fn seen(path: &Path, seen: &Seen, words: Vec<String>) -> Result<Self, RecordError> {
+    pub fn seen(path: &Path, seen: &Seen, words: Vec<String>, file: &FileWords) -> Result<Self, RecordError> {
         let layout = &seen.layout;
+        refuse_scales(path, layout, file)?;
         if layout.heads.is_empty() {
             let problem = "there are numbers where the columns should be named; write a line of headers above them, as `speed [m/s],f_x [N]`";
             return Err(RecordError::syntax(Place::in_table(path, layout.data_line.max(1)), problem));
@@ -174,6 +176,52 @@ fn of_encoding(decoded: &Decoded<'_>) -> Option<String> {
     (decoded.encoding != "UTF-8").then(|| format!("text in {}{guess}", decoded.encoding))
 }
 
+/// What loggers write below the units about how a number was made, in small letters.
+const MADE_BY: [&str; 14] =
+    ["avg", "smp", "max", "min", "std", "tot", "med", "mom", "wvc", "raw", "sample", "average", "total", "-"];
+
+fn joined(line: &Line) -> String {
+    line.cells.join("; ").trim_end_matches("; ").to_owned()
+}
+
+/// Refuses what stands among names and units and may scale or shift the numbers, as nothing would apply it.
+fn refuse_scales(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), RecordError> {
+    let is_open = |line: &&Line| {
+        let is_known = |cell: &String| cell.is_empty() || MADE_BY.contains(&cell.to_lowercase().as_str());
+        !line.cells.iter().all(is_known) && !line.cells.first().is_some_and(|first| file.leaves_out(first))
+    };
+    if let Some(line) = layout.below.iter().find(is_open) {
+        let first = line.cells.first().cloned().unwrap_or_default();
+        let problem = format!(
+            "`{}` stands between the units and the numbers: where it scales, shifts or turns them, nothing applies it. Apply it, by a unit or a sign in the sidecar, and pass over the line by:\n  schema = 1\n  [file]\n  leave_out = [\"{first}\"]",
+            joined(line)
+        );
+        return Err(RecordError::syntax(Place::in_table(path, line.number), problem));
+    }
+    let is_power = |text: &str| is_scale(text) && (text.contains("10") || text.contains(['^', '⁻', 'e', 'E']));
+    let all_scale =
+        layout.heads.len() > 1 && layout.heads.iter().all(|head| head.name.is_empty() || is_scale(&head.name));
+    let scale = layout.heads.iter().find_map(|head| {
+        let of_name = (all_scale && is_power(&head.name)).then_some(&head.name);
+        of_name.or_else(|| is_power(&head.above).then_some(&head.above))
+    });
+    if let Some(scale) = scale {
+        let problem = format!(
+            "`{scale}` stands among the names and the units: where it scales the numbers, nothing applies it. State the lines of names and units in the sidecar, [file] names and units, and the scale by the unit of the column (`kN`)"
+        );
+        return Err(RecordError::syntax(Place::in_table(path, layout.names_line), problem));
+    }
+    let are_units =
+        |name: &String| !name.is_empty() && parse_unit(name).is_ok_and(|unit| unit.dimension != Dimension::ONE);
+    if let (Some(units), true) = (layout.units_line, layout.heads.len() > 1)
+        && layout.heads.iter().all(|head| are_units(&head.name))
+    {
+        let problem = format!("both this line and line {units} hold units; delete the wrong one");
+        return Err(RecordError::syntax(Place::in_table(path, layout.names_line), problem));
+    }
+    Ok(())
+}
+
 /// Adds how the cells of a table are to be read.
 fn told(
     mut words: Vec<String>,
@@ -199,12 +247,18 @@ fn told(
         };
         words.push(format!("{name} between thousands"));
     }
-    if *titles > 0 {
-        words.push(counted(
-            *titles,
+    if !titles.is_empty() {
+        let mut said = counted(
+            titles.len(),
             &format!("{noun} above the names passed over"),
             &format!("{noun}s above the names passed over"),
-        ));
+        );
+        // What may change the numbers below is shown.
+        let scales = |line: &&Line| line.cells.iter().any(|cell| odd(cell) == Some(Odd::Scale) || is_scale(cell));
+        if let Some(line) = titles.iter().find(scales) {
+            said += &format!(" (also {noun} {}, `{}`, which nothing applies)", line.number, joined(line));
+        }
+        words.push(said);
     }
     if *names_line > 1 {
         words.push(format!("names in {noun} {names_line}"));
@@ -212,10 +266,10 @@ fn told(
     if let Some(line) = units_line {
         words.push(format!("units in {noun} {line}"));
     }
-    if *below > 0 {
+    if !below.is_empty() {
         let (one, many) =
             (format!("{noun} below the units passed over"), format!("{noun}s below the units passed over"));
-        words.push(counted(*below, &one, &many));
+        words.push(counted(below.len(), &one, &many));
     }
     words.extend(renamed(sname));
     words

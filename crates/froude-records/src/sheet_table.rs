@@ -54,7 +54,7 @@ pub(crate) fn look(path: &Path, file: &FileWords) -> Result<(Vec<Row<'static>>, 
     let layout = layout(&rows, &file.stated, &|unit| parse_unit(unit).is_ok());
     let seen = Seen { separator: Separator::Comma, layout, marks, is_open: false };
     let words = if book.sheets().len() > 1 { vec![format!("sheet {name:?}")] } else { Vec::new() };
-    let reading = Reading::seen(path, &seen, words)?;
+    let reading = Reading::seen(path, &seen, words, file)?;
     Ok((rows, reading))
 }
 

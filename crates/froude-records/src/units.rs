@@ -42,7 +42,7 @@ use std::fmt;
 
 pub use dimension::Dimension;
 pub use error::UnitError;
-pub use expected::{parse_unit_for, question};
+pub use expected::{foreign_part, parse_unit_for, question};
 use parser::Parser;
 pub(crate) use parser::SUPERSCRIPTS;
 use symbols::TEMPERATURES;

@@ -69,6 +69,48 @@ const RATES: &[&str] = &[
     "回転数",
 ];
 
+/// Parts of names of accelerations, in small letters.
+const ACCELERATIONS: [&str; 9] =
+    ["acc", "accel", "acceleration", "ax", "ay", "az", "beschleunigung", "accélération", "加速度"];
+
+/// Parts of names of forces, in small letters.
+const FORCES: [&str; 14] = [
+    "force",
+    "drag",
+    "thrust",
+    "lift",
+    "load",
+    "kraft",
+    "widerstand",
+    "schub",
+    "auftrieb",
+    "résistance",
+    "resistance",
+    "fuerza",
+    "抵抗",
+    "推力",
+];
+
+/// Whether a name has one of some words, numbers apart: `imu.acc_x`, `Kraft1`.
+fn has_word(name: &str, words: &[&str]) -> bool {
+    let mut parts = name.split(|c: char| !c.is_alphabetic());
+    parts.any(|part| words.contains(&part))
+}
+
+/// What stands in a unit and has no place in one of this kind: the `deg` of `N/deg`, the `mV` and `V` of `N/(mV/V)`; none where all belongs.
+///
+/// Such a unit has the dimension that is expected, and is that of a slope, a derivative or a calibration.
+#[must_use]
+pub fn foreign_part(text: &str, expected: Dimension) -> Option<String> {
+    let is_turning = expected.m == 0 && expected.kg == 0;
+    let is_foreign = |word: &&str| {
+        let part = parse_unit(word).map(|unit| unit.dimension);
+        part.is_ok_and(|part| part == Dimension::ONE || (part.a != 0 && expected.a == 0))
+    };
+    let words = words(whole(text));
+    if is_turning || words.len() < 2 { None } else { words.into_iter().find(is_foreign).map(str::to_owned) }
+}
+
 /// Reads a unit of which it is known what it must measure; the note says what was taken for what, where the text alone does not.
 ///
 /// A mass where a force, a moment or a pressure belongs is that mass's weight, so that `kg` is read as `kgf`; its text becomes `kgf`, too.
@@ -163,6 +205,13 @@ pub fn question(name: &str, unit: &Unit) -> Option<String> {
             Some(format!(
                 "`{text}` is ambiguous for a rate of rotation; write `{turns}` where turns are counted, or `{radians}`"
             ))
+        }
+        Dimension::MASS if matches!(text, "g" | "mg") && has_word(plain, &ACCELERATIONS) => {
+            Some(format!("`{text}` is a mass here; write `g0` (9.80665 m/s^2) where it is the acceleration of gravity"))
+        }
+        Dimension::MASS if has_word(plain, &FORCES) => {
+            let weight = as_weight(unit, Dimension::FORCE).map_or_else(|| "N".to_owned(), |weight| weight.text);
+            Some(format!("`{text}` is a mass, and the name one of a force; write `{weight}` where it is a weight"))
         }
         Dimension::ANGLE if plain == "angle" && !says_angle => {
             Some(format!("`{text}` is not a unit of angle; convert the numbers and write `deg` or `rad`"))

@@ -153,6 +153,47 @@ fn sums_and_numbers_that_were_not_measured_are_named_and_asked() {
 }
 
 #[test]
+fn what_may_scale_or_sum_up_others_is_never_taken_for_data() {
+    let refused = |text: &str, sidecar: &str| read(text.as_bytes(), sidecar).unwrap_err();
+    // Lines among names and units.
+    let below = "speed;f_x\nm/s;N\nx1;x1000\n0.5;-2\n1.25;-12.5\n";
+    assert!(refused(below, "").starts_with("t.csv:3: `x1; x1000` stands between the units and the numbers"));
+    let passed = read(below.as_bytes(), "schema = 1\n[file]\nleave_out = [\"x1\"]\n").unwrap();
+    assert!(is_the_table(&passed));
+    assert!(read(b"speed;f_x\nm/s;N\nAvg;Smp\n0.5;-2\n1.25;-12.5\n", "").is_ok());
+    for above in ["x1;x1000\nspeed [m/s];f_x [N]\n", "speed;f_x\n\u{d7}1;\u{d7}10\u{207b}\u{b3}\nm/s;N\n"] {
+        let text = format!("{above}0.5;-2\n1.25;-12.5\n");
+        assert!(read(text.as_bytes(), "").is_err(), "{text}");
+    }
+    let titled =
+        read(b"Scale factor: 1000\nspeed [m/s];f_x [N]\n0.5;-2\n1.25;-12.5\n", "").unwrap().understood.unwrap();
+    assert!(titled.contains("`Scale factor: 1000`, which nothing applies"), "{titled}");
+    assert!(refused("speed;f_x\nm/s;N\nm/s;kN\n0.5;-2\n1.25;-3\n", "").contains("hold units"));
+    // Rows, also where a sidecar leaves their labels out.
+    let mapped = "schema = 1\n[columns]\n\"speed [m/s]\" = { name = \"speed\" }\n\"f_x [N]\" = { name = \"f_x\" }\n";
+    for (word, says) in
+        [("Max.", "sums up others"), ("Gain", "nothing applies it"), ("Tare", "as a sum, a tare or a scale")]
+    {
+        let text = format!("Point;speed [m/s];f_x [N]\n1;0.5;-2\n2;0.8;-5\n3;1.25;-12.5\n{word};0.8;-1.6\n");
+        assert!(refused(&text, mapped).contains(says), "{word}");
+        assert!(
+            refused(
+                &text.replacen("1;0.5;-2\n", "", 1).replace(
+                    "Point;speed [m/s];f_x [N]\n",
+                    &format!("Point;speed [m/s];f_x [N]\n{word};1;10\n4;1;-8\n")
+                ),
+                mapped
+            )
+            .starts_with("t.csv:2: ")
+        );
+    }
+    // The word that is advised names that row and no other.
+    let noted = "speed [m/s];f_x [N];note\n0.5;-2;me\n1.25;-12.5;you\n0.5;-7;Mean\n";
+    assert!(refused(noted, "").contains("leave_out = [\"Mean\"]"));
+    assert!(is_the_table(&read(noted.as_bytes(), "schema = 1\n[file]\nleave_out = [\"Mean\"]\n").unwrap()));
+}
+
+#[test]
 fn letters_of_sname_are_read_where_they_measure_what_they_name() {
     let table = read(b"u [m/s],v [m/s],r [rad/s],X [N],Y [N],N [N m]\n1,0.1,0,-10,-6,-2\n", "").unwrap();
     let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();

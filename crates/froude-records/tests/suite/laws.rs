@@ -136,7 +136,7 @@ proptest! {
             number_column("speed", "mm/s", rows.iter().map(|r| parse_unit("mm/s").unwrap().to_si(r.0)).collect()),
             number_column("flap", "deg", rows.iter().map(|r| parse_unit("deg").unwrap().to_si(r.1)).collect()),
             number_column("f_x", "N", rows.iter().map(|r| r.2).collect()),
-            Column { name: "note".to_owned(), data: ColumnData::Text(rows.iter().map(|r| format!("n{}", r.3)).collect()) },
+            Column { name: "note".to_owned(), data: ColumnData::Text(rows.iter().map(|r| format!("x{}", r.3)).collect()) },
         ];
         let folder = tempfile::tempdir().unwrap();
         for name in ["t.csv", "t.parquet"] {

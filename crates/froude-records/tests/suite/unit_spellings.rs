@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use froude_records::units::{Dimension, parse_unit, parse_unit_for, question};
+use froude_records::units::{Dimension, foreign_part, parse_unit, parse_unit_for, question};
 
 const POUND_N: f64 = 4.4482216152605;
 
@@ -213,6 +213,31 @@ fn a_rate_of_turning_says_what_it_counts() {
     assert_eq!(asked("angle", "cts").as_deref(), Some(without_size));
     assert!(asked("angle", "1").is_some() && asked("angle", "-").is_some());
     assert_eq!((asked("angle", "deg"), asked("angle", "rad"), asked("n_links", "-")), (None, None, None));
+}
+
+#[test]
+fn a_slope_is_no_load_and_a_mass_no_force() {
+    for text in ["N/deg", "N/°", "N/count", "N/%", "% N", "N/(mV/V)", "N/rev", "N rad"] {
+        assert!(foreign_part(text, Dimension::FORCE).is_some(), "{text}");
+    }
+    for (text, expected) in [
+        ("N", Dimension::FORCE),
+        ("kg m/s^2", Dimension::FORCE),
+        ("kgf", Dimension::FORCE),
+        ("N m", Dimension::MOMENT),
+        ("m/s", Dimension::SPEED),
+        ("deg/s", Dimension::ANGULAR_SPEED),
+        ("%", Dimension::ONE),
+    ] {
+        assert_eq!(foreign_part(text, expected), None, "{text}");
+    }
+    let asked = |name, text| question(name, &parse_unit(text).unwrap());
+    for (name, text, part) in
+        [("acc_x", "g", "`g0`"), ("imu.acc.z", "mg", "`g0`"), ("Kraft", "kg", "`kgf`"), ("thrust", "g", "`gf`")]
+    {
+        assert!(asked(name, text).is_some_and(|said| said.contains(part)), "{name} [{text}]");
+    }
+    assert_eq!((asked("mass", "kg"), asked("payload", "g"), asked("fx", "kg")), (None, None, None));
 }
 
 /// Units of results: volts or amperes as in the columns, and mechanical ones as they were.
