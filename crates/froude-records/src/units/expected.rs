@@ -213,6 +213,9 @@ pub fn question(name: &str, unit: &Unit) -> Option<String> {
             let weight = as_weight(unit, Dimension::FORCE).map_or_else(|| "N".to_owned(), |weight| weight.text);
             Some(format!("`{text}` is a mass, and the name one of a force; write `{weight}` where it is a weight"))
         }
+        Dimension::SPEED if text == "nm/h" => {
+            Some("`nm/h` is nanometres an hour; write `kn` where it is nautical miles an hour".to_owned())
+        }
         Dimension::ANGLE if plain == "angle" && !says_angle => {
             Some(format!("`{text}` is not a unit of angle; convert the numbers and write `deg` or `rad`"))
         }

@@ -232,9 +232,13 @@ fn a_slope_is_no_load_and_a_mass_no_force() {
         assert_eq!(foreign_part(text, expected), None, "{text}");
     }
     let asked = |name, text| question(name, &parse_unit(text).unwrap());
-    for (name, text, part) in
-        [("acc_x", "g", "`g0`"), ("imu.acc.z", "mg", "`g0`"), ("Kraft", "kg", "`kgf`"), ("thrust", "g", "`gf`")]
-    {
+    for (name, text, part) in [
+        ("acc_x", "g", "`g0`"),
+        ("imu.acc.z", "mg", "`g0`"),
+        ("Kraft", "kg", "`kgf`"),
+        ("thrust", "g", "`gf`"),
+        ("speed", "nm/h", "`kn`"),
+    ] {
         assert!(asked(name, text).is_some_and(|said| said.contains(part)), "{name} [{text}]");
     }
     assert_eq!((asked("mass", "kg"), asked("payload", "g"), asked("fx", "kg")), (None, None, None));
