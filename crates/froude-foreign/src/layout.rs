@@ -27,7 +27,7 @@ pub struct Line {
 }
 
 impl Line {
-    fn of(row: &&Row<'_>) -> Self {
+    fn of(row: &Row<'_>) -> Self {
         Self { number: row.line, cells: row.cells.iter().map(ToString::to_string).collect() }
     }
 }
@@ -249,8 +249,8 @@ pub fn layout(rows: &[Row<'_>], stated: &Stated, is_unit: &dyn Fn(&str) -> bool)
         units_line: units.map(|row| row.line),
         // A comment below the names is looked at with the rows.
         data_line: end.last_line + 1,
-        titles: data[..first.min(data.len())].iter().map(Line::of).collect(),
-        below: below.iter().map(Line::of).collect(),
+        titles: data[..first.min(data.len())].iter().map(|row| Line::of(row)).collect(),
+        below: below.iter().map(|row| Line::of(row)).collect(),
         is_number,
     }
 }
