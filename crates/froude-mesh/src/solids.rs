@@ -25,7 +25,14 @@ pub(crate) struct Solids {
     pub touching: Vec<(usize, usize)>,
 }
 
-/// The solids of a mesh; `None` if some surface is open, or has three panels at an edge.
+/// Solids at most: more are parts of something else than a body.
+const MOST_SOLIDS: usize = 200;
+/// Panels at one edge at most.
+const MOST_AT_EDGE: usize = 64;
+/// Panels of sheets times panels of hulls at most, to find the sheets inside: some seconds.
+const MOST_INSIDE: usize = 200_000_000;
+
+/// The solids of a mesh; `None` if some surface is open, has three panels at an edge, or if there are more than [`MOST_SOLIDS`].
 pub(crate) fn solids(mesh: &Mesh) -> Option<Solids> {
     let sides = sides(mesh);
     let (plain, shared): (Vec<&[Side]>, Vec<&[Side]>) = by_edge(&sides).partition(|edge| edge.len() < 3);
@@ -36,6 +43,9 @@ pub(crate) fn solids(mesh: &Mesh) -> Option<Solids> {
         }
     }
     let mut pairs = Vec::new();
+    if shared.iter().any(|edge| edge.len() > MOST_AT_EDGE) {
+        return None;
+    }
     for edge in &shared {
         // A sheet that comes to an edge from both sides goes on there.
         let mut rest = around(mesh, edge);
@@ -45,7 +55,9 @@ pub(crate) fn solids(mesh: &Mesh) -> Option<Solids> {
         }
         pairs.extend(brackets(&rest)?);
     }
-    pairs.iter().for_each(|[opens, closes]| groups.join(opens.panel, closes.panel));
+    for [opens, closes] in pairs {
+        groups.join(opens.panel, closes.panel);
+    }
     let meeting: Vec<(u32, u32)> =
         shared.iter().flat_map(|edge| edge.iter().map(|side| (edge[0].panel, side.panel))).collect();
     let mut number_of = vec![None; mesh.panels.len()];
@@ -56,6 +68,9 @@ pub(crate) fn solids(mesh: &Mesh) -> Option<Solids> {
             of_solid.len() - 1
         });
         of_solid[number].push(panel);
+    }
+    if of_solid.len() > MOST_SOLIDS {
+        return None;
     }
     let mut number = |panel: u32| number_of[groups.of(panel) as usize].unwrap_or(0);
     let touching = meeting.into_iter().map(|(a, b)| (number(a), number(b))).filter(|(a, b)| a != b).collect();
@@ -160,14 +175,18 @@ pub(crate) fn decks(mesh: &Mesh) -> Vec<usize> {
             }
         }
     }
-    let roots: Vec<u32> = inner.into_iter().map(|panel| sheets.of(panel)).collect();
+    let roots: IndexSet<u32> = inner.into_iter().map(|panel| sheets.of(panel)).collect();
     let (mut deck, mut hull): (Vec<usize>, Vec<usize>) =
         (0..mesh.panels.len()).partition(|panel| roots.contains(&sheets.of(*panel as u32)));
     // Sheets that touch nothing, all of their corners inside a closed part.
     let rest = only(mesh, &hull);
     let (closed, open): (Vec<Part>, Vec<Part>) = parts(&rest).into_iter().partition(|part| part.is_closed);
+    let count = |parts: &[Part]| parts.iter().map(|part| part.panels.len()).sum::<usize>();
+    if count(&open).saturating_mul(count(&closed)) > MOST_INSIDE {
+        return Vec::new();
+    }
     let is_inside = |part: &Part, corner: Vec3| winding(&rest, &part.panels, corner) > 0.5;
-    let mut loose: Vec<usize> = Vec::new();
+    let mut loose: IndexSet<usize> = IndexSet::new();
     for sheet in &open {
         let mut corners = sheet.panels.iter().flat_map(|p| rest.corners(rest.panels[*p]));
         if corners.all(|corner| closed.iter().any(|part| is_inside(part, corner))) {

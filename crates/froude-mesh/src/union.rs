@@ -14,6 +14,7 @@ use std::thread::Builder;
 use std::time::Duration;
 
 use boolmesh::prelude::{Manifold, OpType, compute_boolean};
+use indexmap::IndexSet;
 
 use crate::check::{Kind, Trouble, is_closed, is_readable};
 use crate::crossing::pairs;
@@ -31,7 +32,7 @@ pub const VOLUME_PART: f64 = 1e-9;
 /// Panels of all solids to unite; more take minutes.
 const MOST_PANELS: usize = 400_000;
 /// Longest time for one union: a hundred times what solids of [`MOST_PANELS`] take.
-const LONGEST: Duration = Duration::from_secs(120);
+const LONGEST: Duration = Duration::from_mins(2);
 /// Stack of the thread, bytes.
 const STACK: usize = 64 << 20;
 
@@ -58,13 +59,15 @@ pub fn united(mesh: &Mesh) -> Result<Option<United>, Trouble> {
     let number_of: Vec<usize> =
         (0..).zip(&meshes).flat_map(|(i, solid)| std::iter::repeat_n(i, solid.panels.len())).collect();
     let crossing = pairs(&all).into_iter().flatten().map(|(a, b, _)| (number_of[a as usize], number_of[b as usize]));
-    let meeting: Vec<(usize, usize)> = crossing.chain(touching).collect();
+    let meeting: IndexSet<(usize, usize)> = crossing.chain(touching).collect();
     // Which side of a surface through itself is the water's is not known.
     if meeting.is_empty() || meeting.iter().any(|(a, b)| a == b) {
         return Ok(None);
     }
     let mut groups = Groups::new(meshes.len());
-    meeting.iter().for_each(|(a, b)| groups.join(*a as u32, *b as u32));
+    for (a, b) in &meeting {
+        groups.join(*a as u32, *b as u32);
+    }
     let mut out = United { mesh: Mesh::default(), notes: Vec::new() };
     for root in 0..meshes.len() {
         let members: Vec<usize> = (root..meshes.len()).filter(|i| groups.of(*i as u32) as usize == root).collect();
@@ -83,10 +86,10 @@ pub fn united(mesh: &Mesh) -> Result<Option<United>, Trouble> {
 const ELSEWHERE: &str = "unite them where they were drawn, or move them clearly into one another or apart";
 
 /// Some solids as one, and the sentence about it.
-fn group(meshes: &[Mesh], members: &[usize], meeting: &[(usize, usize)]) -> Result<(Mesh, String), Trouble> {
+fn group(meshes: &[Mesh], members: &[usize], meeting: &IndexSet<(usize, usize)>) -> Result<(Mesh, String), Trouble> {
     let own = || members.iter().map(|i| &meshes[*i]);
     let panels: usize = own().map(|solid| solid.panels.len()).sum();
-    let first = own().flat_map(|solid| solid.vertices.first()).next().copied().unwrap_or_default();
+    let first = own().find_map(|solid| solid.vertices.first()).copied().unwrap_or_default();
     let which = format!("{} solids that overlap or touch, the first at {first:?} m,", members.len());
     let refused = |why: String| Trouble::new(Kind::Crossing, format!("{which} cannot be united: {why}"));
     if panels > MOST_PANELS {

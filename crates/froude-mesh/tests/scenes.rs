@@ -174,7 +174,9 @@ fn sphere_of_second_order(version: u8) -> String {
     } else {
         write!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 {nodes} 1 {nodes}\n2 1 0 {nodes}\n").unwrap();
         (1..=nodes).for_each(|i| writeln!(out, "{i}").unwrap());
-        points.iter().for_each(|[x, y, z]| writeln!(out, "{x} {y} {z}").unwrap());
+        for [x, y, z] in &points {
+            writeln!(out, "{x} {y} {z}").unwrap();
+        }
         let count = elements.len();
         write!(out, "$EndNodes\n$Elements\n1 {count} 1 {count}\n2 1 9 {count}\n").unwrap();
         for (i, [a, b, c, d, e, f]) in elements.iter().enumerate() {

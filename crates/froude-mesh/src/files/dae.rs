@@ -396,14 +396,16 @@ impl<'d, 'i> Dae<'d, 'i> {
         let mut out = Vec::new();
         for p in primitive.children().filter(|n| n.has_tag_name_of("p")) {
             let numbers = self.numbers::<u32>(p, "a whole number from 0")?;
-            if numbers.len() % stride != 0 {
+            if !numbers.len().is_multiple_of(stride) {
                 let found = counted(numbers.len(), "number", "numbers");
                 return Err(self.unexpected(p, &found, &format!("a multiple of {stride}, those of a corner,")));
             }
             let corners: Vec<u32> =
                 numbers.chunks_exact(stride).filter_map(|corner| corner.get(offset).copied()).collect();
             match kind {
-                "triangles" if corners.len() % 3 == 0 => out.extend(corners.chunks_exact(3).map(<[u32]>::to_vec)),
+                "triangles" if corners.len().is_multiple_of(3) => {
+                    out.extend(corners.chunks_exact(3).map(<[u32]>::to_vec));
+                }
                 "triangles" => {
                     return Err(self.unexpected(p, &format!("{} corners", corners.len()), "three for each triangle"));
                 }
@@ -415,7 +417,7 @@ impl<'d, 'i> Dae<'d, 'i> {
                     ),
                 ),
                 "trifans" => {
-                    out.extend(corners.get(1..).unwrap_or_default().windows(2).map(|t| vec![corners[0], t[0], t[1]]))
+                    out.extend(corners.get(1..).unwrap_or_default().windows(2).map(|t| vec![corners[0], t[0], t[1]]));
                 }
                 "polylist" => {
                     let counts = self.numbers::<usize>(self.need(primitive, "vcount")?, "a number of corners")?;
