@@ -1,7 +1,7 @@
 //! Mesh files: any bytes give a mesh or an error that names the file, and panels have corners that exist.
 //!
-//! The first byte picks the format. What is read is written and read back, checked, repaired and
-//! refined without a panic.
+//! The first byte picks the format. What is read is written and read back, checked, united, repaired
+//! and refined without a panic.
 #![no_main]
 
 use froude_mesh::check::check;
@@ -11,6 +11,8 @@ use froude_mesh::parts::part_troubles;
 use froude_mesh::plausible::{crosses, too_large};
 use froude_mesh::refine::{rounded, without_warp};
 use froude_mesh::repair::repaired;
+use froude_mesh::solids::deck_trouble;
+use froude_mesh::union::united;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -28,6 +30,9 @@ fuzz_target!(|bytes: &[u8]| {
             read("a.stl", &write_stl_binary(&file.mesh)).expect("a written mesh is a mesh");
             let _ = (vtp(&file.mesh, &[]), too_large(&file.mesh), crosses(&file.mesh, 2, 0.0));
             let _ = (check(&file.mesh), crossings(&file.mesh), part_troubles(&file.mesh));
+            if panels < 200 {
+                let _ = (deck_trouble(&file.mesh), united(&file.mesh));
+            }
             let (mesh, _) = repaired(&file.mesh, 1e-6);
             assert_eq!(rounded(&without_warp(&mesh, 0.1), 0.7).panels.len() % 4, 0);
         }

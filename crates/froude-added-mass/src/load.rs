@@ -11,6 +11,8 @@ use froude_mesh::parts::part_troubles;
 use froude_mesh::plausible::too_large;
 use froude_mesh::refine::without_warp;
 use froude_mesh::repair::{WELD, merged};
+use froude_mesh::solids::deck_trouble;
+use froude_mesh::union::united;
 use froude_mesh::vector::{norm, sub};
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::family::Family;
@@ -56,28 +58,46 @@ pub fn is_body_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
 
-/// Reads a mesh as it is, its coordinates in metres.
+/// Reads a mesh as it is, in metres and in the size of the body: with the unit that is given, or else with that of the file.
 ///
 /// # Errors
 ///
-/// A file that cannot be read.
-pub(super) fn read_unmerged(path: &Path, unit_m: Option<f64>) -> Result<MeshFile, AddedMassError> {
-    let bytes = froude_records::read::whole(path, LARGEST_FILE, "a mesh")?;
-    let mut file = files::read(&path.display().to_string(), &bytes)?;
-    let unit_m = unit_m.unwrap_or(1.0);
-    if unit_m != 1.0 {
-        file.mesh = file.mesh.mapped(|v| v.map(|x| unit_m * x));
+/// A file that cannot be read, or that states which axis points up beside `--up`.
+pub(super) fn read_unmerged(job: &Asked) -> Result<MeshFile, AddedMassError> {
+    let bytes = froude_records::read::whole(&job.input, LARGEST_FILE, "a mesh")?;
+    let mut file = files::read(&job.input.display().to_string(), &bytes)?;
+    if file.format == Format::Dae && job.orientation.is_some_and(|lies| lies.up() != Direction::Z) {
+        let why = "a Collada file states which axis points up (<up_axis>), and its mesh is turned to z up when it is read; leave --up out, or \
+                   correct <up_axis> in the file";
+        return Err(AddedMassError::input(&job.input, why));
+    }
+    match (job.unit_m, file.unit_m) {
+        (Some(given), Some(stated)) if given != stated => {
+            file.notes.push(format!("the file states a unit of {stated} m; --unit, {given} m, counts"));
+        }
+        (None, Some(stated)) => file.notes.push(format!("the unit is {stated} m, as the file states")),
+        _ => {}
+    }
+    let by = job.unit_m.or(file.unit_m).unwrap_or(1.0) * job.model_scale.unwrap_or(1.0);
+    if by != 1.0 {
+        file.mesh = file.mesh.mapped(|v| v.map(|x| by * x));
+    }
+    if let Some(scale) = job.model_scale {
+        file.notes.push(format!(
+            "the body is a model of what was drawn, with {scale} of its lengths: the largest is {:.4} m",
+            extent(&file.mesh)
+        ));
     }
     Ok(file)
 }
 
-/// Reads a mesh, in metres, and merges vertices at one place ([`merged`]); the notes state what was left out and merged.
+/// Reads a mesh like that, and merges vertices at one place ([`merged`]); the notes state what was left out and merged.
 ///
 /// # Errors
 ///
-/// A file that cannot be read.
-pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<MeshFile, AddedMassError> {
-    let mut file = read_unmerged(path, unit_m)?;
+/// As before.
+pub fn read_mesh(job: &Asked) -> Result<MeshFile, AddedMassError> {
+    let mut file = read_unmerged(job)?;
     let (mesh, notes) = merged(file.mesh);
     file.mesh = mesh;
     file.notes.extend(notes);
@@ -86,7 +106,7 @@ pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<MeshFile, AddedMass
 
 /// Refuses for a body file what only a mesh needs.
 pub(super) fn of_a_mesh_only(job: &Asked) -> Result<(), AddedMassError> {
-    let what = if job.unit_m.is_some() {
+    let what = if job.unit_m.is_some() || job.model_scale.is_some() {
         "--unit is for a mesh; a body file has a unit at each length"
     } else if job.orientation.is_some() {
         "--forward and --up are for a mesh; a body file has x forward along the body and z up"
@@ -132,10 +152,26 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
     if !job.links.is_empty() {
         return Err(AddedMassError::input(&job.input, NO_LINKS));
     }
-    let MeshFile { mesh, mut notes, format } = read_mesh(&job.input, job.unit_m)?;
+    let MeshFile { mut mesh, mut notes, format, .. } = read_mesh(job)?;
     let mut findings = Vec::new();
     let mut wrong = Vec::new();
+    // Parts that move apart stay apart.
+    let whole = if job.apart.is_some() { Ok(None) } else { united(&mesh) };
+    let mut failed = None;
+    match whole {
+        Ok(None) => {}
+        Ok(Some(whole)) => {
+            mesh = whole.mesh;
+            findings.extend(whole.notes.into_iter().map(|note| Finding::new(Severity::Note, "united", note)));
+        }
+        Err(trouble) => failed = Some(trouble),
+    }
     let mut troubles = check(&mesh);
+    if let Some(deck) = deck_trouble(&mesh) {
+        troubles.retain(|trouble| !trouble.is_fatal());
+        troubles.push(deck);
+    }
+    troubles.extend(failed);
     if !troubles.iter().any(Trouble::is_fatal) {
         troubles.extend(part_troubles(&mesh));
         troubles.extend(crossings(&mesh));

@@ -54,7 +54,12 @@ pub const ADDED_MASS_OPTIONS: [AddedMassOption; 17] = [
         "Reference point of the moments: cg (of the body file), cb (centre of buoyancy), or \"0 m, 0 m, -0.2 m\" in the axes of the mesh \
          [default: its origin]",
     ),
-    option("unit", "UNIT", "Unit of a mesh whose file states none: m, mm, cm, in"),
+    option(
+        "unit",
+        "UNIT",
+        "Unit of the mesh: m, mm, cm, in, ft, or a length (\"0.5 m\"); or 1:50 for a model fifty times smaller than the mesh, \"1:50 mm\" for \
+         one in millimetres [default: the file's, or m]",
+    ),
     words("forward", DIRECTIONS, "Axis of the mesh that points forward [default: x]"),
     words("up", DIRECTIONS, "Axis of the mesh that points up [default: z]"),
     option("tolerance", "QUANTITY", "Largest numerical uncertainty of an entry [default: \"1 %\"]"),

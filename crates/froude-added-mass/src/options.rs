@@ -6,7 +6,7 @@ use froude_panel::refine::Wanted;
 use froude_records::campaign::Source;
 use froude_records::given_option::GivenOption;
 use froude_records::plausible;
-use froude_records::units::{Dimension, parse_quantity, parse_unit};
+use froude_records::units::{Dimension, is_plausible, parse_quantity, parse_unit};
 
 use crate::error::AddedMassError;
 use crate::frame::{Axes, Direction, Orientation, Point};
@@ -30,6 +30,8 @@ pub struct Asked {
     pub at: Option<Point>,
     /// Metres for a unit of the mesh; `None` where it is not stated.
     pub unit_m: Option<f64>,
+    /// Length of the body over that of the mesh, where it is a model of what was drawn; `None` where it is not.
+    pub model_scale: Option<f64>,
     /// How the mesh lies; `None` where nobody said: x forward, z up.
     pub orientation: Option<Orientation>,
     /// Height of the water's surface over the origin of the mesh, m; `None`: deeply submerged.
@@ -80,7 +82,7 @@ impl Asked {
                     "density" => out.density_kg_m3 = Some(density(text)?),
                     "axes" => out.axes = axes(text)?,
                     "at" => out.at = Some(point(text)?),
-                    "unit" => out.unit_m = Some(unit(text)?),
+                    "unit" => (out.unit_m, out.model_scale) = unit(text)?,
                     "forward" => forward = Some(direction(text)?),
                     "up" => up = Some(direction(text)?),
                     "tolerance" => out.wanted.tolerance = ratio(text)?,
@@ -205,16 +207,30 @@ fn panels(text: &str) -> Result<usize, String> {
     text.trim().parse().map_err(|_| "write a whole number of panels, such as 120000".to_owned())
 }
 
-fn unit(text: &str) -> Result<f64, String> {
-    let unit = parse_unit(text).ok().filter(|unit| unit.dimension == Dimension::LENGTH);
-    unit.map(|unit| unit.to_si(1.0)).ok_or_else(|| "write a unit of length: mm, cm, m, in".to_owned())
+/// Metres for a unit (`mm`, `0.5 m`) and the scale of a model (`1:50`, `1:50 mm`).
+fn unit(text: &str) -> Result<(Option<f64>, Option<f64>), String> {
+    let wrong = || {
+        "write the unit of the mesh: mm, cm, m, in, ft, or a length, \"0.5 m\"; or the scale of a model, 1:50, of which the mesh has the full \
+         size (\"1:50 mm\": in millimetres)"
+            .to_owned()
+    };
+    let length = |text: &str| {
+        let named =
+            parse_unit(text).ok().filter(|unit| unit.dimension == Dimension::LENGTH).map(|unit| unit.to_si(1.0));
+        named.or_else(|| quantity(text, Dimension::LENGTH).ok()).filter(|m| *m > 0.0).ok_or_else(wrong)
+    };
+    let Some((model, rest)) = text.trim().split_once(':') else { return Ok((Some(length(text.trim())?), None)) };
+    let (full, name) = rest.trim().split_once(' ').unwrap_or((rest.trim(), ""));
+    let one = |text: &str| text.trim().parse::<f64>().ok().filter(|x| is_plausible(*x) && *x > 0.0).ok_or_else(wrong);
+    let unit_m = if name.is_empty() { None } else { Some(length(name.trim())?) };
+    Ok((unit_m, Some(one(model)? / one(full)?)))
 }
 
 /// How `--unit` writes a unit of so many metres.
 #[must_use]
 pub fn unit_of(metres: f64) -> String {
-    let named = ["mm", "cm", "m", "in", "ft"].into_iter().find(|name| unit(name).is_ok_and(|m| m == metres));
-    named.map_or_else(|| format!("{metres:?} m"), str::to_owned)
+    let named = ["mm", "cm", "m", "in", "ft"].into_iter().find(|name| unit(name).is_ok_and(|(m, _)| m == Some(metres)));
+    named.map_or_else(|| format!("\"{metres:?} m\""), str::to_owned)
 }
 
 /// `3`, `1..9` (both ends), `1,3,6`.

@@ -8,10 +8,12 @@ use froude_mesh::crossing::crossings;
 use froude_mesh::files::{MeshFile, write_obj, write_stl_binary};
 use froude_mesh::parts::part_troubles;
 use froude_mesh::repair::{WELD, repaired};
+use froude_mesh::union::united;
 use froude_records::write::Prepared;
 
 use super::load::{is_body_file, read_unmerged};
 use crate::error::AddedMassError;
+use crate::options::Asked;
 
 /// What was done.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -31,12 +33,8 @@ pub struct Repaired {
 /// # Errors
 ///
 /// A mesh that cannot be read, a target of another format or one that is there already, a disk that is full.
-pub fn repair(
-    input: &Path,
-    unit_m: Option<f64>,
-    weld_m: Option<f64>,
-    target: &Path,
-) -> Result<Repaired, AddedMassError> {
+pub fn repair(job: &Asked, weld_m: Option<f64>, target: &Path) -> Result<Repaired, AddedMassError> {
+    let input = job.input.as_path();
     let extension = target.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     if !matches!(extension.as_str(), "obj" | "stl") {
         return Err(AddedMassError::input(target, "a repaired mesh is written as .obj or .stl"));
@@ -54,9 +52,18 @@ pub fn repair(
         );
         return Err(AddedMassError::Refused(why));
     }
-    let MeshFile { mesh, notes, .. } = read_unmerged(input, unit_m)?;
-    let (mesh, repairs) = repaired(&mesh, weld_m.unwrap_or_else(|| WELD * extent(&mesh)));
-    let mut left: Vec<String> = check(&mesh).iter().map(ToString::to_string).collect();
+    let MeshFile { mesh, notes, .. } = read_unmerged(job)?;
+    let (mut mesh, mut repairs) = repaired(&mesh, weld_m.unwrap_or_else(|| WELD * extent(&mesh)));
+    let mut left = Vec::new();
+    match united(&mesh) {
+        Ok(None) => {}
+        Ok(Some(whole)) => {
+            mesh = whole.mesh;
+            repairs.extend(whole.notes);
+        }
+        Err(trouble) => left.push(trouble.to_string()),
+    }
+    left.extend(check(&mesh).iter().map(ToString::to_string));
     left.extend(part_troubles(&mesh).iter().chain(&crossings(&mesh)).map(ToString::to_string));
     let content = if extension == "obj" { write_obj(&mesh).into_bytes() } else { write_stl_binary(&mesh) };
     Prepared::new(target, |file| file.write_all(&content))?.take_free_place()?;

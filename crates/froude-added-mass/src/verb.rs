@@ -62,8 +62,8 @@ fn section((loaded, steps): &(Loaded, Vec<(usize, Forecast)>)) -> Section {
 /// # Errors
 ///
 /// As [`repair`].
-pub fn put_right(asked: &Asked, input: &Path, weld_m: Option<f64>, target: &Path) -> Result<Outcome, AddedMassError> {
-    let done = repair(input, asked.unit_m, weld_m, target)?;
+pub fn put_right(asked: &Asked, weld_m: Option<f64>, target: &Path) -> Result<Outcome, AddedMassError> {
+    let done = repair(asked, weld_m, target)?;
     let f = facts("", "", &done);
     let about = f.build(vec![
         f.text("written", "", |_| target.display().to_string()),
@@ -76,7 +76,7 @@ pub fn put_right(asked: &Asked, input: &Path, weld_m: Option<f64>, target: &Path
     } else {
         end.push("Still:".to_owned());
         Exit::Refused(format!(
-            "{}: written, but not yet fit for use; unite bodies that cross (a boolean union), and close holes, where the mesh was drawn",
+            "{}: written, but not yet fit for use; unite what is left of bodies that cross, and close holes, where the mesh was drawn",
             target.display()
         ))
     };

@@ -17,7 +17,7 @@ pub fn added_mass(args: AddedMassArgs, form: Form) -> Result<(), Failure> {
     if let Some(target) = &args.repair {
         let asked = Asked::read(&args.input, &args.options.0)?;
         let weld_m = args.weld.as_deref().map(weld_m).transpose()?;
-        return print::answer(&put_right(&asked, &args.input, weld_m, target)?, form);
+        return print::answer(&put_right(&asked, weld_m, target)?, form);
     }
     if args.weld.is_some() {
         let why = "--weld is for a repair: add --repair FILE, the mesh to be written (.obj or .stl)";

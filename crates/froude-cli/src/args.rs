@@ -450,7 +450,7 @@ pub struct SwimArgs {
 
 #[derive(Debug, clap::Args)]
 pub struct AddedMassArgs {
-    /// A body file (.toml), or a closed mesh: STL, OBJ, PLY, WAMIT .gdf, Nemoh .dat, Gmsh .msh.
+    /// A body file (.toml), or a closed mesh: STL, OBJ, PLY, WAMIT .gdf, Nemoh .dat, Gmsh .msh, Collada .dae.
     pub input: PathBuf,
     #[command(flatten)]
     pub options: AddedMassOptions,

@@ -157,7 +157,7 @@ fn kind_of(path: &Path) -> Option<Kind> {
     match path.extension()?.to_string_lossy().to_lowercase().as_str() {
         "json" => Some(Kind::Record),
         "mcap" => Some(Kind::Run),
-        "stl" | "obj" | "ply" | "gdf" | "msh" => Some(Kind::Mesh),
+        "stl" | "obj" | "ply" | "gdf" | "msh" | "dae" => Some(Kind::Mesh),
         "dat" if dat_file(path) == Some(DatFile::Mesh) => Some(Kind::Mesh),
         "dat" if dat_file(path) == Some(DatFile::Forces) => None,
         "urdf" => Some(Kind::Robot),

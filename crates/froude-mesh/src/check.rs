@@ -156,6 +156,11 @@ pub fn extent(mesh: &Mesh) -> f64 {
     (0..3).map(side).fold(0.0, f64::max)
 }
 
+/// Whether each edge is passed once each way.
+pub(crate) fn is_closed(mesh: &Mesh) -> bool {
+    edges(mesh).is_empty()
+}
+
 /// Edges that are not passed once each way.
 fn edges(mesh: &Mesh) -> Vec<Trouble> {
     // Smaller vertex first: how often it is passed that way, and the other.

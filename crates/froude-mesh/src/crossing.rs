@@ -59,8 +59,16 @@ struct Met {
 
 /// Panels that cross, and those folded onto a neighbour.
 fn met(mesh: &Mesh) -> [Option<Met>; 2] {
+    pairs(mesh).map(|pairs| {
+        let (first, second, at) = *pairs.first()?;
+        Some(Met { count: pairs.len(), first: first as usize, second: second as usize, at })
+    })
+}
+
+/// Each pair of panels that cross, and each of neighbours folded onto one another, with a point of both: [`MOST`] of a kind or little more.
+pub(crate) fn pairs(mesh: &Mesh) -> [Vec<(u32, u32, Vec3)>; 2] {
     if !is_readable(mesh) {
-        return [None, None];
+        return [Vec::new(), Vec::new()];
     }
     let triangles = triangles(mesh);
     let mut crossing: Vec<(u32, u32, Vec3)> = Vec::new();
@@ -76,13 +84,11 @@ fn met(mesh: &Mesh) -> [Option<Met>; 2] {
         crossing.len().max(folded.len()) < MOST
     });
     // Halves of two panels can meet more than once.
-    let reported = |mut pairs: Vec<(u32, u32, Vec3)>| {
+    [crossing, folded].map(|mut pairs| {
         pairs.sort_by_key(|(a, b, _)| (*a, *b));
         pairs.dedup_by_key(|(a, b, _)| (*a, *b));
-        let (first, second, at) = *pairs.first()?;
-        Some(Met { count: pairs.len(), first: first as usize, second: second as usize, at })
-    };
-    [reported(crossing), reported(folded)]
+        pairs
+    })
 }
 
 struct Triangle {

@@ -10,10 +10,12 @@
 //! | [`mesh`] | vertices and panels, mirror images, motions |
 //! | [`panel`] | area, centroid, normal, second moments of a panel |
 //! | [`measure`] | volume, centre of buoyancy, inertia of the displaced water |
-//! | [`files`] | STL, OBJ, PLY, WAMIT, Nemoh, Gmsh read; STL, OBJ, VTP written |
+//! | [`files`] | STL, OBJ, PLY, WAMIT, Nemoh, Gmsh, Collada read; STL, OBJ, VTP written |
 //! | [`check`] | closed, oriented, without slivers, copies and numbers that are none |
 //! | [`parts`] | what hangs together; a part that is inside out, or inside another |
 //! | [`crossing`] | panels through one another, or folded onto a neighbour |
+//! | [`solids`] | solids that share edges; decks inside a hull |
+//! | [`union`] | solids that overlap or touch made one, and its seam cleaned |
 //! | [`repair`] | vertices merged, panels turned, what is superfluous taken out: each reported |
 //! | [`plausible`] | doubts: drawn in millimetres, through the water's surface |
 //! | [`refine`] | panels divided, warp taken out, facets rounded |
@@ -34,8 +36,11 @@ pub mod plausible;
 pub mod refine;
 pub mod repair;
 pub mod robot;
+mod seam;
 pub mod sections;
+pub mod solids;
 mod topology;
+pub mod union;
 pub mod vector;
 
 pub use mesh::{Mesh, Panel};

@@ -119,7 +119,7 @@ fn bounds(mesh: &Mesh, panels: &[usize]) -> [Vec3; 2] {
 }
 
 /// How often a surface goes around a point: its solid angle there over 4π (Van Oosterom and Strackee 1983).
-fn winding(mesh: &Mesh, panels: &[usize], at: Vec3) -> f64 {
+pub(crate) fn winding(mesh: &Mesh, panels: &[usize], at: Vec3) -> f64 {
     let angle = |t: [u32; 3]| {
         let [a, b, c] = t.map(|v| sub(mesh.vertices[v as usize], at));
         let (la, lb, lc) = (norm(a), norm(b), norm(c));

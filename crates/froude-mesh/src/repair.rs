@@ -1,4 +1,4 @@
-//! Repairs that change no shape, each reported: vertices merged, panels without area and copies taken out, panels turned.
+//! Repairs that change no shape, each reported: vertices merged, panels without area, copies and decks taken out, panels turned.
 //!
 //! Holes are not closed, and what cannot be known is not decided: the outside of an open surface, and of one inside another.
 //!
@@ -11,6 +11,7 @@ use crate::check::{extent, first_unreadable, has_no_area};
 use crate::files::soup::counted;
 use crate::mesh::{Mesh, Panel};
 use crate::parts::{holders, volume};
+use crate::solids::decks;
 use crate::topology::{by_edge, sides};
 use crate::vector::{Vec3, norm, sub};
 
@@ -25,6 +26,7 @@ pub fn repaired(mesh: &Mesh, weld_m: f64) -> (Mesh, Vec<String>) {
     let mut reported = Vec::new();
     let mut out = welded(mesh, weld_m, &mut reported);
     take_out(&mut out, &mut reported);
+    take_out_decks(&mut out, &mut reported);
     let count = out.drop_unused_vertices();
     if count > 0 {
         reported
@@ -149,6 +151,16 @@ fn take_out(mesh: &mut Mesh, reported: &mut Vec<String>) {
         reported.push(format!("{copies} taken out, first at {at:?} m"));
     }
     mesh.panels = panels;
+}
+
+/// Takes out what lies inside a hull that is closed without it.
+fn take_out_decks(mesh: &mut Mesh, reported: &mut Vec<String>) {
+    let decks: IndexSet<usize> = decks(mesh).into_iter().collect();
+    let Some(first) = decks.first() else { return };
+    let (panels, at) = (counted(decks.len(), "panel", "panels"), corner(mesh, *first));
+    reported.push(format!("{panels} inside the closed hull taken out (decks or bulkheads), first at {at:?} m"));
+    let mut number = 0..;
+    mesh.panels.retain(|_| !number.next().is_some_and(|n| decks.contains(&n)));
 }
 
 /// A piece of surface that hangs together over edges of two panels.

@@ -65,7 +65,7 @@ pub(super) fn each<'a>(
 fn surface(asked: &Asked, name: &str) -> Result<Shaped, VerbError> {
     let refused = |problem: String| VerbError::input(&asked.body, problem);
     let lies = Lies::read(&asked.body, &asked.spec.lies)?;
-    let MeshFile { mesh, notes, .. } = read_mesh(&asked.body, lies.unit_m)?;
+    let MeshFile { mesh, notes, .. } = read_mesh(&lies)?;
     let troubles = troubles(&mesh);
     if !troubles.is_empty() {
         let unit = lies.unit_m.map_or_else(String::new, |m| format!(" --unit {}", unit_of(m)));

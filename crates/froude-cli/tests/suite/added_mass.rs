@@ -1247,7 +1247,7 @@ fn a_file_that_is_no_mesh_is_reported_with_its_place() {
     of(
         "m.step",
         b"ISO-10303-21;",
-        "m.step: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh or Gmsh; give it the extension of its format (.stl .obj .ply .gdf .dat .msh)",
+        "m.step: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh, Gmsh or Collada; give it the extension of its format (.stl .obj .ply .gdf .dat .msh .dae)",
     );
     of("m.stl", b"", "m.stl, byte 0: the file ends where a header of 80 bytes should be; copy or export it again");
     of("m.obj", b"", "m.obj: potential flow cannot be computed on this mesh:\n  the mesh has no panel");

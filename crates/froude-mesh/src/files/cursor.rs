@@ -63,6 +63,10 @@ impl<'a> Cursor<'a> {
         Self { name, bytes, at: 0, has_commas: false, is_big_endian: false }
     }
 
+    pub const fn name(&self) -> &'a str {
+        self.name
+    }
+
     pub const fn at(&self) -> usize {
         self.at
     }

@@ -1,6 +1,6 @@
 //! Mesh files of other programs, read and written.
 //!
-//! **Units.** None is applied: coordinates come as the file has them. The caller scales them, and [`crate::plausible`] says when a
+//! **Units.** None is applied: coordinates come as the file has them, with its unit where it states one. The caller scales them, and [`crate::plausible`] says when a
 //! body is so large that it must have been drawn in millimetres.
 //!
 //! | format | extension | what is read | source |
@@ -10,7 +10,8 @@
 //! | PLY | `.ply` | ASCII, binary of both byte orders | Turk, The PLY polygon file format, 1994 |
 //! | WAMIT | `.gdf` | low order, with ISX and ISY | WAMIT manual 7, chapter 6 |
 //! | Nemoh | `.dat` | with its symmetry | Nemoh manual, mesh file |
-//! | Gmsh | `.msh` | 2.2 and 4.1, ASCII and binary | Gmsh manual, file formats |
+//! | Gmsh | `.msh` | 2.2 and 4.1, ASCII and binary; first and second order | Gmsh manual, file formats |
+//! | Collada | `.dae` | 1.4 and 1.5, with its unit and its axes | Khronos, COLLADA 1.4.1 |
 //!
 //! What a file has and a mesh has not (normals, colours, lines, volumes) is left out, and a note says so. What is wrong with the
 //! surface itself, with NaN and infinite coordinates, [`mod@crate::check`] tells; nothing is repaired here.
@@ -22,6 +23,7 @@
 //! Memory is at most some twenty times the size of the file: a panel of twelve short numbers, mirrored twice.
 
 mod cursor;
+mod dae;
 mod gdf;
 mod msh;
 mod nemoh;
@@ -59,6 +61,8 @@ pub enum Format {
     Nemoh,
     /// Gmsh 2.2 or 4.1, ASCII or binary.
     Msh,
+    /// Collada.
+    Dae,
 }
 
 impl fmt::Display for Format {
@@ -70,6 +74,7 @@ impl fmt::Display for Format {
             Self::Gdf => "WAMIT GDF",
             Self::Nemoh => "Nemoh",
             Self::Msh => "Gmsh",
+            Self::Dae => "Collada",
         })
     }
 }
@@ -84,13 +89,15 @@ impl Format {
             "gdf" => Self::Gdf,
             "dat" => Self::Nemoh,
             "msh" => Self::Msh,
+            "dae" => Self::Dae,
             _ => return None,
         })
     }
 
     fn of_content(bytes: &[u8]) -> Option<Self> {
-        let looks: [(Self, fn(&[u8]) -> bool); 6] = [
+        let looks: [(Self, fn(&[u8]) -> bool); 7] = [
             (Self::Ply, |b| b.starts_with(b"ply\n") || b.starts_with(b"ply\r")),
+            (Self::Dae, dae::looks_like),
             (Self::Msh, |b| b.trim_ascii_start().starts_with(b"$MeshFormat")),
             (Self::Stl, stl::looks_like),
             (Self::Nemoh, nemoh::looks_like),
@@ -110,6 +117,8 @@ pub struct MeshFile {
     pub format: Format,
     /// What was left out, mirrored or divided, a sentence each.
     pub notes: Vec<String>,
+    /// Metres of that unit, where the file states it.
+    pub unit_m: Option<f64>,
 }
 
 /// Reads a mesh file; the extension of `name` says its format, else the content.
@@ -142,13 +151,14 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, ReadError> {
     let format = Format::of_extension(name).or_else(|| Format::of_content(bytes));
     let Some(format) = format else {
         return Err(ReadError(format!(
-            "{name}: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh or Gmsh; give it the extension of its format \
-             (.stl .obj .ply .gdf .dat .msh)"
+            "{name}: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh, Gmsh or Collada; give it the extension of its \
+             format (.stl .obj .ply .gdf .dat .msh .dae)"
         )));
     };
     // Some editors begin a text with the mark of its encoding.
     let text = if format == Format::Stl { None } else { bytes.strip_prefix(b"\xEF\xBB\xBF") };
     let cursor = Cursor::new(name, text.unwrap_or(bytes));
+    let mut unit_m = None;
     let (mesh, notes) = match format {
         Format::Stl => stl::read(cursor),
         Format::Obj => obj::read(cursor),
@@ -156,8 +166,12 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, ReadError> {
         Format::Gdf => gdf::read(cursor),
         Format::Nemoh => nemoh::read(cursor),
         Format::Msh => msh::read(cursor),
+        Format::Dae => dae::read(&cursor).map(|(mesh, notes, unit)| {
+            unit_m = Some(unit);
+            (mesh, notes)
+        }),
     }?;
-    Ok(MeshFile { mesh, format, notes })
+    Ok(MeshFile { mesh, format, notes, unit_m })
 }
 
 pub(crate) mod soup;

@@ -1,4 +1,7 @@
-//! Gmsh's MSH 2.2 and 4.1, ASCII and binary: the triangles (type 2) and quadrilaterals (type 3) of the first order.
+//! Gmsh's MSH 2.2 and 4.1, ASCII and binary: triangles (types 2 and 9) and quadrilaterals (3, 10 and 16) of the first and second order.
+//!
+//! One of second order becomes four panels over the nodes on its edges (of eight nodes: four triangles around a quadrilateral): flat
+//! corners alone would lose area where it is curved.
 //!
 //! Other elements are counted, named and left out; so are vertices that no panel uses, such as those inside a volume. Nodes may have
 //! any numbers.
@@ -51,6 +54,16 @@ const TYPES: &[(i64, usize, &str)] = &[
     (93, 125, "hexahedra of fourth order"),
 ];
 
+/// Panels of the elements of a surface, by the places of their nodes: corners first, then the middles of the edges from the first corner
+/// on, then the centre. A triangle ends at its first corner again.
+const SURFACES: &[(i64, &[[usize; 4]])] = &[
+    (2, &[[0, 1, 2, 0]]),
+    (3, &[[0, 1, 2, 3]]),
+    (9, &[[0, 3, 5, 0], [3, 1, 4, 3], [5, 4, 2, 5], [3, 4, 5, 3]]),
+    (10, &[[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]]),
+    (16, &[[0, 4, 7, 0], [4, 1, 5, 4], [5, 2, 6, 5], [6, 3, 7, 6], [4, 5, 6, 7]]),
+];
+
 /// The name of one element: `line of second order`, `tetrahedron`.
 fn one(many: &str) -> String {
     let (noun, order) = many.split_at(many.find(' ').unwrap_or(many.len()));
@@ -70,6 +83,8 @@ struct Msh<'a> {
     vertices: IndexMap<u64, u32>,
     points: Vec<Vec3>,
     panels: Vec<Panel>,
+    /// Elements of second order.
+    divided: usize,
     left_out: BTreeMap<&'static str, u64>,
 }
 
@@ -81,6 +96,7 @@ pub(super) fn read(mut cursor: Cursor<'_>) -> Read {
         vertices: IndexMap::new(),
         points: Vec::new(),
         panels: Vec::new(),
+        divided: 0,
         left_out: BTreeMap::new(),
     };
     while let Some(word) = msh.cursor.word() {
@@ -261,19 +277,24 @@ impl Msh<'_> {
         Ok(())
     }
 
-    /// A panel, by the numbers of its nodes.
-    fn panel(&mut self, corners: usize, next: fn(&mut Self) -> Result<u64, ReadError>) -> Result<(), ReadError> {
-        let mut panel = [0; 4];
-        for corner in &mut panel[..corners] {
+    /// The panels of an element, by the numbers of its nodes.
+    fn panels(
+        &mut self,
+        split: &[[usize; 4]],
+        nodes: usize,
+        next: fn(&mut Self) -> Result<u64, ReadError>,
+    ) -> Result<(), ReadError> {
+        let mut of = [0; 9];
+        for node in of.iter_mut().take(nodes) {
             let at = self.here();
             let tag = next(self)?;
-            *corner = *self
+            *node = *self
                 .vertices
                 .get(&tag)
                 .ok_or_else(|| self.unexpected(at, &format!("node {tag}"), "one of the nodes above"))?;
         }
-        let [a, b, c, d] = panel;
-        self.panels.push(if corners == 3 { Panel::triangle(a, b, c) } else { Panel::quad(a, b, c, d) });
+        self.panels.extend(split.iter().map(|[a, b, c, d]| Panel::quad(of[*a], of[*b], of[*c], of[*d])));
+        self.divided += usize::from(split.len() > 1);
         Ok(())
     }
 
@@ -352,8 +373,8 @@ impl Msh<'_> {
         name: &'static str,
         next: fn(&mut Self) -> Result<u64, ReadError>,
     ) -> Result<(), ReadError> {
-        if matches!(kind, 2 | 3) {
-            return self.panel(nodes, next);
+        if let Some((_, split)) = SURFACES.iter().find(|(number, _)| *number == kind) {
+            return self.panels(split, nodes, next);
         }
         for _ in 0..nodes {
             next(self)?;
@@ -367,8 +388,14 @@ impl Msh<'_> {
         if !self.left_out.is_empty() {
             let list: Vec<String> =
                 self.left_out.iter().map(|(name, count)| counted(*count as usize, &one(name), name)).collect();
-            notes
-                .push(format!("left out: {}; panels are triangles and quadrilaterals of first order", list.join(", ")));
+            notes.push(format!(
+                "left out: {}; panels are triangles and quadrilaterals of first and second order",
+                list.join(", ")
+            ));
+        }
+        if self.divided > 0 {
+            let elements = counted(self.divided, "element of second order", "elements of second order");
+            notes.push(format!("{elements} divided at the nodes on their edges"));
         }
         let mut mesh = Mesh { vertices: self.points, panels: self.panels };
         let unused = mesh.drop_unused_vertices();

@@ -308,7 +308,7 @@ fn msh_4_binary(is_big: bool) -> Vec<u8> {
 fn gmsh_is_read_in_its_four_forms() {
     let file = good("cube.msh", msh_2());
     is_unit_cube(&file.mesh);
-    let panels = "panels are triangles and quadrilaterals of first order";
+    let panels = "panels are triangles and quadrilaterals of first and second order";
     assert_eq!(
         file.notes,
         [format!("left out: 1 line, 1 point; {panels}"), "1 node that no panel uses left out".into()]
@@ -394,8 +394,8 @@ fn a_mistake_is_reported_with_its_place_and_the_next_step() {
     assert_eq!(error("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n1\n"), parameters);
     let version = "a.msh, line 2, column 1: version 4.0 is not read; save it with gmsh -save -format msh41 or msh22";
     assert_eq!(error("a.msh", "$MeshFormat\n4.0 0 8\n"), version);
-    let unknown = "hull.step: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh or Gmsh; give it the extension \
-                   of its format (.stl .obj .ply .gdf .dat .msh)";
+    let unknown = "hull.step: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh, Gmsh or Collada; give it the \
+                   extension of its format (.stl .obj .ply .gdf .dat .msh .dae)";
     assert_eq!(error("hull.step", "ISO-10303-21;"), unknown);
     let cut = "a.stl, byte 90: the file ends where triangle 1 of 4294967295 should be; copy or export it again";
     let mut bytes = vec![0; 90];

@@ -10,4 +10,5 @@ mod laws;
 mod near_wall;
 mod revolution;
 mod robot;
+mod unions;
 mod walls;

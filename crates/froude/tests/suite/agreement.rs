@@ -139,7 +139,7 @@ fn added_mass_of_a_shape_and_of_a_mesh() {
     std::fs::write(&mesh, text).unwrap();
     let repaired = folder.path().join("repaired.obj");
     let asked = Asked::read(&mesh, &[]).unwrap();
-    let checked = [check(&asked).unwrap(), put_right(&asked, &mesh, None, &repaired).unwrap()];
+    let checked = [check(&asked).unwrap(), put_right(&asked, None, &repaired).unwrap()];
     of_verb("added-mass-check", &checked.iter().collect::<Vec<_>>());
     let body = folder.path().join("body.toml");
     std::fs::copy(example("mamba-necked/body.toml"), &body).unwrap();
