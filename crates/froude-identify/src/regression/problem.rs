@@ -1,6 +1,7 @@
 //! The least-squares problem of a law: columns, response, weights.
 
 use froude_fit as fit;
+use froude_hydro::thruster::Thruster;
 use froude_records::campaign::{AngleOffset, Identify};
 use froude_records::texts::Texts;
 
@@ -8,6 +9,10 @@ use crate::dataset::{Dataset, distinct, labels};
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw};
 use crate::regression::settings::{Settings, Weight};
+
+/// Dead bands that the iteration of a thruster may start at, up to this part of the largest command.
+const DEAD_BANDS: u32 = 64;
+const DEAD_BAND_TO: f64 = 0.9;
 
 /// Logarithms of the loads, for the error model "every point has the same relative error".
 pub(crate) fn logarithms(
@@ -233,7 +238,41 @@ pub(crate) fn start(law: &ForceLaw, data: &Dataset, measured: &[f64], p: usize) 
         beta[0] = if count > 0.0 { (my - n * mx).exp() } else { 1.0 };
         beta[1] = n;
     }
+    if let crate::law::Kind::Thruster { command, parts, .. } = &law.kind
+        && let Some(x) = data.values(command)
+    {
+        for (r, load) in measured.chunks(data.rows.max(1)).enumerate() {
+            let start = thruster_start(x, load);
+            for (j, [_, which]) in parts.iter().enumerate().filter(|(_, [of, _])| *of == r) {
+                beta[j] = start[*which];
+            }
+        }
+    }
     beta
+}
+
+/// The dead band of a grid whose two parabolas leave least of a load, with these; the inflow is left to the iteration.
+fn thruster_start(command: &[f64], load: &[f64]) -> [f64; 4] {
+    let largest = command.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let mut best = ([0.0; 4], f64::INFINITY);
+    for step in 0..DEAD_BANDS {
+        let dead_band = DEAD_BAND_TO * largest * f64::from(step) / f64::from(DEAD_BANDS);
+        let mut found = Thruster { dead_band, ..Thruster::default() };
+        let fitted = |side: usize| {
+            let (mut along, mut square) = (0.0, 0.0);
+            for (x, load) in command.iter().zip(load) {
+                let slope = found.sensitivity(*x, 0.0)[side];
+                (along, square) = (along + slope * load, square + slope * slope);
+            }
+            if square > 0.0 { along / square } else { 0.0 }
+        };
+        [found.ahead, found.astern] = [fitted(0), fitted(1)];
+        let left: f64 = command.iter().zip(load).map(|(x, load)| (load - found.load(*x, 0.0)).powi(2)).sum();
+        if left < best.1 {
+            best = ([found.ahead, found.astern, 0.0, dead_band], left);
+        }
+    }
+    best.0
 }
 
 /// The next coefficients.
