@@ -6,6 +6,7 @@
 //! derivatives at the current coefficients.
 
 pub(crate) mod terms;
+pub(crate) mod thrust;
 mod thruster;
 
 use faer::Mat;

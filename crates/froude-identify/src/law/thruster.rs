@@ -1,15 +1,15 @@
 //! The law of a thruster over its command: coefficients of [`Thruster`], for thrust and torque.
 
-use froude_hydro::thruster::Thruster;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
 use super::terms::THRUSTER;
+use super::thrust::{COEFFICIENTS, Thruster};
 use super::{CoefficientSpec, ForceLaw, Kind, is_torque};
 use crate::dataset::Dataset;
 
-/// Place of the dead band in [`Thruster::sensitivity`].
-const DEAD_BAND: usize = 3;
+/// Places of the dead bands in [`Thruster::sensitivity`], ahead and astern.
+const DEAD_BANDS: [usize; 2] = [3, 4];
 
 impl ForceLaw {
     /// Thrust and torque of a thruster ([`Thruster`]) over the channels of the command and of an inflow; `sides` says whether commands above and below zero were run.
@@ -32,7 +32,8 @@ impl ForceLaw {
                 (format!("{letter}_ahead"), square, sides[0]),
                 (format!("{letter}_astern"), square, sides[1]),
                 (format!("{letter}_inflow"), by_inflow, inflow.is_some()),
-                (format!("dead_band{end}"), of(command), true),
+                (format!("dead_band{end}_ahead"), of(command), sides[0]),
+                (format!("dead_band{end}_astern"), of(command), sides[1]),
             ];
             for (which, (name, dimension, _)) in all.into_iter().enumerate().filter(|(_, (.., is_there))| *is_there) {
                 parts.push([r, which]);
@@ -52,18 +53,18 @@ impl ForceLaw {
     /// The thruster of a response, where the law is one.
     pub(crate) fn thruster_of(&self, response: usize, at: &[f64]) -> Option<Thruster> {
         let Kind::Thruster { parts, .. } = &self.kind else { return None };
-        let of = |which: usize| {
-            let place = parts.iter().position(|part| *part == [response, which]);
-            place.and_then(|place| at.get(place)).copied().unwrap_or(0.0)
-        };
-        Some(Thruster { ahead: of(0), astern: of(1), inflow: of(2), dead_band: of(DEAD_BAND) })
+        let mut all = [0.0; COEFFICIENTS];
+        for ([_, which], value) in parts.iter().zip(at).filter(|([of, _], _)| *of == response) {
+            all[*which] = *value;
+        }
+        Some(Thruster::of(all))
     }
 
     /// Whether the responses are linear in a coefficient with the others held.
     pub(super) fn is_factor(&self, j: usize) -> bool {
         match &self.kind {
             Kind::PowerLaw { .. } => j == 0,
-            Kind::Thruster { parts, .. } => parts.get(j).is_some_and(|[_, which]| *which != DEAD_BAND),
+            Kind::Thruster { parts, .. } => parts.get(j).is_some_and(|[_, which]| !DEAD_BANDS.contains(which)),
             Kind::Drag { .. } | Kind::Formulas(_) => true,
         }
     }

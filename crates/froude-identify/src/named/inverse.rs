@@ -38,19 +38,16 @@ pub(crate) fn commands(model: &ModelFit, data: &Dataset) -> Vec<Inverse> {
             continue;
         };
         let unit = unit_of(data, load);
-        let ends = measured.iter().fold([0.0_f64; 2], |[low, high], t| [low.min(*t), high.max(*t)]);
-        for (side, step) in (0..2).flat_map(|side| (1..=STEPS).map(move |step| (side, step))) {
+        let ends = measured.iter().fold([0.0_f64; 2], |[high, low], t| [high.max(*t), low.min(*t)]);
+        for (side, step) in [1, 0].into_iter().flat_map(|side| (1..=STEPS).map(move |step| (side, step))) {
             // From the largest pull astern to the largest ahead.
-            let part = f64::from(if side == 0 { STEPS + 1 - step } else { step }) / f64::from(STEPS);
+            let part = f64::from(if side == 1 { STEPS + 1 - step } else { step }) / f64::from(STEPS);
             let value = part * ends[side];
-            let Some(x) = thruster.command(value) else { continue };
-            let factor = if value > 0.0 { thruster.ahead } else { thruster.astern };
-            let beyond = x.abs() - thruster.dead_band;
+            let Some([x, beyond]) = thruster.command(value) else { continue };
             let slope = |[of, which]: [usize; 2]| match which {
                 _ if of != r => 0.0,
-                0 if value > 0.0 => -0.5 * beyond / factor * x.signum(),
-                1 if value < 0.0 => -0.5 * beyond / factor * x.signum(),
-                3 => x.signum(),
+                own if own == side => -0.5 * beyond / thruster.slope[side] * x.signum(),
+                own if own == 3 + side => x.signum(),
                 _ => 0.0,
             };
             let row = Mat::from_fn(1, parts.len(), |_, j| slope(parts[j]));

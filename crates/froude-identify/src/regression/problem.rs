@@ -1,12 +1,12 @@
 //! The least-squares problem of a law: columns, response, weights.
 
 use froude_fit as fit;
-use froude_hydro::thruster::Thruster;
 use froude_records::campaign::{AngleOffset, Identify};
 use froude_records::texts::Texts;
 
 use crate::dataset::{Dataset, distinct, labels};
 use crate::error::IdentifyError;
+use crate::law::thrust::COEFFICIENTS;
 use crate::law::{CoefficientSpec, ForceLaw};
 use crate::regression::settings::{Settings, Weight};
 
@@ -251,28 +251,26 @@ pub(crate) fn start(law: &ForceLaw, data: &Dataset, measured: &[f64], p: usize) 
     beta
 }
 
-/// The dead band of a grid whose two parabolas leave least of a load, with these; the inflow is left to the iteration.
-fn thruster_start(command: &[f64], load: &[f64]) -> [f64; 4] {
-    let largest = command.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let mut best = ([0.0; 4], f64::INFINITY);
-    for step in 0..DEAD_BANDS {
-        let dead_band = DEAD_BAND_TO * largest * f64::from(step) / f64::from(DEAD_BANDS);
-        let mut found = Thruster { dead_band, ..Thruster::default() };
-        let fitted = |side: usize| {
-            let (mut along, mut square) = (0.0, 0.0);
-            for (x, load) in command.iter().zip(load) {
-                let slope = found.sensitivity(*x, 0.0)[side];
-                (along, square) = (along + slope * load, square + slope * slope);
+/// In each direction the dead band of a grid whose parabola leaves least of a load, with it; the inflow is left to the iteration.
+fn thruster_start(command: &[f64], load: &[f64]) -> [f64; COEFFICIENTS] {
+    let mut out = [0.0; COEFFICIENTS];
+    for (side, sign) in [1.0, -1.0].into_iter().enumerate() {
+        let rows = || command.iter().zip(load).filter(|(x, _)| **x * sign > 0.0);
+        let largest = rows().fold(0.0_f64, |most, (x, _)| most.max(x.abs()));
+        let mut least = f64::INFINITY;
+        for step in 0..DEAD_BANDS {
+            let band = DEAD_BAND_TO * largest * f64::from(step) / f64::from(DEAD_BANDS);
+            let square = |x: &f64| sign * (x.abs() - band).max(0.0).powi(2);
+            let along: f64 = rows().map(|(x, load)| square(x) * load).sum();
+            let size: f64 = rows().map(|(x, _)| square(x).powi(2)).sum();
+            let slope = if size > 0.0 { along / size } else { 0.0 };
+            let left: f64 = rows().map(|(x, load)| (load - slope * square(x)).powi(2)).sum();
+            if left < least {
+                (least, out[side], out[3 + side]) = (left, slope, band);
             }
-            if square > 0.0 { along / square } else { 0.0 }
-        };
-        [found.ahead, found.astern] = [fitted(0), fitted(1)];
-        let left: f64 = command.iter().zip(load).map(|(x, load)| (load - found.load(*x, 0.0)).powi(2)).sum();
-        if left < best.1 {
-            best = ([found.ahead, found.astern, 0.0, dead_band], left);
         }
     }
-    best.0
+    out
 }
 
 /// The next coefficients.

@@ -309,10 +309,12 @@ fn cases() -> Vec<Case> {
             truths: &[
                 ("T_ahead", 0.32),
                 ("T_astern", 0.25),
-                ("dead_band", 0.6),
+                ("dead_band_ahead", 0.6),
+                ("dead_band_astern", 0.6),
                 ("Q_ahead", 0.006),
                 ("Q_astern", 0.005),
-                ("dead_band_Q", 0.6),
+                ("dead_band_Q_ahead", 0.6),
+                ("dead_band_Q_astern", 0.6),
             ],
         },
         Case {
@@ -327,7 +329,7 @@ fn cases() -> Vec<Case> {
                 vec![still - 0.05 * beyond * s[1]]
             },
             noise: &[0.4],
-            truths: &[("T_ahead", 0.0021), ("T_astern", 0.0016), ("T_inflow", -0.05), ("dead_band", 8.0)],
+            truths: &[("T_ahead", 0.0021), ("T_astern", 0.0016), ("T_inflow", -0.05), ("dead_band_ahead", 8.0), ("dead_band_astern", 8.0)],
         },
         Case {
             law: "propeller",
