@@ -74,7 +74,7 @@ impl NamedLaw {
         let is_known = |name: &str| constants.iter().any(|(own, ..)| own == name);
         let missing: Vec<&str> = self.needs.iter().filter(|(name, _)| !is_known(name)).map(|(_, how)| *how).collect();
         if !missing.is_empty() {
-            return Err(self.refused(&format!("a number is not declared; write {}", missing.join(", and "))));
+            return Err(self.refused(&format!("a number is not declared; write {}", missing.join(" and "))));
         }
         let (mut texts, mut left_out): (IndexMap<String, String>, Vec<LeftOut>) = (IndexMap::new(), Vec::new());
         for (load, factor, terms) in self.loads {
@@ -250,16 +250,25 @@ fn listed(left_out: &[LeftOut]) -> String {
     by_why.iter().map(|(why, names)| format!("{} ({why})", names.join(", "))).collect::<Vec<_>>().join("; ")
 }
 
+/// What a thruster has no coefficient for.
+fn thruster_lacks(law: &ForceLaw) -> Vec<LeftOut> {
+    let parts = [
+        ("ahead", "no command above zero"),
+        ("astern", "no command below zero"),
+        ("inflow", "no column v_x, or zero in every row"),
+    ];
+    let is_there = |part: &str| law.coefficients.iter().any(|c| c.name.ends_with(part));
+    let left_out = parts.into_iter().filter(|(part, _)| !is_there(part));
+    left_out.map(|(part, why)| LeftOut { coefficient: part.to_owned(), why: why.to_owned() }).collect()
+}
+
 /// What each law by name is, and which of its terms are not in the table.
 pub(crate) fn findings(laws: &[ForceLaw], data: &Dataset) -> Vec<Finding> {
     let of = |law: &ForceLaw| {
         let named = law.named?;
-        let left_out = if named.name == THRUSTER {
-            String::new()
-        } else {
-            let (_, left_out) = named.terms(data, &law.constants()).ok()?;
-            if left_out.is_empty() { String::new() } else { format!(" Left out: {}.", listed(&left_out)) }
-        };
+        let left_out =
+            if named.name == THRUSTER { thruster_lacks(law) } else { named.terms(data, &law.constants()).ok()?.1 };
+        let left_out = if left_out.is_empty() { String::new() } else { format!(" Left out: {}.", listed(&left_out)) };
         let text =
             format!("{}: {}. Source: {}. Range: {}.{left_out}", named.name, named.words, named.source, named.range);
         Some(Finding::new(Severity::Note, "named-law", text))

@@ -158,7 +158,7 @@ pub(crate) static LAWS: [NamedLaw; 8] = [
     NamedLaw {
         name: THRUSTER,
         words: "thrust and torque over voltage or rate of rotation, with a dead band, T = k s^2 ahead, -k s^2 astern, + c |s| v_x, s being the command beyond the dead band of its direction",
-        source: "Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control, 9.1; the dead band is ours",
+        source: "Fossen (2021), Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., ch. 9; the dead bands are ours",
         range: "steady commands; an inflow that does not turn the flow through the propeller round",
         needs: &[],
         loads: &[],

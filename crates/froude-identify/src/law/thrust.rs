@@ -8,7 +8,7 @@
 //! **Setting.** A thruster at a steady command `x`, a voltage or a rate of rotation, in water that flows in
 //! at `u`; a torque has the same form. **Units.** SI: `T` in N (N m), `x` in V or rad/s, `u` in m/s.
 //!
-//! **Source.** Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control, 9.1: thrust
+//! **Source.** Fossen (2021), Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., ch. 9: thrust
 //! `T_|n|n |n|n + T_|n|u |n|u`, bilinear in rate and inflow. The dead bands are ours: brushes, seals and the
 //! converter take the first part of a command, and not the same in both directions.
 //! **Range.** Steady commands; inflow along the axis, without reversing the flow through the disc.
@@ -44,12 +44,6 @@ impl Thruster {
             out[3 + side] = -2.0 * sign * self.slope[side] * beyond - self.inflow * inflow_m_s;
         }
         out
-    }
-
-    /// The load, N or N m.
-    pub(crate) fn load(&self, command: f64, inflow_m_s: f64) -> f64 {
-        let [ahead, astern, inflow, ..] = self.sensitivity(command, inflow_m_s);
-        self.slope[0] * ahead + self.slope[1] * astern + self.inflow * inflow
     }
 
     /// The command that gives a load in still water, and √(|T|/k) beyond the dead band; `None` where none does.

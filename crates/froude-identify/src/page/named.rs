@@ -2,6 +2,7 @@
 
 use froude_records::block::{Section, TableBuilder};
 use froude_records::estimate::{Derived, Estimate};
+use froude_records::number::plain;
 
 use crate::answer::Answer;
 use crate::named::commands;
@@ -18,7 +19,8 @@ pub(super) fn sections(answer: &Answer) -> Vec<Section> {
     let mut out: Vec<Section> = primes(estimate).into_iter().collect();
     let commands = commands(model, &source.data);
     if !commands.is_empty() {
-        let t = TableBuilder::new("", "", &commands);
+        let caption = "Command for a load in still water";
+        let t = TableBuilder::new("", caption, &commands);
         let table = t.build(vec![
             t.text("", "load", |c| c.load.clone()).symbol(),
             t.number("", "value", |c| c.value).significant(4),
@@ -27,7 +29,7 @@ pub(super) fn sections(answer: &Answer) -> Vec<Section> {
             t.text("", "unit", |c| c.command_unit.clone()),
             t.interval("", "95 % interval", |c| c.interval),
         ]);
-        out.push(Section::new(format!("{}: which command gives a load in still water", source.name), [table.into()]));
+        out.push(Section::new(format!("{}: {caption}", estimate.id), [table.into()]));
     }
     out
 }
@@ -37,17 +39,17 @@ fn primes(estimate: &Estimate) -> Option<Section> {
     let rows: Vec<(&String, &Derived)> = estimate.derived.iter().filter(|(name, _)| name.ends_with("_prime")).collect();
     let of = |name: &str, unit: &str| {
         let known = estimate.refers_to.get(name)?;
-        Some(format!(", {name} {} {unit}", froude_records::number::plain(known.value, 5)))
+        Some(format!(", {name} {} {unit}", plain(known.value, 5)))
     };
     let about = [("density", "kg/m^3"), ("length", "m"), ("speed", "m/s")];
     let about: String = about.into_iter().filter_map(|(name, unit)| of(name, unit)).collect();
-    let t = TableBuilder::new("", "", &rows);
+    let caption = format!("Nondimensional coefficients{about}");
+    let t = TableBuilder::new("", &caption, &rows);
     let table = t.build(vec![
         t.text("", "prime", |(name, _)| (*name).clone()).symbol(),
         t.number("", "value", |(_, d)| d.value).significant(4),
         t.interval("", "95 % interval", |(_, d)| d.interval_95),
         t.text("", "is", |(_, d)| d.formula.clone()),
     ]);
-    let title = format!("{}: nondimensional coefficients{about}", estimate.id);
-    (!rows.is_empty()).then(|| Section::new(title, [table.into()]))
+    (!rows.is_empty()).then(|| Section::new(format!("{}: nondimensional coefficients", estimate.id), [table.into()]))
 }
