@@ -21,6 +21,7 @@ use crate::dataset::{Dataset, LOADS};
 use crate::formula::aliased;
 use crate::law::{ForceLaw, Kind};
 use crate::lint::repeats::REPEATS_WITHIN;
+use crate::named;
 use crate::validation::{STD_ITERATIVE, STD_NUMERICAL};
 
 /// Columns that say which run a row is, or in which water; and the motion, which is velocity at once or compared with it.
@@ -216,7 +217,7 @@ pub(crate) fn is_in(name: &str, laws: &[ForceLaw]) -> bool {
             || match &law.kind {
                 Kind::Drag { .. } => matches!(name, "v_x" | "v_y"),
                 Kind::Formulas(formulas) => formulas.iter().flat_map(|f| &f.channels).any(|c| c == name),
-                Kind::PowerLaw { channel, .. } => channel == name,
+                Kind::PowerLaw { .. } | Kind::Thruster { .. } => law.channels().contains(&name),
             }
     })
 }
@@ -253,9 +254,12 @@ fn doubt(
     (is_motion(name) && !is_noise && !is_carried_along(name, [low, high], laws)).then(|| {
         let loads: IndexSet<&str> = laws.iter().flat_map(|law| &law.responses).map(String::as_str).collect();
         let of = loads.into_iter().collect::<Vec<_>>().join(", ");
+        let by_name = named::having(name, data);
+        let by_name =
+            if by_name.is_empty() { String::new() } else { format!(", name one that has it ({})", by_name.join(", ")) };
         format!(
             "{name} goes from {low:.4} to {high:.4} {dimension} and appears in no law: the fit of {of} treats it as zero; write a law with \
-             it ([[identify.model]]), or keep the rows where it is zero"
+             it ([[identify.model]]){by_name}, or keep the rows where it is zero"
         )
     })
 }

@@ -47,6 +47,8 @@ pub struct Dataset {
     pub observed: IndexMap<String, Vec<bool>>,
     /// Loads that no sensor read, as a declared weight: that repeats have one value says nothing of its scatter.
     pub stated: Vec<String>,
+    /// Loads that an actuator exerts, and not the water.
+    pub actuators: Vec<String>,
     /// What these rows were drawn from, where they are a sample.
     pub sample: Option<Drawn>,
 }
@@ -135,6 +137,12 @@ impl Dataset {
     #[must_use]
     pub fn loads(&self) -> Vec<&'static str> {
         LOADS.into_iter().filter(|l| self.channels.contains_key(*l)).collect()
+    }
+
+    /// Whether a load is one of the water: no actuator exerts it.
+    #[must_use]
+    pub fn is_of_water(&self, load: &str) -> bool {
+        self.actuators.iter().all(|other| other != load)
     }
 
     /// Whether row `i` is an observation of a load.
@@ -254,6 +262,7 @@ impl Dataset {
                 .map(|(load, is)| (load.clone(), keep.iter().map(|&i| is[i]).collect()))
                 .collect(),
             stated: self.stated.clone(),
+            actuators: self.actuators.clone(),
             sample: self.sample.clone(),
         }
     }

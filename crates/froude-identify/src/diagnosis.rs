@@ -234,7 +234,7 @@ fn decided_by_one(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
 fn added_mass_sign(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
     let mut out = Vec::new();
     let coefficients = model.law_coefficients();
-    for (load, motion) in crate::source::models::PAIRS {
+    for (load, motion) in crate::source::models::PAIRS.into_iter().filter(|(load, _)| data.is_of_water(load)) {
         let channel = format!("{motion}_dot");
         let (Some(r), true) =
             (model.law.responses.iter().position(|l| l == load), model.law.channels().contains(&channel.as_str()))

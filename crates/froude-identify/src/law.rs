@@ -1,9 +1,13 @@
 //! A force law as the fit and the prediction see it: responses, coefficients and regressors.
 //!
 //! The built-in drag models come from `froude-hydro`; everything else that is
-//! linear in its coefficients is a formula. The power law F = k·(U/U_ref)ⁿ is the
-//! one law that is not linear: for it the regressors are the derivatives at the
-//! current coefficients.
+//! linear in its coefficients is a formula. The power law F = k·(U/U_ref)ⁿ and the
+//! thruster with a dead band are not linear: for them the regressors are the
+//! derivatives at the current coefficients.
+
+pub(crate) mod terms;
+pub(crate) mod thrust;
+mod thruster;
 
 use faer::Mat;
 use froude_hydro::power_law::PowerLaw;
@@ -16,6 +20,8 @@ use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::formula::unit::Dim;
 use crate::formula::{Constant, Formula, channel_of_alias, load_column};
+
+use terms::{NamedLaw, THRUSTER};
 
 /// Reference speed of the linear coefficients of f1 and of the power law, m/s.
 pub const REFERENCE_SPEED_M_S: f64 = 1.0;
@@ -53,6 +59,15 @@ pub enum Kind {
         /// True: fitted as ln|F| = ln k + n·ln|v| (relative errors); false: in newtons (absolute errors).
         in_logarithms: bool,
     },
+    /// Thrust and torque over a command, with a dead band.
+    Thruster {
+        /// The channel of the command, V or rad/s.
+        command: String,
+        /// The channel of the inflow, where the water moves.
+        inflow: Option<String>,
+        /// Response of each coefficient, and its place among the slopes of a thruster.
+        parts: Vec<[usize; 2]>,
+    },
 }
 
 /// A named force law.
@@ -68,6 +83,8 @@ pub struct ForceLaw {
     pub coefficients: Vec<CoefficientSpec>,
     /// The formulas' text by response; empty for built-in laws.
     pub texts: IndexMap<String, String>,
+    /// The set of terms that it was made of.
+    pub(crate) named: Option<&'static NamedLaw>,
 }
 
 impl ForceLaw {
@@ -88,6 +105,7 @@ impl ForceLaw {
                 .map(|c| CoefficientSpec { name: c.name.to_owned(), unit: c.unit.to_owned() })
                 .collect(),
             texts: IndexMap::new(),
+            named: None,
         }
     }
 
@@ -181,6 +199,7 @@ impl ForceLaw {
                 .map(|(name, d)| CoefficientSpec { name: name.clone(), unit: d.written_beside(&beside) })
                 .collect(),
             texts: texts.clone(),
+            named: None,
         })
     }
 
@@ -200,6 +219,7 @@ impl ForceLaw {
                 CoefficientSpec { name: format!("n_{axis}"), unit: "1".to_owned() },
             ],
             texts: IndexMap::new(),
+            named: None,
         }
     }
 
@@ -258,6 +278,14 @@ impl ForceLaw {
                 None => (format!("f_{axis}"), format!("v_{axis}")),
             };
             return Ok(Self { name: estimate.law.name.clone(), ..Self::power_law(&response, &channel, in_logarithms) });
+        }
+        if estimate.law.name == THRUSTER
+            && let Some(command) = estimate.law.inputs.keys().next()
+        {
+            let loads: Vec<&str> = estimate.law.outputs.keys().map(String::as_str).collect();
+            let inflow = estimate.law.inputs.keys().nth(1).map(String::as_str);
+            let has = |end: &str| estimate.coefficients.keys().any(|name| name.ends_with(end));
+            return Ok(Self::thruster(data, &loads, (command, inflow), [has("_ahead"), has("_astern")]));
         }
         let (id, model) = (&estimate.id, &estimate.law.name);
         let problem = format!("estimate {id}: model {model} is not a force law that can be evaluated here");
@@ -360,6 +388,11 @@ impl ForceLaw {
                     out[(i, 1)] = -by_n;
                 }
             }
+            Kind::Thruster { command, inflow, .. } => {
+                let x = self.channel(data, command)?;
+                let u = inflow.as_ref().map(|inflow| self.channel(data, inflow)).transpose()?;
+                self.of_thruster(x, u, at, |row, j, slope| out[(row, j)] = slope);
+            }
         }
         Ok(out)
     }
@@ -373,9 +406,9 @@ impl ForceLaw {
     /// A channel that the law needs and the data lack.
     pub fn predict(&self, data: &Dataset, at: &[f64]) -> Result<Vec<f64>, IdentifyError> {
         let x = self.regressors(data, at)?;
-        // The power law is linear in k alone: its force is k times its first column.
-        let terms = if matches!(self.kind, Kind::PowerLaw { .. }) { 1 } else { at.len() };
-        Ok((0..x.nrows()).map(|i| (0..terms).map(|j| x[(i, j)] * at[j]).sum()).collect())
+        // An exponent and a dead band have a slope, and no part of their own.
+        let terms: Vec<usize> = (0..at.len()).filter(|j| self.is_factor(*j)).collect();
+        Ok((0..x.nrows()).map(|i| terms.iter().map(|&j| x[(i, j)] * at[j]).sum()).collect())
     }
 
     /// The channels that it reads, each once.
@@ -385,6 +418,9 @@ impl ForceLaw {
         let all: Vec<&str> = match &self.kind {
             Kind::Drag { .. } => vec!["v_x", "v_y", "n_links", "density"],
             Kind::PowerLaw { channel, .. } => vec![channel],
+            Kind::Thruster { command, inflow, .. } => {
+                std::iter::once(command).chain(inflow).map(String::as_str).collect()
+            }
             Kind::Formulas(formulas) => formulas.iter().flat_map(|f| &f.channels).map(String::as_str).collect(),
         };
         for channel in all {
@@ -411,6 +447,7 @@ impl ForceLaw {
         match &self.kind {
             Kind::Drag { .. } => is_meant("v_x"),
             Kind::PowerLaw { channel, .. } => is_meant(channel),
+            Kind::Thruster { .. } => self.channels().into_iter().any(is_meant),
             Kind::Formulas(formulas) => formulas[response].channels.iter().any(|c| is_meant(c)),
         }
     }
@@ -449,7 +486,7 @@ impl ForceLaw {
     /// True where the fit has to iterate.
     #[must_use]
     pub fn is_nonlinear(&self) -> bool {
-        matches!(self.kind, Kind::PowerLaw { .. })
+        matches!(self.kind, Kind::PowerLaw { .. } | Kind::Thruster { .. })
     }
 
     /// Symbol of the physical factor of each coefficient (`k*G_T`) for built-in laws.
@@ -464,6 +501,11 @@ impl ForceLaw {
     fn channel<'a>(&self, data: &'a Dataset, name: &str) -> Result<&'a [f64], IdentifyError> {
         data.values(name).ok_or_else(|| IdentifyError::no_such_channel(&self.name, name, data))
     }
+}
+
+/// Whether a load is a moment.
+pub(crate) fn is_torque(load: &str) -> bool {
+    load.starts_with("m_") || load == "torque"
 }
 
 /// A dimension as the formula room writes it: exponents of m, kg, s, K and A.

@@ -34,6 +34,7 @@ pub mod lint;
 pub mod method;
 mod misfit;
 mod motions;
+mod named;
 pub mod observations;
 pub mod origins;
 mod outlying;

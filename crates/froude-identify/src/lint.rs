@@ -92,6 +92,7 @@ fn drag_area(data: &Dataset, reference_area_m2: Option<f64>) -> Option<Finding> 
     let near = moving(speed, NEAR_LARGEST_SPEED);
     let (load, i, f) = ["f_x", "f_y", "f_z"]
         .into_iter()
+        .filter(|load| data.is_of_water(load))
         .filter_map(|load| Some((load, data.values(load)?)))
         .flat_map(|(load, f)| near.iter().map(move |&i| (load, i, f[i])))
         .max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;

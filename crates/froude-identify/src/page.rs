@@ -19,6 +19,7 @@ mod curves;
 mod error_models;
 mod facts;
 pub mod method;
+mod named;
 mod points;
 mod selection;
 mod settings;

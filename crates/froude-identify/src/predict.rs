@@ -19,7 +19,7 @@ use indexmap::IndexMap;
 
 use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
-use crate::law::ForceLaw;
+use crate::law::{ForceLaw, is_torque};
 
 /// Of the water, and not of the motion: no law is extrapolated in it.
 const OF_WATER: &str = "temperature";
@@ -213,7 +213,7 @@ fn with_loads(estimate: &Estimate, data: &Dataset) -> Dataset {
     loads.extend(["f_x", "f_y"].map(str::to_owned));
     for load in loads {
         if data.values(&load).is_none() {
-            let dimension = if load.starts_with("m_") { Dimension::MOMENT } else { Dimension::FORCE };
+            let dimension = if is_torque(&load) { Dimension::MOMENT } else { Dimension::FORCE };
             data.put(&load, vec![f64::NAN; data.rows], dimension);
         }
     }

@@ -13,6 +13,7 @@ use indexmap::IndexMap;
 use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
 use crate::law::{Kind, REFERENCE_SPEED_M_S, dimension_of, geometry_of};
+use crate::named::primes;
 use crate::regression::{ModelFit, Scatter};
 use crate::seam::reduced::{self, Choice, Reduced};
 use crate::selection::Recommendation;
@@ -44,6 +45,7 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         Kind::PowerLaw { .. } => {
             constants.insert("U_ref".to_owned(), Measured::of(REFERENCE_SPEED_M_S, "m/s"));
         }
+        Kind::Thruster { .. } => {}
         Kind::Formulas(_) => constants.extend(
             model
                 .law
@@ -54,6 +56,9 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
     }
     constants.extend(stated.constants.clone());
     refers_to.extend(stated.refers_to.clone());
+    let length = stated.refers_to.get("length").filter(|_| model.law.named.is_some());
+    let (primes, speed) = length.map_or_else(Default::default, |length| primes(&model.law, data, length.value));
+    refers_to.extend(speed.map(|speed| ("speed".to_owned(), Measured::of(speed, "m/s"))));
     let name = match of.choice {
         Choice::Selection => &model.law.name,
         Choice::Method(_) => &stated.method,
@@ -76,7 +81,7 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         sigma,
         run_scatter: run_scatter(model, data),
         n_observations: data.observations(),
-        derived: stated.derived.iter().filter_map(|d| derived(d, &coefficients)).collect(),
+        derived: stated.derived.iter().chain(&primes).filter_map(|d| derived(d, &coefficients)).collect(),
         coefficients,
         type_a,
         errors: errors(model),

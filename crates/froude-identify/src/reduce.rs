@@ -254,6 +254,15 @@ fn dataset(table: &Table, source: &Source, has_speed: bool) -> Result<Dataset, I
         data.grouped_by = if group == data.run { GroupedBy::Run } else { GroupedBy::Column };
         data.group = Some(group);
     }
+    for load in &source.actuator {
+        let load = data.meant(load);
+        if !data.channels.contains_key(load) {
+            let loads = data.loads().join(", ");
+            let what = format!("actuator = [{load:?}]: the table has no such column; its loads are {loads}");
+            return Err(IdentifyError::Campaign { place: source.place.to_string(), what });
+        }
+        data.actuators.push(load.to_owned());
+    }
     if !data.channels.contains_key("n_links") {
         links_from_configuration(&mut data);
     }

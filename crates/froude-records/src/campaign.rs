@@ -124,6 +124,8 @@ pub struct Source {
     pub keep: Option<Keep>,
     /// Text column whose values belong together (clusters, cross-validation).
     pub group: Option<String>,
+    /// Loads that an actuator exerts, and not the water.
+    pub actuator: Vec<String>,
     /// The sensor budget (type B).
     pub uncertainty: Vec<BudgetEntry>,
     /// A fitted tare that is subtracted.
@@ -619,6 +621,7 @@ impl Source {
             method_places: Vec::new(),
             keep: None,
             group: None,
+            actuator: Vec::new(),
             uncertainty: Vec::new(),
             tare: None,
             own: None,

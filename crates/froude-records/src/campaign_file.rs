@@ -138,7 +138,7 @@ fn constants(s: &Section<'_>) -> Result<IndexMap<String, Quantity>, RecordError>
 }
 
 /// What belongs to the rows of a table, and would be passed over elsewhere.
-pub const OF_TABLES: [&str; 7] = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
+pub const OF_TABLES: [&str; 8] = ["models", "keep", "group", "actuator", "uncertainty", "tare", "plan", "sidecar"];
 
 fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Source, RecordError> {
     let (methods, method_places): (Vec<String>, Vec<_>) = s.placed_texts("method")?.into_iter().unzip();
@@ -220,6 +220,7 @@ fn read_source(s: &Section<'_>, document: &Document, index: usize) -> Result<Sou
         method_places,
         keep,
         group: text("group"),
+        actuator: s.placed_texts("actuator")?.into_iter().map(|(load, _)| load).collect(),
         uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,
         tare,
         given: Vec::new(),

@@ -119,6 +119,12 @@ pub const SOURCE: &[Key] = &[
         "which rows are used, clauses joined by and: \"angle <= 39 deg and configuration == H1LT\"",
     ),
     optional("group", Kind::Text, "none", "a column whose values belong together (clusters, cross-validation)"),
+    optional(
+        "actuator",
+        Kind::Texts,
+        "none",
+        "loads that an actuator exerts, and not the water: thrust, a joint's torque",
+    ),
     optional("uncertainty", Kind::List(&Kind::Table(UNCERTAINTY)), "none", "an entry of the sensor budget"),
     optional("tare", Kind::Table(TARE), "none", "a fitted tare that is subtracted"),
     optional("plan", Kind::List(&Kind::Any), "nothing is planned", "a block of the run matrix"),

@@ -118,6 +118,7 @@ fn declared_gain(source: &Source, campaign: &str) -> Result<ForcePerVolt<'static
     let of_rows = [
         ("keep", source.keep.is_some()),
         ("group", source.group.is_some()),
+        ("actuator", !source.actuator.is_empty()),
         ("tare", source.tare.is_some()),
         ("models", !source.models.is_empty()),
     ];

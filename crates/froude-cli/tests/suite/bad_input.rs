@@ -116,7 +116,8 @@ fn an_unknown_model_on_the_command_line_is_told_the_nearest_or_what_there_is() {
     };
     assert_eq!(
         said("f7"),
-        "froude: model \"f7\" is not known; built in are f1 to f6, quadratic, linear_quadratic, power_law, power_law_log, strut; \
+        "froude: model \"f7\" is not known; built in are f1 to f6, quadratic, linear_quadratic, power_law, power_law_log, strut, \
+         oblique, fossen_3dof, fossen_6dof, abkowitz, mmg, torpedo, thruster, propeller; \
          [[identify.model]] adds its own: none here"
     );
     assert_eq!(said("f44"), "froude: model \"f44\" is not known; did you mean `f4`?");

@@ -94,6 +94,36 @@ fn letters_of_sname_head_columns_and_stand_in_formulas() {
 }
 
 #[test]
+fn laws_by_name_have_the_terms_of_the_table() {
+    let (_folder, paths) = copied(&["lift.csv", "lift-no-repeats.csv", "sname.csv"]);
+    let lift = [("X_uu", -4.2), ("Y_v", -6.0), ("Y_uv", -28.0), ("Y_vv", -115.0), ("N_v", -1.5), ("N_uv", -14.0)];
+    let sname = [("X_uu", -10.0), ("Y_uv", -60.0), ("Y_ur", 8.0), ("N_uv", -20.0), ("N_ur", -12.0)];
+    for (table, law, truth) in
+        [(&paths[0], "oblique", &lift[..]), (&paths[1], "oblique", &lift[..4]), (&paths[2], "torpedo", &sname[..])]
+    {
+        let record: Value = serde_json::from_str(&done(&["identify", text(table), "--models", law, "--json"])).unwrap();
+        holds(&record, law, truth, 0.5);
+        let findings = record["findings"].to_string();
+        assert_eq!(findings.contains("N_v, N_uv, N_vv (no column m_z)"), table.ends_with("lift-no-repeats.csv"));
+    }
+}
+
+/// Both directions, dead bands and the inverse, without a law being named; the load drives the body and is none of the water. The scatter of this table takes the dead band ahead to 0.611 V at
+/// least, where 0.6 V was put in: over 400 such tables 96 % of the intervals hold it.
+#[test]
+fn a_thruster_over_volts_gives_both_directions_and_the_command_for_a_thrust() {
+    let (_folder, paths) = copied(&["thruster.csv"]);
+    let told = done(&["identify", text(&paths[0])]);
+    for part in ["dead_band_ahead", "Command for a load in still water"] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    assert!(!told.contains("ERROR"), "{told}");
+    let record: Value = serde_json::from_str(&done(&["identify", text(&paths[0]), "--json"])).unwrap();
+    let truth = [("T_ahead", 0.32), ("T_astern", 0.25), ("dead_band_astern", 0.6)];
+    holds(&record, "thruster", &truth, 0.2);
+}
+
+#[test]
 fn a_servo_log_of_rounded_stamps_says_how_they_were_read() {
     let (folder, paths) = copied(&["axis-60hz-ms.csv"]);
     std::fs::write(

@@ -23,6 +23,7 @@ mod folders;
 #[path = "../../../froude/tests/held/mod.rs"]
 mod held;
 mod hostile;
+mod hull;
 mod inference;
 #[cfg(target_os = "linux")]
 mod interrupted;

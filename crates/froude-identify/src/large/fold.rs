@@ -189,7 +189,7 @@ fn columns(law: &ForceLaw, r: usize) -> Vec<usize> {
             out.sort_unstable();
             out
         }
-        Kind::PowerLaw { .. } => Vec::new(),
+        Kind::PowerLaw { .. } | Kind::Thruster { .. } => Vec::new(),
     }
 }
 

@@ -142,7 +142,7 @@ impl Counts {
     ) -> Option<Finding> {
         // What slows down is pushed by the water that goes with it.
         let slows = data.values(&format!("{motion}_dot")).is_some_and(|a| a.iter().any(|a| *a != 0.0));
-        if *along == 0 || slows || has_other_cause(load, laws) {
+        if *along == 0 || slows || !data.is_of_water(load) || has_other_cause(load, laws) {
             return None;
         }
         let of = if *large == self.rows {
@@ -153,7 +153,9 @@ impl Counts {
         Some(if along * 2 > *large {
             let text = format!(
                 "{load} points along {motion} {of}: a drag must oppose the motion; if the sensor is mounted the other \
-                 way round, write sign = -1 for its column, or remove it if it is there{}",
+                 way round, write sign = -1 for its column, or remove it if it is there; if an actuator exerts it, call the column {} or write actuator = [\"{load}\"] in \
+                 [[source]]{}",
+                if load.starts_with("m_") { "torque" } else { "thrust" },
                 if motion == "v_y" && data.channels.contains_key("angle") {
                     "; if the angle is counted in the opposite sense (as beta of a ship's drift test is), write sign = -1 for the angle column instead"
                 } else {

@@ -10,7 +10,7 @@ use froude_records::estimate::EstimateFile;
 use froude_records::page::{InputFile, Report};
 use froude_records::text::counted;
 
-use super::{method, section, steps};
+use super::{method, named, section, steps};
 use crate::IdentifyError;
 use crate::answer::Answer;
 
@@ -53,7 +53,10 @@ pub fn report(
     Ok(Report {
         title: campaign.name.clone(),
         subtitle: subtitle(sources, &published),
-        blocks: blocks.into_iter().chain(steps::section(file.data.values())).collect(),
+        blocks: (sources.iter().flat_map(named::sections))
+            .chain(blocks)
+            .chain(steps::section(file.data.values()))
+            .collect(),
         date,
         method: method::sentences(campaign, sources, &published),
         sources: sources.iter().map(section).collect::<Result<_, _>>()?,

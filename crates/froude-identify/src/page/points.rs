@@ -14,15 +14,12 @@ use crate::regression::ModelFit;
 /// The channel that a response is drawn against: speed where there is motion, else the first channel of its law.
 pub(super) fn abscissa(model: &ModelFit, data: &Dataset) -> Option<String> {
     if data.values("speed").is_some_and(|u| u.iter().any(|x| *x != 0.0))
+        && !matches!(model.law.kind, Kind::Thruster { .. })
         && (0..model.law.responses.len()).any(|r| model.law.moves(r))
     {
         return None;
     }
-    let used: Vec<String> = match &model.law.kind {
-        Kind::Formulas(f) => f.iter().flat_map(|f| f.channels.clone()).collect(),
-        _ => Vec::new(),
-    };
-    used.into_iter().find(|c| c != "density")
+    model.law.channels().into_iter().find(|c| *c != "density").map(str::to_owned)
 }
 
 /// A point for each row of each response.

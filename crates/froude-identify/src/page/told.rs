@@ -5,6 +5,7 @@ use froude_records::estimate::words;
 use froude_records::estimate::{Coefficient, Estimate, Status};
 use froude_records::text::counted;
 
+use super::named;
 use crate::answer::Answer;
 use crate::result::SourceResult;
 
@@ -24,6 +25,7 @@ pub fn source(answer: &Answer) -> Vec<Block> {
         out.push(coefficients(estimate));
         said.extend(estimate.undetermined.iter().map(|what| format!("  determined only together: {what}")));
     }
+    out.extend(named::sections(answer).into_iter().map(Block::from));
     let others: Vec<&str> = others.into_iter().map(|e| e.law.name.as_str()).collect();
     if !others.is_empty() {
         said.push(format!("  also fitted: {} (see the report)", others.join(", ")));

@@ -6,8 +6,13 @@ use froude_records::texts::Texts;
 
 use crate::dataset::{Dataset, distinct, labels};
 use crate::error::IdentifyError;
+use crate::law::thrust::COEFFICIENTS;
 use crate::law::{CoefficientSpec, ForceLaw};
 use crate::regression::settings::{Settings, Weight};
+
+/// Dead bands that the iteration of a thruster may start at, up to this part of the largest command.
+const DEAD_BANDS: u32 = 64;
+const DEAD_BAND_TO: f64 = 0.9;
 
 /// Logarithms of the loads, for the error model "every point has the same relative error".
 pub(crate) fn logarithms(
@@ -233,7 +238,39 @@ pub(crate) fn start(law: &ForceLaw, data: &Dataset, measured: &[f64], p: usize) 
         beta[0] = if count > 0.0 { (my - n * mx).exp() } else { 1.0 };
         beta[1] = n;
     }
+    if let crate::law::Kind::Thruster { command, parts, .. } = &law.kind
+        && let Some(x) = data.values(command)
+    {
+        for (r, load) in measured.chunks(data.rows.max(1)).enumerate() {
+            let start = thruster_start(x, load);
+            for (j, [_, which]) in parts.iter().enumerate().filter(|(_, [of, _])| *of == r) {
+                beta[j] = start[*which];
+            }
+        }
+    }
     beta
+}
+
+/// In each direction the dead band of a grid whose parabola leaves least of a load, with it; the inflow is left to the iteration.
+fn thruster_start(command: &[f64], load: &[f64]) -> [f64; COEFFICIENTS] {
+    let mut out = [0.0; COEFFICIENTS];
+    for (side, sign) in [1.0, -1.0].into_iter().enumerate() {
+        let rows = || command.iter().zip(load).filter(|(x, _)| **x * sign > 0.0);
+        let largest = rows().fold(0.0_f64, |most, (x, _)| most.max(x.abs()));
+        let mut least = f64::INFINITY;
+        for step in 0..DEAD_BANDS {
+            let band = DEAD_BAND_TO * largest * f64::from(step) / f64::from(DEAD_BANDS);
+            let square = |x: &f64| sign * (x.abs() - band).max(0.0).powi(2);
+            let along: f64 = rows().map(|(x, load)| square(x) * load).sum();
+            let size: f64 = rows().map(|(x, _)| square(x).powi(2)).sum();
+            let slope = if size > 0.0 { along / size } else { 0.0 };
+            let left: f64 = rows().map(|(x, load)| (load - slope * square(x)).powi(2)).sum();
+            if left < least {
+                (least, out[side], out[3 + side]) = (left, slope, band);
+            }
+        }
+    }
+    out
 }
 
 /// The next coefficients.

@@ -11,7 +11,7 @@ use crate::result::SourceResult;
 use crate::seam::{Choice, Reduced};
 use crate::source::handed::{TABLE, no_budget, of_table};
 use crate::source::models::check_budget;
-use crate::{columns, diagnosis, lint, validity, zero};
+use crate::{columns, diagnosis, lint, named, validity, zero};
 
 /// What is asked of observations.
 #[derive(Debug, Clone)]
@@ -54,6 +54,7 @@ pub(crate) fn reduced(
     findings.extend(no_budget(campaign, source, &shared_errors).filter(|_| !has_budget));
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));
+    findings.extend(named::findings(&laws, &data));
     let beside_zero = if method == TABLE { zero::laws(source, &data) } else { Vec::new() };
     let out = of_table(campaign, source, method, data, laws);
     Ok(Reduced { beside_zero, n_read, scatter, choice, errors: shared_errors, validity, findings, files, ..out })

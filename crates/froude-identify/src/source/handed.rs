@@ -3,7 +3,7 @@
 use froude_fit::FEWEST_CLUSTERS;
 use froude_fit::serial::{RowErrors, RowWindow};
 use froude_records::campaign::{Campaign, Source, SourceKind};
-use froude_records::estimate::ReferencePoint;
+use froude_records::estimate::{Measured, ReferencePoint};
 use froude_records::finding::{Finding, Severity};
 
 use crate::dataset::Dataset;
@@ -24,10 +24,14 @@ pub(crate) fn of_table(
     data: Dataset,
     laws: Vec<ForceLaw>,
 ) -> Reduced {
+    let length = campaign.body.as_ref().and_then(|body| body.reference_length_m);
+    let length = length.filter(|_| laws.iter().any(|law| law.named.is_some()));
     let mut out = Reduced::new(&source.name, source.kind, method, data, laws);
     // Nobody but the campaign knows the point that moments are about.
     let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
     out.stated.point = ReferencePoint::stated(words);
+    // Primes refer to it.
+    out.stated.refers_to.extend(length.map(|length| ("length".to_owned(), Measured::of(length, "m"))));
     Reduced { budget: source.uncertainty.clone(), campaign: campaign.key.clone(), ..out }
 }
 

@@ -11,7 +11,9 @@ use indexmap::IndexMap;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
+use crate::law::terms::{LAWS, NamedLaw, THRUSTER};
 use crate::lint::motion::moving;
+use crate::named;
 use crate::source::constants::{constants, with_undeclared};
 use crate::validity::{AT_REST, off_axis};
 
@@ -34,13 +36,17 @@ pub fn asked_models(campaign: &Campaign, source: &Source) -> Result<Vec<String>,
     } else {
         (&source.models, &source.model_places)
     };
+    let built_in = || PLAIN_MODELS.into_iter().chain(LAWS.iter().map(|law| law.name));
     let is_known =
-        |name: &str| DragModel::from_name(name).is_some() || PLAIN_MODELS.contains(&name) || user.contains(&name);
+        |name: &str| DragModel::from_name(name).is_some() || built_in().any(|own| own == name) || user.contains(&name);
     if let Some((i, unknown)) = named.iter().enumerate().find(|(_, name)| !is_known(name)) {
-        let known = DragModel::ALL.iter().map(|m| m.name()).chain(PLAIN_MODELS).chain(user.iter().copied());
+        let known = DragModel::ALL.iter().map(|m| m.name()).chain(built_in()).chain(user.iter().copied());
         let advice = meant(unknown, known).unwrap_or_else(|| {
             let own = if user.is_empty() { "none here".to_owned() } else { user.join(", ") };
-            format!("built in are f1 to f6, {}; [[identify.model]] adds its own: {own}", PLAIN_MODELS.join(", "))
+            format!(
+                "built in are f1 to f6, {}; [[identify.model]] adds its own: {own}",
+                built_in().collect::<Vec<_>>().join(", ")
+            )
         });
         let place = places.get(i).map_or_else(String::new, |place| format!("{place}: "));
         return Err(IdentifyError::Refused(format!("{place}model {unknown:?} is not known; {advice}")));
@@ -99,8 +105,12 @@ pub fn check_budget(source: &Source, data: &Dataset) -> Result<(), IdentifyError
 pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<ForceLaw>, IdentifyError> {
     let identify = &campaign.identify;
     let nobody_asked = source.models.is_empty() && identify.models.is_empty();
+    let mut asked = asked_models(campaign, source)?;
+    if nobody_asked && identify.user_models.is_empty() && named::is_thruster(data) {
+        asked = vec![THRUSTER.to_owned()];
+    }
     let mut out = Vec::new();
-    for name in &asked_models(campaign, source)? {
+    for name in &asked {
         if let Some(model) = DragModel::from_name(name) {
             moving_axes(data, source)?;
             out.push(ForceLaw::drag(model, body(campaign, data, name)?, CrossTerm::AsPrinted));
@@ -108,6 +118,8 @@ pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<
             let known = constants(campaign, data)?;
             let law = ForceLaw::with_constants(name, &user.formulas, data, &known);
             out.push(law.map_err(|error| with_undeclared(error, &user.formulas, &known, data))?);
+        } else if let Some(named) = NamedLaw::of_name(name) {
+            out.push(named.law(data, &constants(campaign, data)?)?);
         } else {
             match name.as_str() {
                 "quadratic" => out.push(polynomial(name, data, source, false)?),
@@ -152,7 +164,8 @@ pub(crate) fn moves(data: &Dataset, channel: &str) -> bool {
 
 /// Loads of the table with the velocity along or about the same axis, where there is motion.
 pub(crate) fn axes(data: &Dataset) -> Vec<(&'static str, &'static str)> {
-    PAIRS.into_iter().filter(|(load, motion)| data.channels.contains_key(*load) && moves(data, motion)).collect()
+    let is_water = |load: &str| data.channels.contains_key(load) && data.is_of_water(load);
+    PAIRS.into_iter().filter(|(load, motion)| is_water(load) && moves(data, motion)).collect()
 }
 
 /// The same; at least one.
@@ -178,7 +191,14 @@ pub(crate) fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> Ident
     let loads = data.loads();
     let has_motion =
         ["speed", "v_x", "v_y", "v_z", "w_x", "w_y", "w_z"].iter().any(|name| data.channels.contains_key(*name));
-    let lacks = if loads.is_empty() {
+    let own = loads.iter().find(|load| !data.is_of_water(load));
+    let own = own.copied().or_else(|| ["thrust", "torque"].into_iter().find(|load| data.values(load).is_some()));
+    let lacks = if let Some(load) = own.filter(|_| loads.iter().all(|load| !data.is_of_water(load))) {
+        format!(
+            "an actuator exerts {load}, and the built-in laws are of the water: write a law of your own ([[identify.model]], {load} = \"…\"), or \
+             models = [\"{THRUSTER}\"] where the table has the command, in V or rpm"
+        )
+    } else if loads.is_empty() {
         let servo = if data.channels.contains_key("time") {
             ". A sidecar that names time, position and command makes it the log of a servo"
         } else {

@@ -8,5 +8,6 @@ mod drift;
 mod form_factor;
 mod idle;
 mod in_time;
+mod named_laws;
 mod physics;
 mod seam;

@@ -232,7 +232,8 @@ fn a_force_along_the_motion_counts_the_rows_that_are_large_enough_to_tell() {
     assert_eq!(
         finding(&result, "force-along-motion").unwrap(),
         "f_x points along v_x in 10 of the 10 rows large enough to tell (12 in all): a drag must oppose the motion; if the \
-         sensor is mounted the other way round, write sign = -1 for its column, or remove it if it is there"
+         sensor is mounted the other way round, write sign = -1 for its column, or remove it if it is there; if an actuator \
+         exerts it, call the column thrust or write actuator = [\"f_x\"] in [[source]]"
     );
 }
 

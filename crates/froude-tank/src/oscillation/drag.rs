@@ -46,7 +46,7 @@ impl Drag {
             Kind::Formulas(formulas) => {
                 formulas[response].coefficients.iter().filter_map(|(name, _)| law.position(name)).collect()
             }
-            Kind::PowerLaw { .. } => {
+            Kind::PowerLaw { .. } | Kind::Thruster { .. } => {
                 return refuse(
                     "is not linear in its coefficients, and this method fits such laws only; use linear_quadratic",
                 );
