@@ -23,6 +23,7 @@
 //! | [`ellipsoid`]       | added mass of an ellipsoid with any three semi-axes          | Lamb 1932, Carlson 1995        |
 //! | [`strip`]           | 6×6 of a slender body from its elliptic sections             | Newman 1977                    |
 //! | [`swing`]           | a body swung about a pivot in a stream                       | USR eq. 5, 19                  |
+//! | [`drag_curves`]     | C_D of sphere, cylinder, plate and spheroid over Re          | Brown & Lawler, Cheng, Hoerner |
 //! | [`tabulated`]       | circular cylinders as printed                                | DNV-RP-C205                    |
 //! | [`sloshing`]        | first modes of a tank                                        | Faltinsen & Timokha 2009       |
 //! | [`thruster`]        | thrust and torque over a command, with a dead band           | Fossen 2011                    |
@@ -38,6 +39,7 @@
 
 pub mod dissipation;
 pub mod drag;
+pub mod drag_curves;
 pub mod ellipsoid;
 pub mod fluid;
 pub mod geometry;

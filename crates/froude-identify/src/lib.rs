@@ -21,6 +21,7 @@ pub mod data_files;
 pub mod dataset;
 pub mod diagnosis;
 pub mod dissipation;
+pub mod drag_coefficient;
 pub mod eiv;
 pub mod envelope;
 mod error;

@@ -166,10 +166,11 @@ fn by_law(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyErro
         for row in 0..data.rows {
             let place = response * data.rows + row;
             let scatter = stated.map(|stated| stated[row]).or_else(|| sigma(forces[place])).filter(|s| *s > 0.0);
-            let parts = slopes.as_ref().map(|slopes| slopes.parts(place));
+            let line = slopes.as_ref().map(|slopes| slopes.line(place)).unwrap_or_default();
+            let parts = slopes.as_ref().map(|slopes| slopes.parts(&line));
             let u_law = parts.as_ref().map(|parts| combined(parts).0);
             // One cluster decides: as for a coefficient, there is no quantile.
-            let has_quantile = slopes.as_ref().is_none_or(|slopes| !slopes.moves_with(place, &refused));
+            let has_quantile = slopes.as_ref().is_none_or(|slopes| !slopes.moves_with(&line, &refused));
             let measured = measured.get(row).copied().filter(|v| v.is_finite());
             let outside = outside(estimate, data, row);
             let own = (scatter.unwrap_or(0.0), if stated.is_some() { f64::INFINITY } else { of_sigma });
@@ -206,6 +207,38 @@ fn by_law(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyErro
     Ok(Predicted { laws: vec![id.clone()], left_out: Vec::new(), id, law: estimate.law.name.clone(), rows, joint })
 }
 
+/// A load of a record's law in rows of a data set, each less that in the first row, with standard uncertainty and degrees of freedom where the record states a covariance. A law that has no value
+/// in the first row, as a power law at rest, is zero there.
+///
+/// # Errors
+///
+/// As [`predict`]; a load that the law does not give.
+pub(crate) fn above_first(
+    estimate: &Estimate,
+    data: &Dataset,
+    load: &str,
+) -> Result<Vec<(f64, Option<(f64, f64)>)>, IdentifyError> {
+    let data = &with_loads(estimate, data);
+    let law = ForceLaw::of_estimate(estimate, data)?;
+    let no_value = |name: &str| IdentifyError::Refused(format!("estimate {}: {name} has no value", estimate.id));
+    let values = law.values_of(estimate).map_err(no_value)?;
+    let response = law.responses.iter().position(|own| own == load).ok_or_else(|| no_value(load))?;
+    let forces = law.predict(data, &values)?;
+    let slopes = Slopes::of(estimate, &law, &law.regressors(data, &values)?);
+    let refused = estimate.without_interval();
+    let known = |x: f64| if x.is_finite() { x } else { 0.0 };
+    let first = response * data.rows;
+    let of = |place: usize| {
+        let uncertainty = slopes.as_ref().and_then(|slopes| {
+            let at_rest = slopes.line(first).into_iter().map(known);
+            let x: Vec<f64> = slopes.line(place).iter().zip(at_rest).map(|(x, rest)| x - rest).collect();
+            (!slopes.moves_with(&x, &refused)).then(|| combined(&slopes.parts(&x)))
+        });
+        (forces[place] - known(forces[first]), uncertainty)
+    };
+    Ok((first..first + data.rows).map(of).collect())
+}
+
 /// The data with a channel for each load of the law: formulas need its unit, and what was not measured is no number.
 fn with_loads(estimate: &Estimate, data: &Dataset) -> Dataset {
     let mut data = data.clone();
@@ -233,7 +266,7 @@ fn outside(estimate: &Estimate, data: &Dataset, row: usize) -> Vec<String> {
 }
 
 /// Standard uncertainty of a sum of independent parts, and its degrees of freedom by Welch and Satterthwaite.
-fn combined(parts: &[(f64, f64)]) -> (f64, f64) {
+pub(crate) fn combined(parts: &[(f64, f64)]) -> (f64, f64) {
     let square: f64 = parts.iter().map(|(u, _)| u * u).sum();
     let fourth: f64 = parts.iter().map(|(u, dof)| u.powi(4) / dof).sum();
     (square.sqrt(), if fourth > 0.0 { square * square / fourth } else { f64::INFINITY })
@@ -258,18 +291,22 @@ impl<'a> Slopes<'a> {
         Some(Self { estimate, x, covariance, names: stated.names.clone() })
     }
 
+    /// The derivatives of a force.
+    fn line(&self, row: usize) -> Vec<f64> {
+        (0..self.x.ncols()).map(|j| self.x[(row, j)]).collect()
+    }
+
     /// Whether a force goes with one of some coefficients.
-    fn moves_with(&self, row: usize, some: &[&str]) -> bool {
-        self.names.iter().enumerate().any(|(j, name)| self.x[(row, j)] != 0.0 && some.contains(&name.as_str()))
+    fn moves_with(&self, x: &[f64], some: &[&str]) -> bool {
+        self.names.iter().zip(x).any(|(name, x)| *x != 0.0 && some.contains(&name.as_str()))
     }
 
     /// Standard uncertainty of a force by its scatter and by each declared error, with their degrees of freedom.
-    fn parts(&self, row: usize) -> Vec<(f64, f64)> {
-        let x: Vec<f64> = (0..self.x.ncols()).map(|j| self.x[(row, j)]).collect();
+    fn parts(&self, x: &[f64]) -> Vec<(f64, f64)> {
         let own = self.estimate.type_a.as_ref().map(|own| {
-            let along = |line: &Vec<f64>| line.iter().zip(&x).map(|(c, x)| c * x).sum::<f64>();
-            let square: f64 = own.matrix.iter().zip(&x).map(|(line, x)| x * along(line)).sum();
-            let moves = own.dof.iter().zip(&x).filter(|(_, x)| **x != 0.0);
+            let along = |line: &Vec<f64>| line.iter().zip(x).map(|(c, x)| c * x).sum::<f64>();
+            let square: f64 = own.matrix.iter().zip(x).map(|(line, x)| x * along(line)).sum();
+            let moves = own.dof.iter().zip(x).filter(|(_, x)| **x != 0.0);
             // The least certain of the coefficients that the force goes with.
             let dof = moves.filter_map(|(dof, _)| *dof).fold(f64::INFINITY, f64::min);
             (square.max(0.0).sqrt(), dof)
@@ -277,7 +314,7 @@ impl<'a> Slopes<'a> {
         let declared = self.estimate.errors.values().map(|error| {
             let q = error.covariance.len();
             let moved: Vec<f64> = (0..q)
-                .map(|k| error.sensitivity.iter().zip(&x).map(|(s, x)| s.get(k).copied().unwrap_or(0.0) * x).sum())
+                .map(|k| error.sensitivity.iter().zip(x).map(|(s, x)| s.get(k).copied().unwrap_or(0.0) * x).sum())
                 .collect();
             (error.between(&moved, &moved).max(0.0).sqrt(), error.dof.unwrap_or(f64::INFINITY))
         });

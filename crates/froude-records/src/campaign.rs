@@ -9,6 +9,7 @@
 use std::path::{Path, PathBuf};
 
 use froude_hydro::Link;
+use froude_hydro::drag_curves::Shape;
 use indexmap::IndexMap;
 
 use crate::document::Document;
@@ -55,6 +56,8 @@ pub struct Campaign {
 pub struct Fluid {
     /// Density.
     pub density_kg_m3: Option<f64>,
+    /// Its standard uncertainty; 0 where it counts as exact.
+    pub density_standard_kg_m3: f64,
     /// Kinematic viscosity.
     pub kinematic_viscosity_m2_s: Option<f64>,
     /// Temperature.
@@ -78,6 +81,10 @@ pub struct BodySpec {
     pub reference_length_m: Option<f64>,
     /// Area for drag coefficients and blockage.
     pub reference_area_m2: Option<f64>,
+    /// Its standard uncertainty; 0 where it counts as exact.
+    pub reference_area_standard_m2: f64,
+    /// The simple shape that it is, whose published drag stands beside its own.
+    pub shape: Option<Shape>,
     /// The axis that lies along the travel of a carriage.
     pub travel: Option<BodyAxis>,
     /// Displaced volume.

@@ -1,8 +1,10 @@
 //! The campaign's TOML, section by section. Names and defaults are the contract of the book's conventions page.
 
 use std::collections::BTreeSet;
+use std::f64::consts::FRAC_PI_4;
 use std::path::Path;
 
+use froude_hydro::drag_curves::Shape;
 use indexmap::IndexMap;
 
 use crate::body::link;
@@ -27,12 +29,16 @@ use crate::nearest::nearest;
 use crate::plausible;
 use crate::prior_record;
 use crate::read;
+use crate::run::Declared;
 use crate::section::{Section, Value, found};
 use crate::section_values::{Asks, MOST_RUNS, OF_RUNS, at_most, configurations, plan_of, product};
 use crate::units::{Dimension, Quantity, Unit};
 
 /// Where the numbers of a source can lie.
 pub const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
+
+/// Two areas of a sphere that differ by more are of two spheres.
+const SAME_AREA: f64 = 0.05;
 
 /// The largest campaign that is read.
 const LARGEST_BYTES: u64 = 4 << 20;
@@ -87,8 +93,10 @@ pub fn parse_campaign(path: &Path, text: &str) -> Result<Campaign, RecordError> 
 
 fn fluid(s: &Section<'_>) -> Result<Fluid, RecordError> {
     let values = Values::read(s, FLUID)?;
+    let density = values.constant("density");
     let out = Fluid {
-        density_kg_m3: values.number("density"),
+        density_kg_m3: density.map(|declared| declared.value),
+        density_standard_kg_m3: density.map_or(0.0, |declared| declared.standard_uncertainty),
         kinematic_viscosity_m2_s: values.number("kinematic_viscosity"),
         temperature_degc: values.number("temperature").map(|kelvin| kelvin - 273.15),
         salinity_g_kg: values.number("salinity").map(|fraction| fraction * 1e3),
@@ -110,18 +118,41 @@ fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
             volumes.insert(configuration.to_owned(), volume);
         }
     }
+    let length_m = values.number("reference_length");
+    let shape = values.word("shape", &Shape::ALL);
+    let area = area(&values, shape, length_m)?;
     Ok(BodySpec {
         reference_point: values.text("reference_point").map(str::to_owned),
         link: link(s)?,
         head_side_area_m2: values.number("head_side_area"),
         tail_side_area_m2: values.number("tail_side_area"),
-        reference_length_m: values.number("reference_length"),
-        reference_area_m2: values.number("reference_area"),
+        reference_length_m: length_m,
+        reference_area_m2: area.map(|declared| declared.value),
+        reference_area_standard_m2: area.map_or(0.0, |declared| declared.standard_uncertainty),
+        shape,
         travel: values.word("travel", &BodyAxis::ALL),
         volume_m3: values.number("volume"),
         volumes,
         link_volume_m3: values.number("link_volume"),
     })
+}
+
+/// The area of C_D: as declared, or of a sphere by its diameter.
+fn area(values: &Values, shape: Option<Shape>, length_m: Option<f64>) -> Result<Option<Declared>, RecordError> {
+    let stated = values.constant("reference_area");
+    let (Some(Shape::Sphere), Some(diameter_m)) = (shape, length_m) else { return Ok(stated) };
+    let of_sphere = FRAC_PI_4 * diameter_m * diameter_m;
+    match stated {
+        Some(area) if (area.value / of_sphere - 1.0).abs() > SAME_AREA => {
+            let problem = format!(
+                "is {} m^2, and a sphere of the diameter reference_length = {diameter_m} m has {of_sphere:.4e} m^2: correct one of them, or leave reference_area out",
+                area.value
+            );
+            Err(values.wrong("reference_area", problem))
+        }
+        Some(area) => Ok(Some(area)),
+        None => Ok(Some(Declared::exact(of_sphere))),
+    }
 }
 
 fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {

@@ -1,5 +1,7 @@
 //! The keys of a campaign, but for what belongs to its methods and to the carriage.
 
+use froude_hydro::drag_curves::Shape;
+
 use crate::body::LINK;
 use crate::body_axis::BodyAxis;
 use crate::campaign::{Shared, SourceKind};
@@ -31,9 +33,9 @@ pub const ROOT: &[Key] = &[
 pub const FLUID: &[Key] = &[
     optional(
         "density",
-        Kind::Quantity(Dimension::DENSITY),
+        Kind::Constant(Dimension::DENSITY),
         "the table's column, else from temperature and salinity",
-        "density; for air, declare the viscosity too",
+        "density, exact or as { value, standard }; for air, declare the viscosity too",
     )
     .within(Range::Positive),
     optional(
@@ -59,7 +61,19 @@ pub const BODY: &[Key] = &[
     positive("head_side_area", Dimension::AREA, "A_yH, for the laws f1 to f6"),
     positive("tail_side_area", Dimension::AREA, "A_yT, for the laws f1 to f6"),
     positive("reference_length", Dimension::LENGTH, "length of Reynolds, Froude and KC numbers"),
-    positive("reference_area", Dimension::AREA, "frontal area, for blockage and the check of C_D"),
+    optional(
+        "reference_area",
+        Kind::Constant(Dimension::AREA),
+        "that of a sphere follows from `reference_length`",
+        "frontal area, of C_D and blockage, exact or as { value, standard }",
+    )
+    .within(Range::Positive),
+    optional(
+        "shape",
+        Kind::Word(&Shape::NAMES),
+        "no published drag is drawn",
+        "`sphere`, `cylinder` or `plate` across the stream, `spheroid` along it: C_D is drawn beside its published drag, Re being on `reference_length`",
+    ),
     optional(
         "travel",
         Kind::Word(&BodyAxis::NAMES),

@@ -564,6 +564,17 @@ impl Estimate {
         self.refers_to.get("density")
     }
 
+    /// The derived numbers in the form of coefficients, for tables of both.
+    #[must_use]
+    pub fn derived_coefficients(&self) -> IndexMap<String, Coefficient> {
+        let of = |number: &Derived| Coefficient {
+            standard_uncertainty: number.standard_uncertainty,
+            interval_95: number.interval_95,
+            ..Coefficient::of(number.value, &number.unit, Status::Free)
+        };
+        self.derived.iter().map(|(name, number)| (name.clone(), of(number))).collect()
+    }
+
     /// Kind of the covariance, or that there is none.
     #[must_use]
     pub fn covariance_kind(&self) -> &str {

@@ -154,7 +154,7 @@ impl From<MethodError> for Error {
         let readers: Vec<&str> = METHODS.iter().filter(|m| m.runs() == of).flat_map(|m| m.names()).copied().collect();
         let instead = match readers.as_slice() {
             [] => "no method of this version reads those".to_owned(),
-            _ if is_imported => format!("a [[source]] with method = {readers:?} reads releases"),
+            _ if is_imported => "a [[source]] with method = \"decay\" reads releases".to_owned(),
             _ => format!("a [[source]] with method = {readers:?} reads those"),
         };
         Self::OfAnotherMethod { folder, found, wanted, instead }

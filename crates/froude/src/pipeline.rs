@@ -246,7 +246,8 @@ impl Gathered {
             return Ok(());
         }
         for (method, asked) in method::of(source, job.method)? {
-            let found = method.identify(campaign, source, &asked, &step)?;
+            let mut found = method.identify(campaign, source, &asked, &step)?;
+            found.blocks.extend(froude_identify::drag_coefficient::state(&mut found.results, campaign));
             let fitted = campaign.sources.iter().filter(|source| !source.is_validation).count();
             self.add(method, found, files, source, fitted == 1)?;
         }

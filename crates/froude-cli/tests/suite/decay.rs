@@ -172,8 +172,8 @@ fn what_is_missing_is_named() {
     // Logs of another method than the one asked for: what they are, and what reads them.
     let said = told("\"mcd\"", "");
     let instead = "3 logs there are of other programs (a table of steady runs is what froude identify FILE reads, a servo's log what froude carriage \
-                   identify FILE does), and runs of the method tow are read here: a [[source]] with method = [\"decay_envelope\", \
-                   \"decay_output_error\"] reads releases; else name a folder with runs of tow";
+                   identify FILE does), and runs of the method tow are read here: a [[source]] with method = \"decay\" reads \
+                   releases; else name a folder with runs of tow";
     assert!(said.contains(&format!("{}: {instead}", runs.display())), "{said}");
     let tows = Path::new(env!("CARGO_MANIFEST_DIR")).join("../froude-records/tests/golden/runs-1");
     let away = folder.path().join("away");
@@ -335,4 +335,136 @@ fn a_log_in_milliseconds_among_others_is_refused() {
     std::fs::write(&path, in_ms.collect::<String>()).unwrap();
     let said = refusal(&["identify", text(&campaign(folder.path(), "\"decay_envelope\"", DECLARED))]);
     assert!(said.contains("release-2.csv") && said.contains("the step of its times is 20.0 s"), "{said}");
+}
+
+/// A roll decay of which the angle alone is known: θ̈ = −ω²θ − 2ζω θ̇ − 0.15 θ̇|θ̇|, ω 2.244 rad/s, ζ 0.0539.
+const ROLL: DecayRig = DecayRig {
+    inertia: 1.0,
+    added: 0.0,
+    linear: 2.0 * 0.0539 * 2.244,
+    quadratic: 0.15,
+    stiffness: 2.244 * 2.244,
+    is_pendulum: false,
+    coulomb: 0.0,
+    rest: 0.0,
+};
+
+/// Three releases in degrees, and a campaign that states the axis alone; every `lost`-th sample is not there, and stamps have so many places.
+fn filmed(folder: &Path, rate_hz: f64, lost: usize, places: usize, per_rad: f64) -> std::path::PathBuf {
+    let runs = folder.join("releases");
+    std::fs::create_dir_all(&runs).unwrap();
+    let noise = 0.02_f64.to_radians();
+    let sensor = DecaySensor { rate_hz, noise, correlation_s: None, step: 0.0, drift_per_s: 0.0 };
+    for (seed, deg) in [12.0_f64, 10.0, 8.0].into_iter().enumerate() {
+        let release = Release { displacement: deg.to_radians(), held_s: 0.5, free_s: 30.0 };
+        let trace = ROLL.release(sensor, release, 7 + seed as u64);
+        let mut out = "time [s],angle [deg]\n".to_owned();
+        for (i, (t, q)) in trace.time_s.iter().zip(&trace.position).enumerate() {
+            if lost == 0 || i * 7 % lost != 3 {
+                writeln!(out, "{t:.places$},{:.5}", q * per_rad).unwrap();
+            }
+        }
+        std::fs::write(runs.join(format!("run_{seed}.csv")), out).unwrap();
+    }
+    campaign(folder, "\"decay\"", "[source.decay]\naxis = \"roll\"\n")
+}
+
+/// That the interval of a coefficient or of a derived number holds the truth, and is at most `widest` of it on each side.
+fn holds(estimate: &Value, name: &str, truth: f64, widest: f64) {
+    let found = [&estimate["coefficients"][name], &estimate["derived"][name]].into_iter().find(|x| !x.is_null());
+    let found = found.unwrap_or_else(|| panic!("no {name} in {estimate}"));
+    let [low, high] = [0, 1].map(|k| number(&found["interval_95"][k]));
+    assert!(low <= truth && truth <= high, "{name}: [{low}, {high}] without {truth}");
+    assert!(high - low < 2.0 * widest * truth, "{name}: [{low}, {high}] is wide");
+}
+
+/// Angle and time are enough: no inertia is asked for, and lost frames are reported.
+#[test]
+fn an_angle_alone_gives_period_damping_ratio_and_decrement() {
+    for (rate_hz, lost, places) in [(20.0, 0, 3), (30.0, 33, 2)] {
+        let folder = tempfile::tempdir().unwrap();
+        let campaign = filmed(folder.path(), rate_hz, lost, places, 1.0_f64.to_degrees());
+        let out = json(&["identify", text(&campaign), "--json"]);
+        let estimate = &out["estimates"][1];
+        assert!(estimate["recommended"] == true && estimate["method"]["name"] == "decay_output_error", "{estimate}");
+        holds(estimate, "omega_rx", 2.244, 0.01);
+        holds(estimate, "d_rx_I", 2.0 * 0.0539 * 2.244, 0.05);
+        holds(estimate, "d_rx_II", 0.15, 0.4);
+        holds(estimate, "zeta", 0.0539, 0.05);
+        holds(estimate, "damped_period", 2.804, 0.01);
+        holds(estimate, "log_decrement", 0.339_2, 0.05);
+        assert!(estimate["coefficients"].get("A44").is_none() && estimate["errors"].as_object().is_none_or(serde_json::Map::is_empty));
+        assert_eq!(lost > 0, !findings_of(&out, "uneven-time-steps").is_empty(), "{}", out["findings"]);
+        let result = std::fs::read_to_string(folder.path().join("decay-results/result.json")).unwrap();
+        assert!(result.contains("\"decrements\""), "{result}");
+        let shown = String::from_utf8(bench::froude(&["identify", text(&campaign)]).stdout).unwrap();
+        assert!(shown.contains("zeta") && shown.contains("damped_period") && shown.contains("derived"), "{shown}");
+    }
+}
+
+/// A wrong unit changes no frequency and no damping ratio: nothing else can find it, so that unusual sizes are asked about.
+#[test]
+fn releases_in_another_unit_than_their_header_says_are_asked_about() {
+    let folder = tempfile::tempdir().unwrap();
+    // Radians under `[deg]`.
+    let campaign_of_roll = filmed(folder.path(), 20.0, 0, 3, 1.0);
+    let said = refusal(&["identify", text(&campaign_of_roll)]);
+    assert!(
+        said.contains("run_0.csv: the largest swing is 0.18")
+            && said.contains("in rad the same numbers are 10.")
+            && said.contains("write amplitude = \"0.18")
+            && said.contains("`angle [rad]` or `angle [deg]` as its header"),
+        "{said}"
+    );
+    let stated = |line: &str| campaign(folder.path(), "\"decay\"", &format!("[source.decay]\naxis = \"roll\"\n{line}\n"));
+    json(&["identify", text(&stated("amplitude = \"0.2 deg\"")), "--json"]);
+    let said = refusal(&["identify", text(&stated("amplitude = \"10 deg\""))]);
+    assert!(said.contains("amplitude = \"10.000 deg\" is declared, and the logs swing by 0.18"), "{said}");
+    let said = refusal(&["identify", text(&stated("amplitude = \"0.2 deg\"\nperiod = \"28 s\""))]);
+    assert!(said.contains("period = \"28.0000 s\" is declared, and the logs swing with 2.80"), "{said}");
+    // Degrees under `[rad]`, millimetres under `[m]`, numbers of frames under `[s]`.
+    let runs = folder.path().join("releases");
+    let rewritten = |head: [&str; 2], per: [f64; 2]| {
+        std::fs::remove_dir_all(&runs).unwrap();
+        let head = format!("{},{}", head[0], head[1]);
+        filmed(folder.path(), 20.0, 0, 3, 1.0_f64.to_degrees());
+        for path in std::fs::read_dir(&runs).unwrap().map(|entry| entry.unwrap().path()) {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let mut out = format!("{head}\n");
+            for line in text.lines().skip(1) {
+                let (t, q) = line.split_once(',').unwrap();
+                let [t, q] = [t.parse::<f64>().unwrap() * per[0], q.parse::<f64>().unwrap() * per[1]];
+                writeln!(out, "{t:.3},{q}").unwrap();
+            }
+            std::fs::write(&path, out).unwrap();
+        }
+    };
+    let heave = "[source.decay]\naxis = \"heave\"\n";
+    rewritten(["time [s]", "angle [rad]"], [1.0, 1.0]);
+    let said = refusal(&["identify", text(&stated(""))]);
+    assert!(said.contains("in deg the same numbers are 10."), "{said}");
+    rewritten(["time [s]", "position [m]"], [1.0, 10.0]);
+    let said = refusal(&["identify", text(&campaign(folder.path(), "\"decay\"", heave))]);
+    assert!(said.contains("times that of gravity") && said.contains("`position [mm]` as its header"), "{said}");
+    rewritten(["time [s]", "position [m]"], [20.0, 0.01]);
+    let said = refusal(&["identify", text(&campaign(folder.path(), "\"decay\"", heave))]);
+    assert!(said.contains("as numbers of frames are") && said.contains("write period = \"56."), "{said}");
+}
+
+/// What only one of inertia and stiffness gives, and what needs both.
+#[test]
+fn inertia_and_stiffness_are_asked_for_where_a_result_needs_them() {
+    let folder = tempfile::tempdir().unwrap();
+    filmed(folder.path(), 20.0, 0, 3, 1.0_f64.to_degrees());
+    let of = |lines: &str| campaign(folder.path(), "\"decay\"", &format!("[source.decay]\naxis = \"roll\"\n{lines}\n"));
+    let both = json(&["identify", text(&of("stiffness = { value = \"5.035536 N m\", standard = \"1 %\" }")), "--json"]);
+    let estimate = &both["estimates"][1];
+    holds(estimate, "moving_inertia", 1.0, 0.03);
+    holds(estimate, "D_rx_I", 2.0 * 0.0539 * 2.244, 0.1);
+    let said = refusal(&["identify", text(&of("inertia = \"0.4 kg m^2\""))]);
+    assert!(said.contains("has no `stiffness`") && said.contains("or leave out inertia, for results per moving inertia"), "{said}");
+    let said = refusal(&["identify", text(&of("buoyancy = \"3 N\"\nradius = \"0.4 m\""))]);
+    assert!(said.contains("has no `inertia`"), "{said}");
+    let said = refusal(&["plan", text(&of("[[source.plan]]\nangle = \"10 deg\""))]);
+    assert!(said.contains("a planned release needs the body and its springs"), "{said}");
 }

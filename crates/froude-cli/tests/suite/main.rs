@@ -15,6 +15,7 @@ mod clocks;
 mod convert;
 mod decay;
 mod documents;
+mod drag_coefficient;
 mod excited;
 #[cfg(target_os = "linux")]
 mod files;

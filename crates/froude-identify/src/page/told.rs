@@ -47,7 +47,8 @@ fn choice(source: &SourceResult) -> Vec<String> {
 }
 
 fn coefficients(estimate: &Estimate) -> Block {
-    let rows: Vec<(&String, &Coefficient)> = estimate.coefficients.iter().collect();
+    let derived = estimate.derived_coefficients();
+    let rows: Vec<(&String, &Coefficient)> = estimate.coefficients.iter().chain(&derived).collect();
     let t = TableBuilder::new("", "", &rows);
     let has_others = estimate.not_contradicted.len() > 1;
     let interval = if has_others { "95 % interval if law is true" } else { "95 % interval" };
@@ -62,7 +63,9 @@ fn coefficients(estimate: &Estimate) -> Block {
     }
     columns.push(t.number("", "type A", |(_, c)| c.type_a).significant(2));
     columns.push(t.number("", "type B", |(_, c)| c.type_b).significant(2));
-    columns.push(t.text("", "status", |(_, c)| status(c.status).to_owned()));
+    let is_derived = |name: &String| derived.contains_key(name) && !estimate.coefficients.contains_key(name);
+    let in_words = |name: &String, c: &Coefficient| if is_derived(name) { "derived" } else { status(c.status) };
+    columns.push(t.text("", "status", |(name, c)| in_words(name, c).to_owned()));
     t.build(columns).into()
 }
 

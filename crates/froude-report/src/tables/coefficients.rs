@@ -6,6 +6,7 @@ use froude_records::block::TableBuilder;
 use froude_records::estimate::words;
 use froude_records::estimate::{Coefficient, Estimate, Status};
 use froude_records::number::{self, MISSING};
+use indexmap::IndexMap;
 use maud::{Markup, html};
 
 use super::counter::Tables;
@@ -141,7 +142,14 @@ impl Tables {
 
     fn coefficient_group(&mut self, source: &str, group: &[&Estimate]) -> Markup {
         let mut marks = Marks::default();
-        let names = distinct(group.iter().flat_map(|e| e.coefficients.keys()));
+        // Derived numbers follow the coefficients that they are made of.
+        let all: Vec<IndexMap<String, Coefficient>> = group
+            .iter()
+            .map(|e| e.derived_coefficients().into_iter().chain(e.coefficients.clone()).collect())
+            .collect();
+        let names = distinct(
+            group.iter().flat_map(|e| e.coefficients.keys()).chain(group.iter().flat_map(|e| e.derived.keys())),
+        );
         let recommended = group.iter().any(|e| e.recommended);
         let class = |e: &Estimate| if e.recommended { "best" } else { "" };
         let has_interval = group.iter().any(|e| e.coefficients.values().any(|c| c.interval_95.is_some()));
@@ -160,13 +168,14 @@ impl Tables {
         let rows: Vec<Markup> = names
             .iter()
             .map(|name| {
-                let mut units: Vec<&str> = group.iter().filter_map(|e| e.coefficients.get(*name)).map(|c| c.unit.as_str()).collect();
+                let mut units: Vec<&str> = all.iter().filter_map(|own| own.get(*name)).map(|c| c.unit.as_str()).collect();
                 units.dedup();
                 let is_one_unit = units.len() < 2;
                 let cells: Vec<Markup> = group
                     .iter()
-                    .map(|e| {
-                        let Some(c) = e.coefficients.get(*name) else { return html! { td class=(class(e)) {} } };
+                    .zip(&all)
+                    .map(|(e, own)| {
+                        let Some(c) = own.get(*name) else { return html! { td class=(class(e)) {} } };
                         let inner = cell(c, e, &mut marks);
                         html! { td class=(class(e)) { (inner) @if !is_one_unit { (html_unit(&c.unit)) } } }
                     })
@@ -174,7 +183,7 @@ impl Tables {
                 html! {
                     tr {
                         th scope="row" {
-                            @match group.iter().find_map(|e| e.coefficients.get(*name)) {
+                            @match all.iter().find_map(|own| own.get(*name)) {
                                 Some(c) => (named(name, c)),
                                 None => (html_symbol(name)),
                             }

@@ -62,6 +62,30 @@ impl Motion {
         if self.is_rotation() { ["kg*m^2", "N*m*s", "N*m*s^2"] } else { ["kg", "kg/s", "kg/m"] }
     }
 
+    /// Names of the undamped frequency, and of linear and quadratic damping per moving inertia: `omega_x`, `d_x_I`, `d_x_II`.
+    #[must_use]
+    pub fn rate_names(self) -> [String; 3] {
+        let letters = self.letters();
+        [format!("omega_{letters}"), format!("d_{letters}_I"), format!("d_{letters}_II")]
+    }
+
+    /// Units of the three.
+    #[must_use]
+    pub const fn rate_units(self) -> [&'static str; 3] {
+        ["rad/s", "1/s", if self.is_rotation() { "1" } else { "1/m" }]
+    }
+
+    /// Names that a log gives the position, beside `angle` or `position`.
+    #[must_use]
+    pub const fn column_names(self) -> &'static [&'static str] {
+        match self {
+            Self::Roll => &["angle", "roll", "phi", "heel"],
+            Self::Pitch => &["angle", "pitch", "theta", "trim"],
+            Self::Yaw => &["angle", "yaw", "psi", "heading"],
+            _ => &["y/position", "position"],
+        }
+    }
+
     /// Unit of the position.
     #[must_use]
     pub const fn position_unit(self) -> &'static str {

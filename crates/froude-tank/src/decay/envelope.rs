@@ -51,13 +51,15 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
         let [first, end] = swings.samples;
         let own: Vec<f64> = rows.iter().filter(|r| r.run == run.id).map(|r| r.residual).collect();
         let [period_s, added] = swings.period_and_added(setup);
+        let rest = pooled.rest(swings, setup.restoring.stiffness());
         RunSummary {
             id: run.id.to_owned(),
             samples: end - first,
             half_cycles: swings.half_cycles(),
             from_s: run.time_s[first],
             start: [swings.passages[0].position, swings.passages[0].slope],
-            rest: pooled.rest(swings, setup.restoring.stiffness()),
+            rest,
+            turns: swings.from_rest(rest),
             period_s,
             added,
             noise: swings.noise,

@@ -106,6 +106,7 @@ fn stands_out(fit: &DecayFit) -> Vec<Finding> {
     };
     let moving = |i: usize| fit.inertia.value + fit.runs[i].added;
     let (unit, of_mass) = (fit.axis.position_unit(), fit.axis.decay_units()[0]);
+    let usual_s = |i: usize| middle(&mut others(i, &|j| fit.runs[j].period_s));
     let of = |i: usize| {
         let (mut sizes, mut masses) = (others(i, &reach), others(i, &moving));
         let (usual, usual_mass) = (middle(&mut sizes), middle(&mut masses));
@@ -122,6 +123,15 @@ fn stands_out(fit: &DecayFit) -> Vec<Finding> {
         let allowed = (MASS_OFF * usual_mass).max(MASS_SPREADS * middle(&mut off));
         let found = moving(i);
         ((found - usual_mass).abs() > allowed).then(|| {
+            if fit.restoring.is_per_inertia() {
+                let text = format!(
+                    "run {:?} has a period of {:.4} s where the others have {:.4} s: check the body, the springs and the unit of time",
+                    fit.runs[i].id,
+                    fit.runs[i].period_s,
+                    usual_s(i)
+                );
+                return warning("release-stands-out", text);
+            }
             let text = format!(
                 "run {:?} has a period of {:.4} s, which gives a moving inertia of {found:.4} {of_mass}; the other runs give {usual_mass:.4} {of_mass} ({:+.1} %): check the body, the springs \
                  and the unit of time; the table of releases lists {} from each release alone",
@@ -168,14 +178,15 @@ fn coulomb(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) -> Option<
     } else {
         (classical, classical_dof)
     };
-    let unit = if setup.axis.is_rotation() { "N m" } else { "N" };
+    let unit = setup.force_unit();
+    let per = if setup.restoring.is_per_inertia() { " per moving inertia" } else { "" };
     let mean = fit.rows.iter().map(|r| r.force_amplitude).sum::<f64>() / fit.rows.len() as f64;
     (force > WORTH * mean && standard > 0.0 && force > coverage_factor(SEEN, dof) * standard).then(|| {
         warning(
             "coulomb-friction",
             format!(
                 "each half cycle loses the same whatever its amplitude, as {force:.3e} ± {standard:.1e} {unit} of Coulomb \
-                 friction would: the damping includes friction of the rig; free the guides or hang the body"
+                 friction{per} would: the damping includes friction of the rig; free the guides or hang the body"
             ),
         )
     })

@@ -97,12 +97,15 @@ pub struct RunSummary {
     pub rest: f64,
     /// Mean period of its swings, s.
     pub period_s: f64,
-    /// Added mass by this release alone: fitted by the output error where each has its own, else by its period, C (T/2π)² − M, kg or kg m².
+    /// Added mass by this release alone: fitted by the output error where each has its own, else by its period, C (T/2π)² − M, kg or kg m²; undamped frequency, rad/s, per moving
+    /// inertia.
     pub added: f64,
     /// Standard deviation of a sample's noise, from fourth differences, m or rad.
     pub noise: f64,
     /// Root mean square of what the fit leaves: of positions (output error) or of force amplitudes (envelope).
     pub residual_rms: f64,
+    /// Its turning points: time, s, and distance from rest, m or rad.
+    pub turns: Vec<[f64; 2]>,
     /// Positions of the samples used, as the fit has them; none by the envelope, which fits no motion.
     pub fitted: Vec<f64>,
 }
@@ -138,9 +141,9 @@ pub struct DecayFit {
     pub method: Method,
     /// Which axis.
     pub axis: Motion,
-    /// Names of the three, e.g. `A33`, `D_z_I`, `D_z_II`.
+    /// Names of the three, e.g. `A33`, `D_z_I`, `D_z_II`; `omega_z`, `d_z_I`, `d_z_II` per moving inertia.
     pub names: [String; 3],
-    /// Added mass, linear and quadratic damping; units in [`Motion::decay_units`].
+    /// Added mass, linear and quadratic damping; undamped frequency and both dampings per moving inertia. Units in [`Self::units`].
     pub values: [f64; 3],
     /// Type A; `None` where nothing shows it.
     pub type_a: Option<Scatter>,
@@ -172,10 +175,17 @@ pub(super) fn declared(setup: &DecaySetup, [added, linear, quadratic]: [f64; 3])
         sensitivity: by.to_vec(),
     };
     let restoring = setup.restoring.parts().into_iter().map(|(name, u, by)| of(name, u, by_stiffness.map(|d| d * by)));
-    std::iter::once(of("dry inertia", setup.inertia, [-1.0, 0.0, 0.0])).chain(restoring).collect()
+    let inertia = (!setup.restoring.is_per_inertia()).then(|| of("dry inertia", setup.inertia, [-1.0, 0.0, 0.0]));
+    inertia.into_iter().chain(restoring).collect()
 }
 
 impl DecayFit {
+    /// Units of the coefficients.
+    #[must_use]
+    pub const fn units(&self) -> [&'static str; 3] {
+        if self.restoring.is_per_inertia() { self.axis.rate_units() } else { self.axis.decay_units() }
+    }
+
     /// The budget: scatter (where known), dry inertia, and what is declared of the restoring force.
     #[must_use]
     pub fn budget(&self) -> Vec<Part> {

@@ -12,6 +12,7 @@ use froude_records::units::{Dimension, Unit};
 use indexmap::IndexMap;
 
 use super::fit::{DecayFit, HalfCycle};
+use super::run::Restoring;
 use crate::findings::warning;
 use crate::joint::DeclaredError;
 use crate::joint::record::{about, by_part, errors, type_a};
@@ -23,16 +24,21 @@ use froude_identify::regression::{ModelFit, Settings, regress};
 use froude_identify::selection::{Recommendation, leave_one_out};
 use froude_identify::source::SourceResult;
 
+/// The law of a record per moving inertia: q̈ = −ω² (q − q₀) − d_I q̇ − d_II q̇|q̇|, which gives no load.
+const RATES: &str = "linear_quadratic_per_inertia";
+
 /// The law of the record.
 pub(super) const LAW: &str = "added_mass_linear_quadratic";
 
 /// Load and velocity along or about the axis, by its letters.
 fn channels(fit: &DecayFit) -> (String, String) {
     let letters = fit.axis.letters();
-    match letters.strip_prefix('r') {
+    let (load, velocity) = match letters.strip_prefix('r') {
         Some(axis) => (format!("m_{axis}"), format!("w_{axis}")),
         None => (format!("f_{letters}"), format!("v_{letters}")),
-    }
+    };
+    // Per moving inertia the load is an acceleration.
+    if fit.restoring.is_per_inertia() { (format!("{velocity}_dot"), velocity) } else { (load, velocity) }
 }
 
 /// Everything about a source that one method found.
@@ -74,7 +80,13 @@ pub fn result(
 /// What nobody declared an uncertainty of counts as exact.
 fn as_exact(fit: &DecayFit) -> Vec<Finding> {
     let restoring = fit.restoring.parts().into_iter().map(|(name, number, _)| (name, number));
-    let exact = [("inertia", fit.inertia)].into_iter().chain(restoring).filter(|(_, number)| number.standard == 0.0);
+    let inertia = (!fit.restoring.is_per_inertia()).then_some(("inertia", fit.inertia));
+    let stiffness = match fit.restoring {
+        Restoring::PerInertia { stiffness, .. } => stiffness.map(|c| ("stiffness", c)),
+        _ => None,
+    };
+    let all = inertia.into_iter().chain(restoring).chain(stiffness);
+    let exact = all.filter(|(_, number)| number.standard == 0.0);
     let said = |(name, _)| {
         let text = format!(
             "the {name} is declared without a standard uncertainty and counts as exact: write {name} = {{ value = …, standard = \"0.5 %\" }}"
@@ -98,11 +110,12 @@ fn rows(fit: &DecayFit) -> Dataset {
         ..Dataset::default()
     };
     let is_rotation = fit.axis.is_rotation();
-    let [position, speed, force] = if is_rotation {
-        [Dimension::ANGLE, Dimension::ANGULAR_SPEED, Dimension::MOMENT]
+    let [position, speed, force, acceleration] = if is_rotation {
+        [Dimension::ANGLE, Dimension::ANGULAR_SPEED, Dimension::MOMENT, Dimension::ANGULAR_ACCELERATION]
     } else {
-        [Dimension::LENGTH, Dimension::SPEED, Dimension::FORCE]
+        [Dimension::LENGTH, Dimension::SPEED, Dimension::FORCE, Dimension::ACCELERATION]
     };
+    let force = if fit.restoring.is_per_inertia() { acceleration } else { force };
     data.put("amplitude", of(&|row| row.amplitude), position);
     data.put(&velocity, of(&|row| row.speed_amplitude), speed);
     data.put(&load, of(&|row| -row.force_amplitude), force);
@@ -123,7 +136,7 @@ fn drawn(fit: &DecayFit, data: &Dataset, source: &Source) -> Result<ModelFit, Id
 fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: bool) -> Estimate {
     let (load, velocity) = channels(fit);
     let [added, linear, quadratic] = &fit.names;
-    let units = fit.axis.decay_units();
+    let units = fit.units();
     let coefficients = (0..3).map(|j| {
         let found = coefficient(Some(fit.values[j]), units[j], Status::Free, fit.combined(j));
         (fit.names[j].clone(), found)
@@ -144,8 +157,13 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
         ("inertia", Measured::of(fit.inertia.value, inertia)),
         ("stiffness", Measured::of(fit.restoring.stiffness(), stiffness)),
     ];
-    let inputs = [(velocity.clone(), speed), (format!("{velocity}_dot"), acceleration)];
-    let law = Law::of(LAW, inputs).giving(&load, force, Some(formula));
+    let law = if fit.restoring.is_per_inertia() {
+        Law::of(RATES, [(velocity, speed)])
+    } else {
+        let inputs = [(velocity.clone(), speed), (format!("{velocity}_dot"), acceleration)];
+        let law = Law::of(LAW, inputs).giving(&load, force, Some(formula));
+        Law { constants: constants.into_iter().map(|(name, of)| (name.to_owned(), of)).collect(), ..law }
+    };
     let names = fit.names.each_ref().map(String::as_str);
     let type_a = fit.type_a.as_ref().map(|a| type_a(&names, &budget, a.kind.clone()));
     let declared: Vec<DeclaredError> = fit.errors.iter().filter(|error| error.standard > 0.0).cloned().collect();
@@ -158,7 +176,8 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
         } else {
             about.point.clone()
         },
-        law: Law { constants: constants.into_iter().map(|(name, of)| (name.to_owned(), of)).collect(), ..law },
+        law,
+        derived: fit.derived(),
         n_observations: fit.rows.len(),
         clusters: Some(Clusters::of("run", fit.runs.len())),
         dof: type_a.iter().map(|a| (load.clone(), a.dof[1])).collect(),

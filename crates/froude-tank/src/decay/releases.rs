@@ -94,6 +94,8 @@ fn drawn(
     let stiffness = match setup.restoring {
         Restoring::Spring(c) => draws.about(c),
         Restoring::Buoyancy { force_n, radius_m } => draws.about(force_n) * draws.about(radius_m),
+        // Nothing is planned of these.
+        Restoring::PerInertia { omega2, .. } => omega2,
     };
     let of = reading(sensors, names(setup.axis), 0.0, 1.0);
     let one = |(i, point): (usize, &Point)| {

@@ -64,11 +64,13 @@ pub struct DecayWindow {
     /// That standard deviation, m or rad, where it is declared; from the fourth differences of each log where not, which noise that is correlated from
     /// sample to sample escapes.
     pub noise: Option<f64>,
+    /// Largest swing and period as somebody saw them, m or rad, and s: a factor of two decides whether the units of the logs are right.
+    pub seen: [Option<f64>; 2],
 }
 
 impl Default for DecayWindow {
     fn default() -> Self {
-        Self { free_from_s: None, skip_half_cycles: 0, smallest_over_noise: 8.0, noise: None }
+        Self { free_from_s: None, skip_half_cycles: 0, smallest_over_noise: 8.0, noise: None, seen: [None; 2] }
     }
 }
 
@@ -84,16 +86,30 @@ pub enum Restoring {
         /// r, m.
         radius_m: Uncertain,
     },
+    /// ω² (q − q₀) of a moving inertia of one: neither is declared, and coefficients are per moving inertia.
+    PerInertia {
+        /// ω², 1/s².
+        omega2: f64,
+        /// C, N/m or N m/rad, where it is declared: the moving inertia is C/ω².
+        stiffness: Option<Uncertain>,
+    },
 }
 
 impl Restoring {
-    /// C: its slope at rest, N/m or N m/rad.
+    /// C: its slope at rest, N/m or N m/rad; 1/s² per moving inertia.
     #[must_use]
     pub fn stiffness(self) -> f64 {
         match self {
             Self::Spring(c) => c.value,
             Self::Buoyancy { force_n, radius_m } => force_n.value * radius_m.value,
+            Self::PerInertia { omega2, .. } => omega2,
         }
+    }
+
+    /// Whether coefficients are per moving inertia.
+    #[must_use]
+    pub const fn is_per_inertia(self) -> bool {
+        matches!(self, Self::PerInertia { .. })
     }
 
     /// Whether it is a sine.
@@ -110,6 +126,7 @@ impl Restoring {
             Self::Buoyancy { force_n, radius_m } => {
                 vec![("buoyancy", force_n, radius_m.value), ("radius", radius_m, force_n.value)]
             }
+            Self::PerInertia { .. } => Vec::new(),
         }
     }
 
@@ -140,6 +157,24 @@ impl DecaySetup {
         Self { axis, inertia, restoring: Restoring::Spring(stiffness), window: DecayWindow::default() }
     }
 
+    /// Of a body of which the log alone is known, with its stiffness where that is declared: coefficients are per moving inertia.
+    #[must_use]
+    pub fn per_inertia(axis: Motion, stiffness: Option<Uncertain>) -> Self {
+        let restoring = Restoring::PerInertia { omega2: 1.0, stiffness };
+        Self { restoring, ..Self::new(axis, Uncertain::new(0.0, 0.0), Uncertain::new(1.0, 0.0)) }
+    }
+
+    /// Unit of a force on the body; per moving inertia that of an acceleration.
+    #[must_use]
+    pub const fn force_unit(&self) -> &'static str {
+        match (self.restoring.is_per_inertia(), self.axis.is_rotation()) {
+            (false, false) => "N",
+            (false, true) => "N m",
+            (true, false) => "m/s^2",
+            (true, true) => "rad/s^2",
+        }
+    }
+
     /// The distance from rest that a peak exceeds, m or rad, where a sample has a noise.
     pub(super) fn level(&self, noise: f64) -> f64 {
         self.window.smallest_over_noise * noise
@@ -157,6 +192,10 @@ impl DecaySetup {
             if !(u.value > 0.0 && u.value.is_finite()) {
                 return refuse(what, u.value, "above zero and finite");
             }
+        }
+        let stiffness = self.restoring.stiffness();
+        if !(stiffness > 0.0 && stiffness.is_finite()) {
+            return refuse("what drives the body back", stiffness, "above zero and finite");
         }
         for u in parts.iter().map(|(_, u, _)| *u).chain([m]) {
             if !(u.standard >= 0.0 && u.standard.is_finite()) {

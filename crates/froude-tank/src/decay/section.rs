@@ -2,7 +2,7 @@
 //!
 //! ```toml
 //! [source.decay]
-//! axis      = "roll"
+//! axis      = "roll"                                           # enough for frequency, damping ratio and damping per inertia
 //! inertia   = { value = "0.3693 kg m^2", standard = "0.5 %" }  # dry, of all that moves, about the axis
 //! buoyancy  = { value = "3.0 N", standard = "0.02 N" }         # less weight, at `radius` from the axis: the moment is B r sin φ
 //! radius    = { value = "476 mm", standard = "1 mm" }          # or: stiffness = { value = "12 N m", standard = "0.3 %" }
@@ -48,17 +48,17 @@ pub const KEYS: &[Key] = &[
         "state its motion: axis = \"heave\", for example",
         "the motion: `surge`, `sway`, `heave`, `roll`, `pitch` or `yaw`",
     ),
-    required(
+    optional(
         "inertia",
         Kind::By("axis", &by_axis(Kind::Constant(Dimension::MASS), Kind::Constant(INERTIA))),
-        "write inertia = { value = \"12 kg\", standard = \"0.5 %\" }; of a rotation \"0.4 kg m^2\", for example",
+        "no added mass; damping is per moving inertia",
         "mass, or moment of inertia about the axis, of all that moves, dry; `standard` is a standard uncertainty, here and below, and a number without it counts as exact",
     )
     .within(Range::Positive),
     optional(
         "stiffness",
         Kind::By("axis", &by_axis(Kind::Constant(STIFFNESS), Kind::Constant(Dimension::MOMENT))),
-        "required without `buoyancy`",
+        "required with `inertia` and without `buoyancy`",
         "all that restores the position: springs, and ρ g times the waterplane area",
     )
     .within(Range::Positive),
@@ -85,6 +85,20 @@ pub const KEYS: &[Key] = &[
         "when the body is free, on the clock of the logs",
     ),
     usual("skip_half_cycles", Kind::Whole, "0", "left out after that"),
+    optional(
+        "amplitude",
+        Kind::By("axis", &by_axis(Kind::Quantity(Dimension::LENGTH), Kind::Quantity(Dimension::ANGLE))),
+        "asked for where it is unusual",
+        "largest swing as seen, within a factor of two: a check of the unit of the position",
+    )
+    .within(Range::Positive),
+    optional(
+        "period",
+        Kind::Quantity(Dimension::TIME),
+        "asked for where the times are whole numbers",
+        "period as seen, within a factor of two: a check of the unit of the time",
+    )
+    .within(Range::Positive),
 ];
 
 const fn lasting(name: &'static str, default: &'static str, doc: &'static str) -> Key {
@@ -110,16 +124,25 @@ pub const PLAN: &[Key] = &[
 pub(super) fn decay(s: &Section<'_>) -> Result<DecaySetup, RecordError> {
     let values = Values::read(s, KEYS)?;
     let axis = values.need("axis", values.word("axis", &Motion::ALL))?;
+    let constant = |key: &str| values.constant(key).map(uncertain);
+    let setup = match constant("inertia") {
+        Some(inertia) => DecaySetup { restoring: restoring(&values, axis)?, ..DecaySetup::new(axis, inertia, inertia) },
+        None if constant("buoyancy").or(constant("radius")).is_some() => {
+            let write = "write inertia = { value = \"0.4 kg m^2\", standard = \"0.5 %\" }, dry, about the axis; or leave out buoyancy and radius, for results of small \
+                         swings per moving inertia";
+            return Err(values.missing("inertia", write));
+        }
+        None => DecaySetup::per_inertia(axis, constant("stiffness")),
+    };
     Ok(DecaySetup {
-        axis,
-        inertia: values.need("inertia", values.constant("inertia")).map(uncertain)?,
-        restoring: restoring(&values, axis)?,
         window: DecayWindow {
             noise: values.number("noise"),
             free_from_s: values.number("free_from"),
             skip_half_cycles: values.need("skip_half_cycles", values.count("skip_half_cycles"))?,
+            seen: ["amplitude", "period"].map(|key| values.number(key)),
             ..DecayWindow::default()
         },
+        ..setup
     })
 }
 
@@ -133,8 +156,14 @@ fn restoring(values: &Values, axis: Motion) -> Result<Restoring, RecordError> {
             let problem = "is that of a buoyancy, which is not declared: write buoyancy = \"3.0 N\"";
             return Err(values.wrong("radius", problem));
         }
-        let of_rotation = ["12 N m", "; or, of a buoyancy that acts at a radius, buoyancy and radius"];
-        let [like, instead] = if axis.is_rotation() { of_rotation } else { ["180 N/m", ""] };
+        let [like, instead] = if axis.is_rotation() {
+            [
+                "12 N m",
+                "; or, of a buoyancy that acts at a radius, buoyancy and radius; or leave out inertia, for results per moving inertia",
+            ]
+        } else {
+            ["180 N/m", "; or leave out inertia, for results per moving inertia"]
+        };
         let stiffness = constant("stiffness").ok_or_else(|| missing("stiffness", like, instead))?;
         return Ok(Restoring::Spring(stiffness));
     };

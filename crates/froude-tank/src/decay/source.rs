@@ -1,9 +1,10 @@
 //! Free decay as a source of a campaign: a folder of logs, one release each.
 
 use crate::decay::axis::Motion;
+use crate::decay::rates::fitted_by;
 use crate::decay::section;
 use crate::decay::{DecayFit, DecayRun, DecaySetup, Method as DecayMethod, RunSummary};
-use crate::decay::{envelope, output_error, plan, record, releases};
+use crate::decay::{plan, plausible, record, releases};
 use crate::declared::{check, needed};
 use crate::drawn::{self, first_of, over_time, series};
 use crate::error::undeclared;
@@ -22,19 +23,18 @@ use froude_records::run::{Channel, Role};
 use froude_records::units::Dimension;
 
 /// Their names.
-const NAMES: [&str; 2] = [DecayMethod::ALL[0].name(), DecayMethod::ALL[1].name()];
+const NAMES: [&str; 3] = [DecayMethod::ALL[0].name(), DecayMethod::ALL[1].name(), BOTH];
+
+/// Both, where the releases have enough peaks.
+const BOTH: &str = "decay";
 
 /// Role of a log with a release.
 const RELEASE: &str = "release";
 
-fn named(name: &str) -> Option<DecayMethod> {
-    DecayMethod::ALL.into_iter().find(|method| method.name() == name)
-}
-
 /// Envelope and output error of releases.
 pub const DECAY: TankMethod = TankMethod {
     names: &NAMES,
-    words: &[DecayMethod::ALL[0].words(), DecayMethod::ALL[1].words()],
+    words: &[DecayMethod::ALL[0].words(), DecayMethod::ALL[1].words(), "both readings of a free decay"],
     needs: &[Need::of(&[RELEASE], &[])],
     runs: FREE_DECAY,
     takes: &["plan", "decay"],
@@ -67,16 +67,13 @@ fn identify(
     let Logs { runs: logs, files, mut findings } = logs::read(source.input.path(), &wanted, progress)?;
     logs::one_body(&logs)?;
     let runs = logs.iter().map(|log| release(log, setup.axis)).collect::<Result<Vec<_>, _>>()?;
-    let methods: Vec<DecayMethod> = asked.iter().filter_map(|name| named(name)).collect();
+    let is_asked = |method: &DecayMethod| asked.iter().any(|name| [BOTH, method.name()].contains(name));
+    let methods: Vec<DecayMethod> = DecayMethod::ALL.into_iter().filter(is_asked).collect();
     let (mut out, mut fits) = (Vec::new(), Vec::new());
     let (mut fitted, mut failed) = (Vec::new(), Vec::new());
     for &method in &methods {
         progress(method.words());
-        let fit: Result<DecayFit, _> = match method {
-            DecayMethod::Envelope => envelope(&runs, &setup),
-            DecayMethod::OutputError => output_error(&runs, &setup),
-        };
-        match fit {
+        match fitted_by(method, &runs, &setup) {
             Ok(fit) => fitted.push((method, fit)),
             Err(why) => failed.push((method, why)),
         }
@@ -91,6 +88,9 @@ fn identify(
         let text = format!("{} could not be fitted and is left out: {why}", method.name());
         warning("not-fitted", text)
     }));
+    if let Some((_, fit)) = fitted.first() {
+        plausible::check(&logs, &runs, &setup, fit.range.period_s)?;
+    }
     let best = fitted.iter().map(|(method, _)| *method).max_by_key(|method| *method == DecayMethod::OutputError);
     for (method, fit) in fitted {
         let mut result = record::result(&fit, campaign, source, best == Some(method))?;
@@ -101,7 +101,7 @@ fn identify(
     }
     findings.extend(fits.first().zip(fits.get(1)).and_then(|(a, b)| a.disagrees_with(b)));
     // What both state about a release is reported once.
-    let blocks = fits.last().map(|fit| section(fit, &runs)).into_iter().collect();
+    let blocks = fits.last().map(|fit| section(fit, &runs)).into_iter().chain(fits.last().map(decrements)).collect();
     Ok(Found { results: out, blocks, findings: logs::distinct(findings), ..Found::default() })
 }
 
@@ -111,7 +111,7 @@ fn identify(
 ///
 /// It is not there, or cannot be read.
 pub fn declared(source: &Source) -> Result<DecaySetup, MethodError> {
-    let what = "nothing is declared of the body that oscillates: write [source.decay] with axis = \"heave\", inertia and stiffness, each as { value = \
+    let what = "nothing is declared of the body that oscillates: write [source.decay] with axis = \"heave\"; for its added mass inertia and stiffness too, each as { value = \
                 \"12 kg\", standard = \"0.5 %\" }";
     needed(source, "decay", section::decay, what)
 }
@@ -119,6 +119,10 @@ pub fn declared(source: &Source) -> Result<DecaySetup, MethodError> {
 /// The same with its plan, which has displacements of its axis.
 fn planning(source: &Source) -> Result<(DecaySetup, Vec<Point>), MethodError> {
     let (setup, points) = (declared(source)?, section::plan(source)?);
+    if setup.restoring.is_per_inertia() {
+        let what = "a planned release needs the body and its springs: write inertia and stiffness in [source.decay], each as { value = \"12 kg\", standard = \"0.5 %\" }";
+        return Err(undeclared(&source.place, what));
+    }
     let is_angle = setup.axis.is_rotation();
     let [needed, found] = if is_angle { ["angle", "displacement"] } else { ["displacement", "angle"] };
     if points.iter().any(|point| !point.conditions.contains_key(needed)) {
@@ -134,8 +138,19 @@ const DRAWN: usize = 6;
 /// The releases on the page: what was used of each, and the motion with that of the fit.
 fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> Section {
     let is_angle = fit.axis.is_rotation();
-    let (unit, added) = if is_angle { ("rad", "kg_m2") } else { ("m", "kg") };
+    let unit = fit.axis.position_unit();
+    let added = match (fit.restoring.is_per_inertia(), is_angle) {
+        (true, _) => "omega_rad_s",
+        (false, true) => "added_kg_m2",
+        (false, false) => "added_kg",
+    };
     let left = match (fit.method, is_angle) {
+        (DecayMethod::Envelope, true) if fit.restoring.is_per_inertia() => {
+            ["residual_rms_rad_s2", "residual of the force per inertia, rms [rad/s^2]"]
+        }
+        (DecayMethod::Envelope, false) if fit.restoring.is_per_inertia() => {
+            ["residual_rms_m_s2", "residual of the force per inertia, rms [m/s^2]"]
+        }
         (DecayMethod::OutputError, true) => ["residual_rms_rad", "residual of the position, rms [rad]"],
         (DecayMethod::OutputError, false) => ["residual_rms_m", "residual of the position, rms [m]"],
         (DecayMethod::Envelope, true) => ["residual_rms_n_m", "residual of the force, rms [N m]"],
@@ -150,12 +165,7 @@ fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> Section {
         t.text("release", "release", |r| r.id.clone()),
         t.count("half_cycles", "half cycles", |r| r.half_cycles),
         t.number("period_s", "period [s]", |r| r.period_s).significant(5),
-        t.number(
-            &format!("added_{added}"),
-            &format!("{} by it alone [{}]", fit.names[0], fit.axis.decay_units()[0]),
-            |r| r.added,
-        )
-        .significant(4),
+        t.number(added, &format!("{} by it alone [{}]", fit.names[0], fit.units()[0]), |r| r.added).significant(4),
         t.number("from_s", "fit starts at [s]", |r| r.from_s).plain(4),
         of("position", "initial position", |r| r.start[0]).plain(4),
         t.number(&format!("speed_{unit}_s"), &format!("initial speed [{unit}/s]"), |r| r.start[1]).plain(3),
@@ -179,20 +189,45 @@ fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> Section {
     Section::new("Releases", std::iter::once(table.into()).chain(chart))
 }
 
+/// The logarithmic decrement of each swing, beside that of the law at its amplitude.
+fn decrements(fit: &DecayFit) -> Section {
+    let swings = fit.swings();
+    let [key, head] =
+        if fit.axis.is_rotation() { ["from_rad", "amplitude [deg]"] } else { ["from_m", "amplitude [m]"] };
+    let caption = format!(
+        "Logarithmic decrement of each swing: of the peak that it begins at, over the next one on the same side; and that of the law of {} at that amplitude.",
+        fit.method.name()
+    );
+    let t = TableBuilder::new("decrements", caption, &swings);
+    let table = t.build(vec![
+        t.text("release", "release", |s| s.run.clone()),
+        t.count("swing", "swing", |s| s.number),
+        t.number(key, head, |s| s.amplitude).significant(4),
+        t.number("period_s", "period [s]", |s| s.period_s).significant(4),
+        t.number("decrement", "decrement [1]", |s| s.decrement).significant(4),
+        t.number("law", "of the law [1]", |s| s.law).significant(4),
+        t.interval("interval_95", "95 % interval", |s| s.interval_95),
+    ]);
+    Section::new("Decrement by amplitude", [table.into()])
+}
+
 /// A log as a release: its time and the channel that moves.
 fn release(log: &TankLog, axis: Motion) -> Result<DecayRun<'_>, MethodError> {
-    let (names, unit): (&[&str], Dimension) = if axis.is_rotation() {
-        (&["angle"], Dimension::ANGLE)
-    } else {
-        (&["y/position", "position"], Dimension::LENGTH)
-    };
+    let unit = if axis.is_rotation() { Dimension::ANGLE } else { Dimension::LENGTH };
     let channels = &log.log.channels;
     let is_meant = |c: &&Channel| c.meaning.unit == unit.to_string();
     let alike: Vec<&Channel> = channels.values().filter(is_meant).collect();
-    // Any name will do where only one column can be meant.
+    // Any name will do where only one column can be meant: a pure number may be anything, a length is the position.
     let only = alike.first().copied().filter(|_| alike.len() == 1 && !axis.is_rotation());
-    let found = names.iter().find_map(|name| channels.get(*name).filter(is_meant)).or(only);
-    let Some(position) = found else {
+    let named: Vec<&str> =
+        axis.column_names().iter().copied().filter(|name| channels.get(*name).filter(is_meant).is_some()).collect();
+    if let [first, second, ..] = named[..] {
+        let what = format!(
+            "{first} and {second} can both be the position of a release: leave one out of the log, or name it otherwise in a sidecar, {second} = {{ name = \"other\", unit = \"deg\" }}"
+        );
+        return Err(MethodError::input(&log.log.path, what));
+    }
+    let Some(position) = named.first().and_then(|name| channels.get(*name)).or(only) else {
         let head = if axis.is_rotation() { "angle [deg]" } else { "position [m]" };
         let there: Vec<&str> = channels.keys().map(|name| name.trim_start_matches("y/")).collect();
         let there = if there.is_empty() { "nothing beside the time".to_owned() } else { there.join(", ") };

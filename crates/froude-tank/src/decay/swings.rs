@@ -168,6 +168,12 @@ impl Swings {
         0.5 * self.side_of(k) * (self.turns[k].position - self.turns[k + 1].position)
     }
 
+    /// Time, s, and distance from rest of each turning point.
+    pub fn from_rest(&self, rest: f64) -> Vec<[f64; 2]> {
+        let of = |(k, turn): (usize, &Spot)| [turn.time_s, self.side_of(k) * (turn.position - rest)];
+        self.turns.iter().enumerate().map(of).collect()
+    }
+
     /// Half cycles between peaks.
     pub fn half_cycles(&self) -> usize {
         self.turns.len() - 1

@@ -3,6 +3,7 @@
 
 mod decay;
 mod decay_limits;
+mod decay_rates;
 mod declared;
 mod excited_response;
 mod hanging;

@@ -1,0 +1,311 @@
+//! C_D of every law that gives a force along one axis, wherever area and density are known: as a derived number of its record, and over the Reynolds number beside published curves.
+//!
+//! C_D = −(f(U) − f(0))/(½ρU²A), the load at rest taken off, as it is the zero of a sensor. Its uncertainty is that of the law at that speed, with the area's and the density's own as they are declared:
+//! u²(C_D)/C_D² = u²(f)/f² + u²(ρ)/ρ² + u²(A)/A², degrees of freedom by Welch and Satterthwaite.
+//! Of a law of U² it is one number; of any other law the record has that at the fastest speed observed, and the figure all of them. The interval holds if the law is true.
+//!
+//! | known                                                | from                                                              |
+//! |------------------------------------------------------|-------------------------------------------------------------------|
+//! | A, ρ                                                 | the record, else `reference_area` in `[body]` and `density` in `[fluid]` |
+//! | Re = U L/ν                                           | `reference_length`, and ν of the rows or of `[fluid]`             |
+//! | curves                                               | `shape` in `[body]`; [`froude_hydro::drag_curves`]                |
+//!
+//! Not here: laws that read anything but a motion (links, volts, depths), and the coefficient across the travel of an oblique tow.
+//!
+//! **Source.** JCGM 100:2008 (GUM), 5.1.2 and G.4.
+
+use std::f64::consts::FRAC_PI_4;
+
+use froude_fit::distribution::coverage_factor;
+use froude_hydro::fluid::Water;
+use froude_hydro::similarity;
+use froude_records::block::{Section, TableBuilder};
+use froude_records::campaign::Campaign;
+use froude_records::estimate::{Derived, Estimate, Measured};
+use froude_records::number::plain;
+use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
+use froude_records::units::{Dimension, parse_unit};
+
+use crate::answer::Answer;
+use crate::dataset::Dataset;
+use crate::predict::{above_first, combined};
+use crate::validity;
+
+/// Name in the records.
+const NAME: &str = "C_D";
+/// Speeds of a line, and the slowest of them as part of the fastest.
+const POINTS: usize = 40;
+const SLOWEST: f64 = 0.05;
+/// A law whose C_D differs by less over its speeds has one.
+const ONE_NUMBER: f64 = 1e-9;
+/// How far published curves are drawn beyond the Reynolds numbers of the test.
+const BEYOND: f64 = 3.0;
+/// Two values that are one, but for the text between them.
+const SAME: f64 = 1e-9;
+
+/// What C_D refers to: values, the first two with their standard uncertainties.
+#[derive(Debug, Clone, Copy)]
+struct Reference {
+    area: [f64; 2],
+    density: [f64; 2],
+    length_m: Option<f64>,
+    viscosity_m2_s: Option<f64>,
+}
+
+/// C_D of a law over its speeds, with its 95 % intervals.
+struct Line {
+    name: String,
+    reference: Reference,
+    speed_m_s: Vec<f64>,
+    c_d: Vec<f64>,
+    standard: Vec<Option<f64>>,
+    interval_95: Vec<Option<[f64; 2]>>,
+    is_shown: bool,
+}
+
+/// States C_D in the records of answers, and returns what a page says of it.
+#[must_use]
+pub fn state(answers: &mut [Answer], campaign: &Campaign) -> Option<Section> {
+    let mut lines = Vec::new();
+    let mut points = Vec::new();
+    for answer in answers {
+        let rows = answer.fitted().map(|source| source.data.clone());
+        let name = answer.name().to_owned();
+        let is_one = answer.estimates().len() == 1;
+        let mut is_shown = false;
+        for estimate in answer.estimates_mut() {
+            let Some(line) = line(estimate, &name, rows.as_ref(), campaign) else { continue };
+            let line = Line { is_shown: is_one || estimate.recommended, ..line };
+            put(estimate, &line);
+            is_shown |= line.is_shown;
+            lines.push(line);
+        }
+        points.extend(rows.filter(|_| is_shown).and_then(|rows| observed(&rows, &name, campaign)));
+    }
+    lines.retain(|line| line.is_shown);
+    (!lines.is_empty()).then(|| section(&lines, points, campaign))
+}
+
+impl Reference {
+    fn of(estimate: &Estimate, rows: Option<&Dataset>, campaign: &Campaign) -> Option<Self> {
+        let (body, fluid) = (campaign.body.as_ref(), &campaign.fluid);
+        let stated = |key: &str| estimate.refers_to.get(key).map(|m| m.value);
+        // The uncertainty is that of the campaign's value, and of no other.
+        let with = |value: f64, declared: Option<f64>, standard: f64| {
+            let is_same = declared.is_some_and(|declared| (value / declared - 1.0).abs() < SAME);
+            [value, if is_same { standard } else { 0.0 }]
+        };
+        let declared = body.and_then(|body| body.reference_area_m2);
+        let area = stated("area").or(declared)?;
+        let density = stated("density").or(fluid.density_kg_m3)?;
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let water = || Water::at(fluid.temperature_degc?, fluid.salinity_g_kg.unwrap_or(0.0)).ok();
+        Some(Self {
+            area: with(area, declared, body.map_or(0.0, |body| body.reference_area_standard_m2)),
+            density: with(density, fluid.density_kg_m3, fluid.density_standard_kg_m3),
+            length_m: body.and_then(|body| body.reference_length_m),
+            viscosity_m2_s: rows
+                .and_then(|rows| rows.values("kinematic_viscosity").map(mean))
+                .or(fluid.kinematic_viscosity_m2_s)
+                .or_else(|| water().map(|water| water.kinematic_viscosity_m2_s())),
+        })
+    }
+
+    /// Re at a speed.
+    fn reynolds(&self, speed_m_s: f64) -> Option<f64> {
+        Some(similarity::reynolds(speed_m_s, self.length_m?, self.viscosity_m2_s?)).filter(|re| re.is_finite())
+    }
+}
+
+/// C_D of a law; `None` where it gives none.
+fn line(estimate: &Estimate, name: &str, rows: Option<&Dataset>, campaign: &Campaign) -> Option<Line> {
+    let reference = Reference::of(estimate, rows, campaign)?;
+    let (load, velocity) = axis(estimate)?;
+    let range = estimate.validity.get(velocity).or_else(|| estimate.validity.get("speed"))?;
+    let fastest = range.high.abs().max(range.low.abs());
+    if !(fastest > 0.0 && fastest.is_finite()) {
+        return None;
+    }
+    let slowest = if range.low > 0.0 { range.low.max(SLOWEST * fastest) } else { SLOWEST * fastest };
+    let speed_m_s: Vec<f64> =
+        (0..POINTS).map(|k| slowest + (fastest - slowest) * k as f64 / (POINTS - 1) as f64).collect();
+    let places = places(estimate, velocity, &speed_m_s, &reference)?;
+    let forces = above_first(estimate, &places, load).ok()?;
+    let [[area, of_area], [density, of_density]] = [reference.area, reference.density];
+    let (mut c_d, mut standard, mut interval_95) = (Vec::new(), Vec::new(), Vec::new());
+    for (u, (force, uncertainty)) in speed_m_s.iter().zip(forces.get(1..)?) {
+        let scale = -2.0 / (density * u * u * area);
+        let value = scale * force;
+        let whole = uncertainty.map(|(of_force, dof)| {
+            let exact = |part: f64| ((value * part).abs(), f64::INFINITY);
+            combined(&[((scale * of_force).abs(), dof), exact(of_area / area), exact(of_density / density)])
+        });
+        let half = whole.map(|(u, dof)| coverage_factor(0.95, dof) * u).filter(|half| half.is_finite());
+        c_d.push(value);
+        standard.push(whole.map(|(u, _)| u));
+        interval_95.push(half.map(|half| [value - half, value + half]));
+    }
+    // A law of the angle alone, or of a thruster at rest, gives no drag along the axis.
+    let is_drag = c_d.iter().all(|x| x.is_finite()) && c_d.iter().any(|x| *x != 0.0);
+    is_drag.then(|| Line {
+        name: name.to_owned(),
+        reference,
+        speed_m_s,
+        c_d,
+        standard,
+        interval_95,
+        is_shown: false,
+    })
+}
+
+/// The force that a law gives along one axis, and the velocity there: along x where it gives several.
+fn axis(estimate: &Estimate) -> Option<(&'static str, &'static str)> {
+    const AXES: [(&str, &str); 3] = [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z")];
+    let given: Vec<_> = AXES.into_iter().filter(|(load, _)| estimate.law.outputs.contains_key(*load)).collect();
+    match given[..] {
+        [one] => Some(one),
+        [first, ..] if first.0 == "f_x" => Some(first),
+        _ => None,
+    }
+}
+
+/// Rest, then these speeds along an axis, for everything that the law reads; `None` where it reads what is no motion.
+fn places(estimate: &Estimate, velocity: &str, speed_m_s: &[f64], reference: &Reference) -> Option<Dataset> {
+    let speed: Vec<f64> = std::iter::once(0.0).chain(speed_m_s.iter().copied()).collect();
+    let n = speed.len();
+    if ![velocity, "speed"].iter().any(|name| estimate.law.inputs.contains_key(*name)) {
+        return None;
+    }
+    let mut data = Dataset { rows: n, ..Dataset::default() };
+    for (name, unit) in &estimate.law.inputs {
+        let is_motion = name.starts_with("v_") || name.starts_with("w_");
+        let values = match name.as_str() {
+            name if name == velocity || name == "speed" => speed.clone(),
+            "density" => vec![reference.density[0]; n],
+            "kinematic_viscosity" => vec![reference.viscosity_m2_s?; n],
+            "angle" if velocity == "v_x" => vec![0.0; n],
+            _ if is_motion => vec![0.0; n],
+            _ => return None,
+        };
+        let dimension = parse_unit(unit).map_or(Dimension::ONE, |unit| unit.dimension);
+        data.put(name, values, dimension);
+    }
+    for name in [velocity, "speed"] {
+        if data.values(name).is_none() {
+            data.put(name, speed.clone(), Dimension::SPEED);
+        }
+    }
+    Some(data)
+}
+
+/// The number in the record, with what it refers to.
+fn put(estimate: &mut Estimate, line: &Line) {
+    let Some((load, velocity)) = axis(estimate) else { return };
+    let Some((c_d, fastest)) = line.c_d.last().copied().zip(line.speed_m_s.last().copied()) else { return };
+    let [[area, _], [density, _]] = [line.reference.area, line.reference.density];
+    let is_one_number = line.c_d.iter().all(|x| (x - c_d).abs() <= ONE_NUMBER * c_d.abs());
+    // A law of one coefficient says it shorter.
+    let is_it = |value: f64| (2.0 * value / (density * area) - c_d).abs() <= ONE_NUMBER * c_d.abs();
+    let coefficient = estimate.coefficients.iter().find(|(_, c)| c.unit == "kg/m" && c.value.is_some_and(is_it));
+    let formula = match coefficient.filter(|_| is_one_number) {
+        Some((name, _)) => format!("2*{name}/(density*area)"),
+        None if is_one_number => format!("-2*{load}/(density*area*{velocity}^2)"),
+        None => format!(
+            "-2*({load} - {load} at rest)/(density*area*{velocity}^2) at {velocity} = {} m/s",
+            plain(fastest, 4)
+        ),
+    };
+    let number = Derived {
+        standard_uncertainty: line.standard.last().copied().flatten(),
+        interval_95: line.interval_95.last().copied().flatten(),
+        ..Derived::of(formula, Some(c_d), "1")
+    };
+    estimate.derived.insert(NAME.to_owned(), number);
+    estimate.refers_to.entry("area".to_owned()).or_insert_with(|| Measured::of(area, "m^2"));
+    estimate.refers_to.entry("density".to_owned()).or_insert_with(|| Measured::of(density, "kg/m^3"));
+}
+
+/// C_D of each row, over its Reynolds number, or its speed.
+fn observed(rows: &Dataset, name: &str, campaign: &Campaign) -> Option<(String, Vec<[f64; 2]>, Vec<f64>)> {
+    let c_d = validity::drag_coefficient(rows, campaign)?;
+    let reynolds = validity::per_observation(rows, campaign).into_iter().find(|(name, _)| *name == "Re");
+    let speed = rows.values("speed")?;
+    let of_row = reynolds.map_or_else(|| speed.to_vec(), |(_, re)| re);
+    let all = speed.iter().zip(of_row).zip(c_d).filter(|(_, c_d)| c_d.is_finite());
+    let (x, y) = all.map(|((speed, re), c_d)| ([*speed, re], c_d)).unzip();
+    Some((name.to_owned(), x, y))
+}
+
+/// A table of the numbers, and the figure.
+fn section(lines: &[Line], points: Vec<(String, Vec<[f64; 2]>, Vec<f64>)>, campaign: &Campaign) -> Section {
+    let body = campaign.body.as_ref();
+    let curves = body.and_then(|body| body.shape).map_or(&[][..], |shape| shape.curves());
+    let last = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
+    let re = |line: &Line| line.reference.reynolds(last(&line.speed_m_s));
+    let slenderness = |line: &Line| {
+        // The diameter of a body of revolution is that of its area.
+        line.reference.length_m.map_or(1.0, |length_m| length_m / (line.reference.area[0] / FRAC_PI_4).sqrt())
+    };
+    let published = |line: &Line| re(line).and_then(|re| curves.first()?.at(re, slenderness(line)));
+    let caption = "Drag coefficient of each law at the fastest speed observed; its interval holds if the law is true, and has the declared uncertainty of area and density in it.";
+    let t = TableBuilder::new("drag_coefficient", caption, lines);
+    let mut columns = vec![
+        t.text("source", "source", |line| line.name.clone()),
+        t.number("c_d", "C_D [1]", |line| last(&line.c_d)).significant(4),
+        t.interval("interval_95", "95 % interval", |line| line.interval_95.last().copied().flatten()),
+        t.number("speed_m_s", "at speed [m/s]", |line| last(&line.speed_m_s)).significant(4),
+        t.number("reynolds", "Re [1]", re).significant(3),
+        t.number("area_m2", "area [m^2]", |line| line.reference.area[0]).significant(4),
+        t.number("density_kg_m3", "density [kg/m^3]", |line| line.reference.density[0]).significant(5),
+    ];
+    if let Some(curve) = curves.first() {
+        columns.push(t.number("published", &format!("{} [1]", curve.name), published).significant(3));
+    }
+    let table = t.build(columns);
+    let has_reynolds = lines.iter().all(|line| re(line).is_some());
+    let mut series: Vec<Series> = points
+        .into_iter()
+        .map(|(name, x, y)| {
+            let x = x.iter().map(|at| at[usize::from(has_reynolds)]).collect();
+            Series { name: format!("{name}, measured"), mark: Mark::Points, x, y, ..Series::default() }
+        })
+        .collect();
+    for line in lines {
+        let ends = |k: usize| -> Vec<f64> { line.interval_95.iter().flatten().map(|ends| ends[k]).collect() };
+        let has_band = line.interval_95.iter().all(Option::is_some);
+        series.push(Series {
+            name: line.name.clone(),
+            mark: Mark::Line,
+            x: line
+                .speed_m_s
+                .iter()
+                .map(|u| line.reference.reynolds(*u).filter(|_| has_reynolds).unwrap_or(*u))
+                .collect(),
+            y: line.c_d.clone(),
+            low: if has_band { ends(0) } else { Vec::new() },
+            high: if has_band { ends(1) } else { Vec::new() },
+        });
+    }
+    let span = series.iter().flat_map(|s| s.x.iter().copied().filter(|x| *x > 0.0));
+    let [low, high] = span.fold([f64::INFINITY, 0.0_f64], |[low, high], x| [low.min(x), high.max(x)]);
+    let slender = lines.first().map_or(1.0, slenderness);
+    for curve in curves.iter().filter(|_| has_reynolds) {
+        let ends = [curve.reynolds[0].max(low / BEYOND), curve.reynolds[1].min(high * BEYOND)];
+        let at = |k: usize| ends[0] * (ends[1] / ends[0]).powf(k as f64 / (POINTS - 1) as f64);
+        let drawn = (0..POINTS).map(at).filter_map(|re| Some((re, curve.at(re, slender)?)));
+        let (x, y): (Vec<f64>, Vec<f64>) = drawn.filter(|_| ends[1] > ends[0]).unzip();
+        if !x.is_empty() {
+            series.push(Series { name: curve.name.to_owned(), mark: Mark::Dashed, x, y, ..Series::default() });
+        }
+    }
+    let caption = "Drag coefficient of rows and laws, with the 95 % band of each law; dashed what is published, in the range of its source.";
+    let chart = Chart {
+        name: "drag-coefficient".to_owned(),
+        title: "Drag coefficient".to_owned(),
+        caption: caption.to_owned(),
+        x_label: if has_reynolds { "Re [1]" } else { "speed [m/s]" }.to_owned(),
+        x_scale: if has_reynolds { Scale::Logarithmic } else { Scale::Linear },
+        panels: vec![ChartPanel { y_label: "C_D [1]".to_owned(), series, ..ChartPanel::default() }],
+    };
+    Section::new("Drag coefficient", [table.into(), chart.into()])
+}
