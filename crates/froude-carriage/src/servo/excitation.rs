@@ -24,6 +24,7 @@ use froude_fit::stream::Solution;
 use froude_records::number::significant;
 
 use crate::servo::chain::CORNER_HZ;
+use crate::servo::coordinate::is_inertia;
 
 /// Least force of the inertia over what the model leaves: below, the motion is that of the disturbance.
 const LEAST_FORCE: f64 = 2.0;
@@ -65,11 +66,11 @@ pub(crate) fn excitation(
     let root = (n as f64).sqrt();
     let left = |j: usize| solution.sigma / (solution.standard[j] * root);
     let part = |j: usize| left(j) / columns[j].rms;
-    let inertia = columns.iter().position(|c| c.name == "M");
+    let inertia = columns.iter().position(|c| is_inertia(c.name));
     let force = inertia.map_or(f64::INFINITY, |j| solution.coefficients[j].abs() * left(j) / solution.sigma);
     let is_driven = force >= LEAST_FORCE;
     let is_told = |j: usize| match columns[j].name {
-        "M" => is_driven,
+        name if is_inertia(name) => is_driven,
         name if name.starts_with("F_") => is_driven && part(j) >= LEAST_PART,
         _ => true,
     };
@@ -77,8 +78,9 @@ pub(crate) fn excitation(
     let mut findings = Vec::new();
     if !is_driven {
         findings.push(format!(
-            "M and friction: no interval is given, because the inertia force is {} times the residual force (at least {LEAST_FORCE} times is needed); move with larger accelerations (pulses, \
+            "{} and friction: no interval is given, because the load of the inertia is {} times the residual (at least {LEAST_FORCE} times is needed); move with larger accelerations (pulses, \
              steps, a sine of 1 Hz or more)",
+            inertia.map_or("M", |j| columns[j].name),
             significant(force, 2)
         ));
     }
@@ -94,7 +96,7 @@ pub(crate) fn excitation(
     }
     let by = inertia.map_or_else(Vec::new, |j| by_disturbance(columns, solution, (j, n as f64), rate_hz).into());
     let preparation = BY_PREPARATION * (CORNER_HZ / corner_hz).powi(2);
-    let is_of_motion = |j: usize| columns[j].name == "M" || columns[j].name.starts_with("F_");
+    let is_of_motion = |j: usize| is_inertia(columns[j].name) || columns[j].name.starts_with("F_");
     let variance = |i: usize, j: usize| {
         let own = if i == j && is_of_motion(j) { (preparation * solution.coefficients[j]).powi(2) } else { 0.0 };
         (own + by.iter().map(|b| b[i] * b[j]).sum::<f64>()) / 3.0
