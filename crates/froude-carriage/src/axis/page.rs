@@ -23,7 +23,7 @@ pub fn sections(outcome: &AxisModels) -> (Section, Vec<Section>) {
         let (body, error) = (mounted(&outcome.rigid_mounts), number::percent(r.relative_force_error));
         let caption = format!("Rigid model, friction {}{body} (relative force error {error}).", model.name);
         let pieces = if r.runs.is_some() { Pieces::Clusters } else { Pieces::Blocks };
-        let estimate = outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.method.name == law);
+        let estimate = outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.law.name == law);
         let table = coefficient_table(&law, caption, &r.coefficients, pieces);
         blocks.push(with_declared(table, estimate).into());
         if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == CONSTANT) {
@@ -116,7 +116,7 @@ pub(super) fn coefficient_table(
     let t = TableBuilder::new(&format!("coefficients/{model}"), caption, coefficients);
     let mut columns = vec![
         t.text("coefficient", "coefficient", |c| c.name.clone()),
-        t.text("unit", "unit", |c| c.unit.to_owned()),
+        t.text("unit", "unit", |c| c.unit.clone().into_owned()),
         t.uncertain(["value", ""], "value", |c| c.value, |c| c.block_std),
         t.interval("interval_95", &format!("95 % interval{interval} ({name})"), |c| c.interval),
         t.number("standard_white_noise", "u (white noise)", |c| c.classical_std).significant(2),
@@ -172,6 +172,7 @@ fn repeatability_table(cells: &[Repeatability]) -> ResultTable {
 
 fn force_chart(model: &Model) -> Chart {
     let r = &model.report;
+    let axis = r.fit.shape.coordinate.names();
     let predicted: Vec<f64> = r.rows.force_n.iter().zip(&r.residuals_n).map(|(f, e)| f - e).collect();
     // A line through all runs would run back from the end of each to the start of the next.
     let series = |name: &str, y: &[f64], mark| -> Vec<Series> {
@@ -185,20 +186,22 @@ fn force_chart(model: &Model) -> Chart {
         r.runs.iter().map(of_run).collect()
     };
     Chart {
-        name: format!("force-{}", model.name),
-        title: format!("Drive force and model, friction {}", model.name),
-        caption: "Drive force of the command and of the model, and the residual: one line per run, each against its own time."
-            .to_owned(),
+        name: format!("{}-{}", axis.words, model.name.replace(' ', "-")),
+        title: format!("Drive {} and model, friction {}", axis.words, model.name),
+        caption: format!(
+            "Drive {} of the command and of the model, and the residual: one line per run, each against its own time.",
+            axis.words
+        ),
         x_label: "time [s]".to_owned(),
         panels: vec![
             ChartPanel {
-                y_label: "force [N]".to_owned(),
+                y_label: format!("{} [{}]", axis.words, axis.load),
                 series: [series("command", &r.rows.force_n, Mark::Line), series("model", &predicted, Mark::Dashed)]
                     .concat(),
                 ..ChartPanel::default()
             },
             ChartPanel {
-                y_label: "residual [N]".to_owned(),
+                y_label: format!("residual [{}]", axis.load),
                 series: series("residual", &r.residuals_n, Mark::Line),
                 ..ChartPanel::default()
             },
