@@ -1,5 +1,6 @@
 //! Any axis that a servo drives, along a line or about an axis, from logs of anybody: the method `servo`.
 
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use froude_identify::IdentifyError;
@@ -22,7 +23,7 @@ use froude_records::units::Dimension;
 
 use super::declared::{Axis, KEYS, SERVO};
 use super::page::sections;
-use super::{AxisModels, Model, SLOWEST_HZ, doubts, files_of_table, one_excitation};
+use super::{ASYMMETRIC, AxisModels, Model, SLOWEST_HZ, by_direction, doubts, files_of_table, one_excitation};
 use crate::runs::implausible;
 use crate::servo::scale::{ForcePerVolt, Scale};
 use crate::servo::settle::uncertain;
@@ -180,7 +181,9 @@ fn read(source: &Source, axis: &Axis) -> Result<Read, MethodError> {
             return Err(MethodError::input(&path, format!("{what}; correct the sample, or cut the log there")));
         }
         let even = log.evenly().map_err(|error| MethodError::input(&path, error.to_string()))?;
+        // Of several logs with even steps nothing need be said.
         let mut findings = imported.findings;
+        findings.retain(|finding| finding.code != "time-steps");
         findings.extend(table.foreign());
         let name = path.display();
         findings.extend(
@@ -445,6 +448,14 @@ fn fitted(campaign: &Campaign, source: &Source, axis: &Axis, read: Read) -> Resu
     let Read { paths, logs, coordinate, gain, files, mut findings } = read;
     let positions = || logs.iter().flat_map(|log| log.position_m.iter().copied());
     let range = [positions().fold(f64::INFINITY, f64::min), positions().fold(f64::NEG_INFINITY, f64::max)];
+    if coordinate == Coordinate::Rotary && axis.count.is_none() && range.iter().any(|end| end.abs() > TAU) {
+        let text = format!(
+            "the angle goes from {} to {} rad, beyond a whole turn: a joint that turns on may; degrees under a header in radians would make inertia and viscous friction 57 times too small",
+            plain(range[0], 4),
+            plain(range[1], 4)
+        );
+        findings.push(Finding::new(Severity::Note, "angle-beyond-a-turn", text));
+    }
     let rate_hz = logs[0].evenly().map_err(MethodError::refused)?.rate_hz;
     let mut chain = Chain {
         coordinate,
@@ -472,10 +483,15 @@ fn fitted(campaign: &Campaign, source: &Source, axis: &Axis, read: Read) -> Resu
         method: froude_records::estimate::MethodUsed { name: SERVO.to_owned(), ..estimate.method },
         ..estimate
     };
+    let models = vec![model];
+    if models.iter().any(|model| model.name == ASYMMETRIC) && by_direction(&models).is_none() {
+        let text = "no difference of friction between the directions is detected: friction = \"coulomb\" has fewer coefficients";
+        findings.push(Finding::new(Severity::Note, "servo", text.to_owned()));
+    }
     if logs.len() == 1 {
         findings.push(one_excitation());
     }
-    let models = AxisModels { models: vec![model], estimates: vec![(estimate, files)], ..AxisModels::default() };
+    let models = AxisModels { models, estimates: vec![(estimate, files)], ..AxisModels::default() };
     let (summary, blocks) = sections(&models);
     let results = models
         .estimates

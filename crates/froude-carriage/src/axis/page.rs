@@ -3,14 +3,14 @@
 use std::ops::Range;
 
 use froude_records::block::{Block, ResultTable, Section, TableBuilder};
-use froude_records::estimate::{Coefficient, Estimate};
+use froude_records::estimate::Estimate;
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark, Series};
 
 use super::{AxisModels, CONSTANT, Model, Repeatability};
 use crate::runs::mounted;
 use crate::servo::ServoCoefficient;
-use crate::servo::record::{TWO_MASS, law_of};
+use crate::servo::record::{TWO_MASS, in_formulas, law_of};
 use crate::servo::report::effective;
 use crate::servo::two_mass::FlexibleReport;
 
@@ -25,7 +25,7 @@ pub fn sections(outcome: &AxisModels) -> (Section, Vec<Section>) {
         let pieces = if r.runs.is_some() { Pieces::Clusters } else { Pieces::Blocks };
         let estimate = outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.law.name == law);
         let table = coefficient_table(&law, caption, &r.coefficients, pieces);
-        blocks.push(with_declared(table, estimate).into());
+        blocks.push(with_declared(table, &r.coefficients, estimate).into());
         if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == CONSTANT) {
             let caption =
                 "The same at the motor's shaft (MCD Table II). The losses of the gear are included in these numbers.";
@@ -129,12 +129,18 @@ pub(super) fn coefficient_table(
 }
 
 /// The intervals of scatter and declared errors together, where the estimate has any that are declared.
-pub(super) fn with_declared(mut table: ResultTable, estimate: Option<&Estimate>) -> ResultTable {
+pub(super) fn with_declared(
+    mut table: ResultTable,
+    rows: &[ServoCoefficient],
+    estimate: Option<&Estimate>,
+) -> ResultTable {
     let Some(estimate) = estimate.filter(|estimate| !estimate.errors.is_empty()) else { return table };
-    let all: Vec<&Coefficient> = estimate.coefficients.values().collect();
+    // A delay is no coefficient of the law, and has none.
+    let all: Vec<Option<[f64; 2]>> =
+        rows.iter().map(|row| estimate.coefficients.get(&in_formulas(&row.name))?.interval_95).collect();
     let t = TableBuilder::new("", "", &all);
     let head = "95 % interval (scatter and declared)";
-    table.columns.push(t.interval("interval_95_with_declared", head, |c| c.interval_95));
+    table.columns.push(t.interval("interval_95_with_declared", head, |interval| *interval));
     table
 }
 

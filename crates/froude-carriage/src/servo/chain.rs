@@ -199,9 +199,24 @@ impl Chain {
     ///
     /// [`ServoError`].
     pub fn rows(&self, log: &ServoLog) -> Result<Rows, ServoError> {
+        self.rows_of(&self.prepared(log)?)
+    }
+
+    /// The stretches of a log with their filtered motion, which does not depend on where the model is linearised.
+    pub(crate) fn prepared(&self, log: &ServoLog) -> Result<Vec<Prepared>, ServoError> {
+        let of = |stretch: Stretch| -> Result<Prepared, ServoError> {
+            let rate_hz = stretch.log.rate_hz()?;
+            let motion = self.motion(&stretch.log.position_m, rate_hz);
+            Ok(Prepared { motion, stretch, rate_hz })
+        };
+        log.evenly()?.stretches.into_iter().map(of).collect()
+    }
+
+    /// As [`Self::rows`].
+    pub(crate) fn rows_of(&self, stretches: &[Prepared]) -> Result<Rows, ServoError> {
         let (mut joined, mut first_error): (Option<Rows>, Option<ServoError>) = (None, None);
-        for stretch in log.evenly()?.stretches {
-            match (self.rows_of_stretch(&stretch), &mut joined) {
+        for stretch in stretches {
+            match (self.rows_of_stretch(stretch), &mut joined) {
                 (Ok(rows), None) => joined = Some(rows),
                 (Ok(rows), Some(all)) => all.append(rows),
                 (
@@ -216,15 +231,14 @@ impl Chain {
         joined.ok_or_else(|| first_error.unwrap_or(ServoError::TooFewRows { rows: 0, needed: 3 }))
     }
 
-    fn rows_of_stretch(&self, stretch: &Stretch) -> Result<Rows, ServoError> {
-        let log = &stretch.log;
-        let rate_hz = log.rate_hz()?;
-        let motion = self.motion(&log.position_m, rate_hz)?;
+    fn rows_of_stretch(&self, prepared: &Prepared) -> Result<Rows, ServoError> {
+        let Prepared { stretch, rate_hz, motion } = prepared;
+        let (log, rate_hz, motion) = (&stretch.log, *rate_hz, motion.as_ref().map_err(Clone::clone)?);
         let command = stretch.command(self.delay.at_s);
         let forces = |x: &[f64]| x.iter().map(|x| self.force_per_volt_n_v * x).collect::<Vec<f64>>();
         let mut force_n = forces(&command.value_v);
-        self.less_known(&mut force_n, &motion);
-        let mut regressors = self.regressors(&motion)?;
+        self.less_known(&mut force_n, motion);
+        let mut regressors = self.regressors(motion)?;
         if self.delay.is_estimated {
             regressors.push(delay_column(forces(&command.slope_v_s)));
         }
@@ -232,7 +246,7 @@ impl Chain {
             return self.decimated(&log.time_s, &force_n, regressors, rate_hz);
         }
         let near: Vec<f64> =
-            self.near_rest(&motion).iter().zip(&command.is_missing).map(|(near, missing)| near.max(*missing)).collect();
+            self.near_rest(motion).iter().zip(&command.is_missing).map(|(near, missing)| near.max(*missing)).collect();
         let moving = |x: &[f64]| x.iter().zip(&near).map(|(x, near)| x * (1.0 - near)).collect::<Vec<f64>>();
         let regressors = regressors.into_iter().map(|r| Regressor { values: moving(&r.values), ..r }).collect();
         let rows = self.decimated(&log.time_s, &moving(&force_n), regressors, rate_hz)?;
@@ -343,6 +357,16 @@ pub(crate) const OF_LOAD: &str = "F_l";
 /// The column of the delay: what a second of it takes off the force.
 pub(crate) fn delay_column(values: Vec<f64>) -> Regressor {
     Regressor { name: DELAY.to_owned(), unit: "s".into(), values }
+}
+
+/// A stretch of a log with its filtered motion.
+#[derive(Debug)]
+pub(crate) struct Prepared {
+    stretch: Stretch,
+    /// Its rate, Hz.
+    pub rate_hz: f64,
+    /// Its motion; an error where it is too short for the filter.
+    pub motion: Result<Motion, ServoError>,
 }
 
 /// Filtered motion at the full rate.

@@ -203,7 +203,7 @@ fn law(name: &str, formula: Option<String>) -> Law {
 }
 
 /// A name as a formula can have it: a sign becomes a word.
-fn in_formulas(name: &str) -> String {
+pub(crate) fn in_formulas(name: &str) -> String {
     match name.strip_suffix(['+', '-']) {
         Some(stem) => format!("{stem}_{}", if name.ends_with('+') { "pos" } else { "neg" }),
         None => name.to_owned(),

@@ -9,11 +9,9 @@
 //!
 //! **Source.** Gautier & Poignet (2001), Control Eng. Pract. 9, 1361 (rows and parallel filters); Bates & Watts (1988), *Nonlinear regression analysis*, 2.2 (the steps).
 
-use std::cmp::Ordering;
-
 use froude_records::number::significant;
 
-use crate::servo::chain::{At, Chain, Delay, OF_LOAD, delay_unknown, is_delay_known};
+use crate::servo::chain::{At, Chain, Delay, OF_LOAD, Prepared, delay_unknown, is_delay_known};
 use crate::servo::coordinate::{DELAY, STRIBECK_SPEED};
 use crate::servo::error::ServoError;
 use crate::servo::log::ServoLog;
@@ -67,37 +65,54 @@ pub fn identify_servo(columns: &ServoLog, chain: &Chain) -> Result<ServoReport, 
 ///
 /// [`ServoError`]: see its variants.
 pub fn identify_logs(logs: &[ServoLog], chain: &Chain) -> Result<ServoReport, ServoError> {
-    let fit = |chain: &Chain| -> Result<(ServoReport, Chain, bool), ServoError> {
-        let (rows, chain, is_settled) = settled(logs, &started(logs, chain)?)?;
-        let mut report = of_logs(rows, &chain)?;
-        for c in &mut report.fit.coefficients {
-            let at = match c.name.as_str() {
-                DELAY => chain.delay.at_s,
-                STRIBECK_SPEED => chain.friction.stribeck_speed_m_s.unwrap_or(0.0),
-                _ => continue,
-            };
-            c.value += at;
-            c.interval = c.interval.map(|end| end + at);
+    of_prepared(&prepared(logs, chain)?, chain)
+}
+
+/// Stretches of each log.
+type Stretches = [Vec<Prepared>];
+
+fn prepared(logs: &[ServoLog], chain: &Chain) -> Result<Vec<Vec<Prepared>>, ServoError> {
+    logs.iter().map(|log| chain.prepared(log)).collect()
+}
+
+fn of_prepared(logs: &Stretches, chain: &Chain) -> Result<ServoReport, ServoError> {
+    let step_s = logs.first().and_then(|log| log.first()).map_or(1.0, |stretch| stretch.rate_hz.recip());
+    let (mut report, found, is_settled) = match at_solution(logs, chain) {
+        Ok(fit) if !(chain.delay.is_estimated && is_undetermined(&fit.0, step_s)) => fit,
+        Err(error) if !(chain.delay.is_estimated && matches!(error, ServoError::Fit(_) | ServoError::Dependent)) => {
+            return Err(error);
         }
-        Ok((report, chain, is_settled))
+        _ => {
+            let delay = Delay { at_s: 0.5 * step_s, is_estimated: false, changes: Vec::new() };
+            let chain = changing(logs, &Chain { delay, ..chain.clone() }, step_s / 12.0_f64.sqrt())?;
+            let mut report = of_prepared(logs, &chain)?;
+            report.fit.findings.push(delay_unknown(step_s));
+            return Ok(report);
+        }
     };
-    let (mut report, found, is_settled) = fit(chain)?;
-    if chain.delay.is_estimated
-        && let Some(usual_s) = undetermined(&report, logs)
-    {
-        let delay = Delay { at_s: usual_s, is_estimated: false, changes: Vec::new() };
-        let standard_s = usual_s / 3.0_f64.sqrt();
-        report = identify_logs(logs, &uncertain(logs, &Chain { delay, ..chain.clone() }, standard_s)?)?;
-        report.fit.findings.push(delay_unknown(2.0 * usual_s));
-        return Ok(report);
-    }
     if !is_settled {
         report.fit.findings.push(format!(
             "the search for what the law is not linear in did not settle in {STEPS} steps: use a simpler law of friction, or declare delay and stribeck_speed"
         ));
     }
-    report.fit.findings.extend(early(&report, found.friction.fitted_stribeck.is_some()));
+    report.fit.findings.extend(doubts(&report, found.friction.fitted_stribeck.is_some()));
     Ok(report)
+}
+
+/// The fit where its model is linear in its solution, the chain there, and whether the steps came to an end.
+fn at_solution(logs: &Stretches, chain: &Chain) -> Result<(ServoReport, Chain, bool), ServoError> {
+    let (rows, found, is_settled) = settled(logs, &started(logs, chain)?)?;
+    let mut report = of_logs(rows, &found)?;
+    for c in &mut report.fit.coefficients {
+        let at = match c.name.as_str() {
+            DELAY => found.delay.at_s,
+            STRIBECK_SPEED => found.friction.stribeck_speed_m_s.unwrap_or(0.0),
+            _ => continue,
+        };
+        c.value += at;
+        c.interval = c.interval.map(|end| end + at);
+    }
+    Ok((report, found, is_settled))
 }
 
 /// The same chain with a declared delay that has a standard uncertainty: what that changes in each coefficient.
@@ -106,6 +121,10 @@ pub fn identify_logs(logs: &[ServoLog], chain: &Chain) -> Result<ServoReport, Se
 ///
 /// [`ServoError`].
 pub fn uncertain(logs: &[ServoLog], chain: &Chain, standard_s: f64) -> Result<Chain, ServoError> {
+    changing(&prepared(logs, chain)?, chain, standard_s)
+}
+
+fn changing(logs: &Stretches, chain: &Chain, standard_s: f64) -> Result<Chain, ServoError> {
     let at = |late_s: f64| -> Result<Vec<f64>, ServoError> {
         let delay = Delay { at_s: chain.delay.at_s + late_s, is_estimated: false, changes: Vec::new() };
         let (rows, ..) = settled(logs, &started(logs, &Chain { delay, ..chain.clone() })?)?;
@@ -116,19 +135,17 @@ pub fn uncertain(logs: &[ServoLog], chain: &Chain, standard_s: f64) -> Result<Ch
     Ok(Chain { delay: Delay { changes, ..chain.delay.clone() }, ..chain.clone() })
 }
 
-/// Half a step of the logs, where the fit knows less of the delay than that it lies within one.
-fn undetermined(report: &ServoReport, logs: &[ServoLog]) -> Option<f64> {
-    let half_s = 0.5 / logs.first()?.evenly().ok()?.rate_hz;
-    let place = report.rows.names.iter().position(|(name, _)| name == DELAY)?;
-    let (c, fit) = (report.fit.coefficients.get(place)?, &report.fit);
-    let squares: f64 = report.rows.columns.get(place)?.iter().map(|x| x * x).sum();
-    let part = fit.sigma_n / (c.classical_std * squares.sqrt());
-    let is_known = is_delay_known(c.block_std.max(c.hac_std), part, 2.0 * half_s);
-    (!is_known).then_some(half_s)
+/// Whether the fit knows less of the delay than that it lies within a step.
+fn is_undetermined(report: &ServoReport, step_s: f64) -> bool {
+    let place = report.rows.names.iter().position(|(name, _)| name == DELAY);
+    let found = place.and_then(|j| Some((report.fit.coefficients.get(j)?, report.rows.columns.get(j)?)));
+    let Some((c, column)) = found else { return true };
+    let part = report.fit.sigma_n / (c.classical_std * column.iter().map(|x| x * x).sum::<f64>().sqrt());
+    !is_delay_known(c.block_std.max(c.hac_std), part, step_s)
 }
 
-/// What is doubtful of delay and Stribeck's term.
-fn early(report: &ServoReport, is_stribeck: bool) -> Vec<String> {
+/// What is doubtful of delay and terms of friction.
+fn doubts(report: &ServoReport, is_stribeck: bool) -> Vec<String> {
     let fit = &report.fit;
     let mut out = Vec::new();
     if let Some(c) = fit.coefficient(DELAY).filter(|c| c.interval[1] < 0.0) {
@@ -137,7 +154,7 @@ fn early(report: &ServoReport, is_stribeck: bool) -> Vec<String> {
             significant(-1e3 * c.value, 3)
         ));
     }
-    let extra: &[&str] = if is_stribeck { &["F_s", STRIBECK_SPEED] } else { &["F_s", OF_LOAD] };
+    let extra = ["F_s", if is_stribeck { STRIBECK_SPEED } else { OF_LOAD }];
     for c in extra.iter().filter_map(|name| fit.coefficient(name)) {
         if !(c.interval[0] > 0.0 || c.interval[1] < 0.0) {
             out.push(format!(
@@ -151,49 +168,40 @@ fn early(report: &ServoReport, is_stribeck: bool) -> Vec<String> {
 }
 
 /// A chain with a first value of Stribeck's speed, the best of some.
-fn started(logs: &[ServoLog], chain: &Chain) -> Result<Chain, ServoError> {
+fn started(logs: &Stretches, chain: &Chain) -> Result<Chain, ServoError> {
     if chain.friction.fitted_stribeck.is_none() || chain.friction.stribeck_speed_m_s.is_some() {
         return Ok(chain.clone());
     }
-    let mut fastest = 0.0_f64;
-    for log in logs {
-        for stretch in log.evenly()?.stretches {
-            let rate_hz = stretch.log.rate_hz()?;
-            let motion = chain.motion(&stretch.log.position_m, rate_hz)?;
-            fastest = motion.velocity_m_s.iter().fold(fastest, |most, v| most.max(v.abs()));
-        }
-    }
+    let motions = logs.iter().flatten().filter_map(|stretch| stretch.motion.as_ref().ok());
+    let fastest = motions.flat_map(|motion| &motion.velocity_m_s).fold(0.0_f64, |most, v| most.max(v.abs()));
     let [least, most] = STRIBECK_PARTS;
-    let with = |k: i32| {
+    let mut best: Option<(f64, Chain)> = None;
+    for k in 0..STRIBECK_TRIALS {
         let part = least * (most / least).powf(f64::from(k) / f64::from(STRIBECK_TRIALS - 1));
         let mut chain = chain.clone();
         chain.friction.stribeck_speed_m_s = Some(part * fastest);
-        chain
-    };
-    let mut tried: Vec<(f64, Chain)> = Vec::new();
-    for k in 0..STRIBECK_TRIALS {
-        let chain = with(k);
         let (rows, _) = joined(rows_of(logs, &chain)?)?;
-        if let Ok(solution) = least_squares(&rows) {
-            tried.push((rows.relative_error(&solution.coefficients), chain));
+        let Ok(solution) = least_squares(&rows) else { continue };
+        let error = rows.relative_error(&solution.coefficients);
+        if best.as_ref().is_none_or(|(least, _)| error < *least) {
+            best = Some((error, chain));
         }
     }
-    let best = tried.into_iter().min_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(Ordering::Equal));
     best.map(|(_, chain)| chain).ok_or(ServoError::Dependent)
 }
 
-fn rows_of(logs: &[ServoLog], chain: &Chain) -> Result<Vec<Rows>, ServoError> {
-    logs.iter().map(|log| chain.rows(log)).collect()
+fn rows_of(logs: &Stretches, chain: &Chain) -> Result<Vec<Rows>, ServoError> {
+    logs.iter().map(|stretches| chain.rows_of(stretches)).collect()
 }
 
 /// Rows where the model is linear in its solution, the chain that made them, and whether the steps came to an end.
-fn settled(logs: &[ServoLog], chain: &Chain) -> Result<(Vec<Rows>, Chain, bool), ServoError> {
+fn settled(logs: &Stretches, chain: &Chain) -> Result<(Vec<Rows>, Chain, bool), ServoError> {
     let mut chain = chain.clone();
     let mut rows = rows_of(logs, &chain)?;
     if !(chain.delay.is_estimated || chain.friction.is_of_load || chain.friction.fitted_stribeck.is_some()) {
         return Ok((rows, chain, true));
     }
-    let step_s = logs.first().map_or(Ok(1.0), |log| log.evenly().map(|even| even.rate_hz.recip()))?;
+    let step_s = logs.first().and_then(|log| log.first()).map_or(1.0, |stretch| stretch.rate_hz.recip());
     for _ in 0..STEPS {
         let (all, _) = joined(rows)?;
         let solution = least_squares(&all)?;
@@ -203,7 +211,8 @@ fn settled(logs: &[ServoLog], chain: &Chain) -> Result<(Vec<Rows>, Chain, bool),
         let mut moved = 0.0_f64;
         if let Some(late_s) = value(DELAY) {
             let late_s = late_s.clamp(-LONGEST * step_s, LONGEST * step_s);
-            chain.delay.at_s += late_s;
+            // Beyond what is dropped at the ends there is no command.
+            chain.delay.at_s = (chain.delay.at_s + late_s).clamp(-chain.trim_s, chain.trim_s);
             moved = moved.max((late_s / step_s).abs());
         }
         if let (Some(height), Some(speed)) = (value("F_s"), chain.friction.stribeck_speed_m_s)
