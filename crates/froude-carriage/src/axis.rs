@@ -31,7 +31,9 @@ use crate::servo::{
 use crate::source::file_of;
 use crate::two_masses::{motor_of, pulses, relative_errors, servo_log, two_masses};
 
+pub mod any;
 mod cross;
+pub mod declared;
 mod long;
 pub mod page;
 pub mod source;
@@ -183,8 +185,7 @@ fn read_log(path: &Path, sidecar: Option<&Path>) -> Result<(ImportedRun, ServoLo
 /// One log is one excitation: what another would show is in none of its residuals.
 fn one_excitation() -> Finding {
     let text = "the intervals hold for this excitation alone: friction that the model leaves out moves the coefficients from one motion to the next by more than any block \
-                of one log shows; check the fit on a log of another motion (--validate OTHER). The fit assumes that the drive follows each command at once and holds it until the next: a delay δ lowers F_v \
-                by about M ω² δ at a motion of angular frequency ω";
+                of one log shows; check the fit on a log of another motion (--validate OTHER), or give a campaign several logs";
     Finding::new(Severity::Note, "one-excitation", text.to_owned())
 }
 

@@ -20,6 +20,7 @@
 
 pub mod chain;
 mod cluster;
+pub mod coordinate;
 mod error;
 mod excitation;
 pub mod flexible;
@@ -27,6 +28,7 @@ pub mod friction;
 mod gauss_newton;
 pub mod held_out;
 pub mod interval;
+pub mod load;
 pub mod log;
 pub mod long;
 pub mod motor;
@@ -35,14 +37,17 @@ mod regression;
 pub mod report;
 pub(crate) mod rows;
 pub mod scale;
+pub mod settle;
 pub mod two_mass;
 
 pub use crate::servo::two_mass::{FlexibleOptions, FlexibleReport, Gear};
-pub use chain::Chain;
+pub use chain::{Chain, Delay};
+pub use coordinate::Coordinate;
 pub use error::ServoError;
 pub use friction::Friction;
 pub use log::ServoLog;
 pub use long::LongServo;
 pub use motor::MotorSide;
-pub use report::{RigidFit, ServoCoefficient, ServoReport, identify_servo};
+pub use report::{RigidFit, ServoCoefficient, ServoReport};
+pub use settle::{identify_logs, identify_servo};
 pub use two_mass::identify_flexible;

@@ -239,7 +239,7 @@ fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Ve
     };
     let mut findings = Vec::new();
     match &source.input {
-        Input::Table(log) if is_servo_log(log, source.sidecar.as_deref())? => {
+        Input::Table(log) if !source.methods.is_empty() || is_servo_log(log, source.sidecar.as_deref())? => {
             let table = read_table(log, source.sidecar.as_deref())?;
             (out.rows, out.columns) = (Some(table.n_rows), columns(&table));
         }

@@ -42,7 +42,7 @@ pub const STARTERS: [Starter; 9] = [
     starter!("carriage", "a towing carriage that Froude drives, on its twin"),
     starter!("openfoam", "force files of OpenFOAM cases that are computed already"),
     starter!("mesh", "added mass of a closed surface mesh"),
-    starter!("servo", "mass and friction of an axis from its log, with a sidecar", "axis.toml" = "servo-axis.toml"),
+    starter!("servo", "inertia, friction and loads of a robot's joint or another axis, from its logs"),
     starter!("sway", "pure sway on a planar motion mechanism, with a sidecar", "runs/run_01.toml" = "sway-run.toml"),
 ];
 

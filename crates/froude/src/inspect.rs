@@ -48,9 +48,9 @@ fn of_campaign(path: &Path) -> Result<Inspection, Error> {
     for (source, facts) in campaign.sources.iter().zip(&mut found.sources) {
         match &source.input {
             Input::Mesh(path) => drop(Asked::of_source(path, source)?),
-            Input::Table(log) if is_servo_log(log, source.sidecar.as_deref())? => {
-                Servo::check_log(source)?;
+            Input::Table(log) if !source.methods.is_empty() || is_servo_log(log, source.sidecar.as_deref())? => {
                 let asked = method::of(source, None)?;
+                Servo::check_log(source)?;
                 facts.models = asked.into_iter().flat_map(|(_, names)| names).map(str::to_owned).collect();
             }
             _ => {}

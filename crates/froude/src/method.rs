@@ -88,7 +88,7 @@ pub(crate) fn of(source: &Source, instead: Option<&'static dyn Method>) -> Resul
     }
 }
 
-/// The method whose log a table is: the one asked for, or else the one that its sidecar indicates; `None` for any other source.
+/// The method whose log a table is: the one asked for, by the job or by name, or else the one that its sidecar indicates; `None` for any other source.
 ///
 /// # Errors
 ///
@@ -99,7 +99,9 @@ pub(crate) fn of_logs(
 ) -> Result<Option<(&'static dyn Method, Logs)>, Error> {
     let Input::Table(log) = &source.input else { return Ok(None) };
     let with_logs = |method: &'static dyn Method| Some((method, method.logs()?));
-    if let Some(found) = asked.and_then(with_logs) {
+    let is_named = |(_, logs): &(_, Logs)| source.methods.iter().any(|own| logs.names.contains(&own.as_str()));
+    let named = || METHODS.into_iter().filter_map(with_logs).find(is_named);
+    if let Some(found) = asked.and_then(with_logs).or_else(named) {
         return Ok(Some(found));
     }
     for (method, logs) in METHODS.into_iter().filter_map(with_logs) {

@@ -14,7 +14,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 
 use super::{AxisModel, force_per_volt_n_v, friction_of, read_log};
-use crate::servo::{Chain, ServoError};
+use crate::servo::{Chain, Delay, ServoError};
 
 /// The error of one model.
 struct Cross {
@@ -40,7 +40,10 @@ pub(super) fn hold_against(source: &Source, estimates: &[&Estimate]) -> Result<(
     for estimate in estimates {
         let model = AxisModel::ALL.into_iter().find(|model| model.name() == estimate.method.name);
         let Some(model) = model.filter(|model| AxisModel::OF_LOGS.contains(&model.name())) else { continue };
-        let chain = Chain::of_log(force_per_volt_n_v, rate_hz, friction_of(model));
+        let usual = Chain::of_log(force_per_volt_n_v, rate_hz, friction_of(model));
+        let fitted = estimate.derived.get("delay").and_then(|delay| delay.value);
+        let delay = Delay { at_s: fitted.unwrap_or(usual.delay.at_s), is_estimated: false, changes: Vec::new() };
+        let chain = Chain { delay, ..usual };
         let rows = chain.rows(&log).map_err(refused)?;
         // Of a rig the friction may have no offset.
         let value = |label: &str| {

@@ -3,14 +3,14 @@
 use std::ops::Range;
 
 use froude_records::block::{Block, ResultTable, Section, TableBuilder};
-use froude_records::estimate::{Coefficient, Estimate};
+use froude_records::estimate::Estimate;
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark, Series};
 
 use super::{AxisModels, CONSTANT, Model, Repeatability};
 use crate::runs::mounted;
 use crate::servo::ServoCoefficient;
-use crate::servo::record::{TWO_MASS, law_of};
+use crate::servo::record::{TWO_MASS, in_formulas, law_of};
 use crate::servo::report::effective;
 use crate::servo::two_mass::FlexibleReport;
 
@@ -23,9 +23,9 @@ pub fn sections(outcome: &AxisModels) -> (Section, Vec<Section>) {
         let (body, error) = (mounted(&outcome.rigid_mounts), number::percent(r.relative_force_error));
         let caption = format!("Rigid model, friction {}{body} (relative force error {error}).", model.name);
         let pieces = if r.runs.is_some() { Pieces::Clusters } else { Pieces::Blocks };
-        let estimate = outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.method.name == law);
+        let estimate = outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.law.name == law);
         let table = coefficient_table(&law, caption, &r.coefficients, pieces);
-        blocks.push(with_declared(table, estimate).into());
+        blocks.push(with_declared(table, &r.coefficients, estimate).into());
         if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == CONSTANT) {
             let caption =
                 "The same at the motor's shaft (MCD Table II). The losses of the gear are included in these numbers.";
@@ -116,7 +116,7 @@ pub(super) fn coefficient_table(
     let t = TableBuilder::new(&format!("coefficients/{model}"), caption, coefficients);
     let mut columns = vec![
         t.text("coefficient", "coefficient", |c| c.name.clone()),
-        t.text("unit", "unit", |c| c.unit.to_owned()),
+        t.text("unit", "unit", |c| c.unit.clone().into_owned()),
         t.uncertain(["value", ""], "value", |c| c.value, |c| c.block_std),
         t.interval("interval_95", &format!("95 % interval{interval} ({name})"), |c| c.interval),
         t.number("standard_white_noise", "u (white noise)", |c| c.classical_std).significant(2),
@@ -129,12 +129,18 @@ pub(super) fn coefficient_table(
 }
 
 /// The intervals of scatter and declared errors together, where the estimate has any that are declared.
-pub(super) fn with_declared(mut table: ResultTable, estimate: Option<&Estimate>) -> ResultTable {
+pub(super) fn with_declared(
+    mut table: ResultTable,
+    rows: &[ServoCoefficient],
+    estimate: Option<&Estimate>,
+) -> ResultTable {
     let Some(estimate) = estimate.filter(|estimate| !estimate.errors.is_empty()) else { return table };
-    let all: Vec<&Coefficient> = estimate.coefficients.values().collect();
+    // A delay is no coefficient of the law, and has none.
+    let all: Vec<Option<[f64; 2]>> =
+        rows.iter().map(|row| estimate.coefficients.get(&in_formulas(&row.name))?.interval_95).collect();
     let t = TableBuilder::new("", "", &all);
     let head = "95 % interval (scatter and declared)";
-    table.columns.push(t.interval("interval_95_with_declared", head, |c| c.interval_95));
+    table.columns.push(t.interval("interval_95_with_declared", head, |interval| *interval));
     table
 }
 
@@ -172,6 +178,7 @@ fn repeatability_table(cells: &[Repeatability]) -> ResultTable {
 
 fn force_chart(model: &Model) -> Chart {
     let r = &model.report;
+    let axis = r.fit.shape.coordinate.names();
     let predicted: Vec<f64> = r.rows.force_n.iter().zip(&r.residuals_n).map(|(f, e)| f - e).collect();
     // A line through all runs would run back from the end of each to the start of the next.
     let series = |name: &str, y: &[f64], mark| -> Vec<Series> {
@@ -185,20 +192,22 @@ fn force_chart(model: &Model) -> Chart {
         r.runs.iter().map(of_run).collect()
     };
     Chart {
-        name: format!("force-{}", model.name),
-        title: format!("Drive force and model, friction {}", model.name),
-        caption: "Drive force of the command and of the model, and the residual: one line per run, each against its own time."
-            .to_owned(),
+        name: format!("{}-{}", axis.words, model.name.replace(' ', "-")),
+        title: format!("Drive {} and model, friction {}", axis.words, model.name),
+        caption: format!(
+            "Drive {} of the command and of the model, and the residual: one line per run, each against its own time.",
+            axis.words
+        ),
         x_label: "time [s]".to_owned(),
         panels: vec![
             ChartPanel {
-                y_label: "force [N]".to_owned(),
+                y_label: format!("{} [{}]", axis.words, axis.load),
                 series: [series("command", &r.rows.force_n, Mark::Line), series("model", &predicted, Mark::Dashed)]
                     .concat(),
                 ..ChartPanel::default()
             },
             ChartPanel {
-                y_label: "residual [N]".to_owned(),
+                y_label: format!("residual [{}]", axis.load),
                 series: series("residual", &r.residuals_n, Mark::Line),
                 ..ChartPanel::default()
             },

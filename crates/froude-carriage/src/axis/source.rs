@@ -11,6 +11,7 @@ use froude_records::run::{TOW, is_servo_log};
 use froude_records::units::Dimension;
 
 use super::cross::hold_against;
+use super::declared::SERVO;
 use super::page::sections;
 use super::{AxisModel, AxisModels, KINDS, force_per_volt_n_v, long, of_runs, of_table};
 use crate::servo::scale::{ForcePerVolt, Scale};
@@ -27,12 +28,15 @@ const NAMES: [&str; 4] = {
 };
 
 impl Servo {
-    /// Refuses what a source asks of the log of a servo and no fit would take.
+    /// Refuses what a source asks of the log of a servo and no fit would take; what [`super::any::AnyServo`] declares it reads itself.
     ///
     /// # Errors
     ///
     /// No force per volt; a key or a budget that a log does not have.
     pub fn check_log(source: &Source) -> Result<(), MethodError> {
+        if source.methods.iter().any(|method| method == SERVO) {
+            return super::any::declared(source).map(drop);
+        }
         declared_gain(source, "").map(drop)
     }
 }

@@ -15,9 +15,11 @@
 use froude_records::number::plain;
 use froude_signal::{butterworth, decimate, differences, zero_phase};
 
+use crate::servo::coordinate::{Coordinate, DELAY};
 use crate::servo::error::ServoError;
-use crate::servo::friction::{Friction, Regressor};
-use crate::servo::log::ServoLog;
+use crate::servo::friction::{Friction, Regressor, signum};
+use crate::servo::load::{Load, Shape};
+use crate::servo::log::{ServoLog, Stretch};
 use crate::servo::rows::Rows;
 
 /// Rate of rows from a log, Hz: the effect of position noise grows with the fifth power of this rate, and a rigid axis needs no higher rate.
@@ -32,6 +34,26 @@ const MOST_CORNER: f64 = 0.25;
 /// Largest filtered fraction of samples near rest and reversal in a row that is kept.
 pub(crate) const MOST_NEAR_REST: f64 = 0.2;
 
+/// From the stamp of a command to the force that it causes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Delay {
+    /// On average over the hold of the command, s; half a step for a command that is held until the next one.
+    pub at_s: f64,
+    /// Whether it is fitted: a column `delay` then says by how much it is longer than `at_s`.
+    pub is_estimated: bool,
+    /// What one standard uncertainty of a delay that is not fitted changes in each coefficient; empty for none.
+    pub changes: Vec<f64>,
+}
+
+/// Where a model that is not linear in its coefficients is linearised.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct At {
+    /// Coefficients of the load, in the order of its terms; empty before the first fit.
+    pub load: Vec<f64>,
+    /// `F_l`.
+    pub of_load: f64,
+}
+
 /// How a record is made into rows, and what is fitted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
@@ -45,12 +67,20 @@ pub struct Chain {
     pub decimation: usize,
     /// Dropped at each end, s.
     pub trim_s: f64,
-    /// Whether a command is held until the next sample, as in a digital drive (zero-order hold): the force at a sample is then the mean of the forces before and after it, and the acceleration is taken by second differences, which average it in the same way.
+    /// Whether the acceleration is taken by second differences, which average it as a held command is averaged over the two steps around a sample; else by central differences of the speed.
     pub is_held: bool,
+    /// When a command acts.
+    pub delay: Delay,
     /// Whether samples near rest and reversal are left out, because the direction of friction is unknown there: they are set to zero on both sides before decimation, and rows with too many of them are dropped.
     pub is_moving: bool,
+    /// What moves along what.
+    pub coordinate: Coordinate,
     /// Friction law.
     pub friction: Friction,
+    /// What loads the axis beside it.
+    pub load: Load,
+    /// Where it is linearised.
+    pub at: At,
     /// Lag of HAC, s; `None` for the automatic one.
     pub hac_lag_s: Option<f64>,
 }
@@ -66,13 +96,17 @@ impl Chain {
             decimation: 10,
             trim_s: 0.2,
             is_held: false,
+            delay: Delay::default(),
             is_moving: false,
+            coordinate: Coordinate::default(),
             friction,
+            load: Load::default(),
+            at: At::default(),
             hac_lag_s: None,
         }
     }
 
-    /// For any log: the position's corner at 50 Hz, some fifty rows a second (both lower where the log has fewer than 200 samples a second), a command that is held, and no rows near rest and reversal.
+    /// For any log: the position's corner at 50 Hz, some fifty rows a second (both lower where the log has fewer than 200 samples a second), a delay that is estimated (from half a step on), and no rows near rest and reversal.
     #[must_use]
     pub fn of_log(force_per_volt_n_v: f64, rate_hz: f64, friction: Friction) -> Self {
         let decimation = ((rate_hz / ROW_RATE_HZ).round() as usize).max(LEAST_DECIMATION);
@@ -81,8 +115,20 @@ impl Chain {
             decimation,
             trim_s: TRIM_ROWS * decimation as f64 / rate_hz,
             is_held: true,
+            delay: Delay { at_s: 0.5 / rate_hz, is_estimated: true, changes: Vec::new() },
             is_moving: true,
             ..Self::new(force_per_volt_n_v, friction)
+        }
+    }
+
+    /// What its law says beside friction.
+    #[must_use]
+    pub fn shape(&self) -> Shape {
+        Shape {
+            coordinate: self.coordinate,
+            loads: self.load.terms.iter().map(|(formula, _)| formula.clone()).collect(),
+            stribeck_speed: self.friction.stribeck_speed_m_s,
+            is_tabled: self.load.known.is_some(),
         }
     }
 
@@ -93,12 +139,16 @@ impl Chain {
         motion.velocity_m_s.iter().zip(&motion.acceleration_m_s2).map(is_near).collect()
     }
 
-    /// The force of commands, `before` being that of the sample before the first.
-    pub(crate) fn force_n(&self, command_v: &[f64], before: Option<f64>) -> Vec<f64> {
+    /// Forces of commands at even steps, and the columns of the delay; `before` is the command of the sample before the first. For delays of up to a step.
+    pub(crate) fn forces(&self, command_v: &[f64], before: Option<f64>, rate_hz: f64) -> [Vec<f64>; 2] {
         let g = self.force_per_volt_n_v;
-        let held = |i: usize| if i > 0 { command_v[i - 1] } else { before.unwrap_or(command_v[0]) };
-        let of = |i: usize| if self.is_held { 0.5 * g * (held(i) + command_v[i]) } else { g * command_v[i] };
-        (0..command_v.len()).map(of).collect()
+        let late = self.delay.at_s * rate_hz;
+        let first = before.or(command_v.first().copied()).into_iter();
+        let pairs = || first.clone().chain(command_v.iter().copied()).zip(command_v);
+        [
+            pairs().map(|(held, u)| g * (late * held + (1.0 - late) * u)).collect(),
+            pairs().map(|(held, u)| g * rate_hz * (u - held)).collect(),
+        ]
     }
 
     /// How rows are made of a record at `rate_hz`, in words.
@@ -113,7 +163,16 @@ impl Chain {
             plain(rate_hz, 4),
             plain(self.trim_s, 3),
             if self.is_moving { " and without samples near rest and reversal" } else { "" },
-            if self.is_held { "; each command is held until the next sample" } else { "" }
+            match (self.is_held, self.delay.is_estimated) {
+                (false, _) => String::new(),
+                (true, true) => "; the delay of the command, its hold included, is estimated".to_owned(),
+                (true, false) => {
+                    format!(
+                        "; a command acts {} ms after its stamp, its hold included",
+                        plain(1e3 * self.delay.at_s, 4)
+                    )
+                }
+            }
         )
     }
 
@@ -140,9 +199,24 @@ impl Chain {
     ///
     /// [`ServoError`].
     pub fn rows(&self, log: &ServoLog) -> Result<Rows, ServoError> {
+        self.rows_of(&self.prepared(log)?)
+    }
+
+    /// The stretches of a log with their filtered motion, which does not depend on where the model is linearised.
+    pub(crate) fn prepared(&self, log: &ServoLog) -> Result<Vec<Prepared>, ServoError> {
+        let of = |stretch: Stretch| -> Result<Prepared, ServoError> {
+            let rate_hz = stretch.log.rate_hz()?;
+            let motion = self.motion(&stretch.log.position_m, rate_hz);
+            Ok(Prepared { motion, stretch, rate_hz })
+        };
+        log.evenly()?.stretches.into_iter().map(of).collect()
+    }
+
+    /// As [`Self::rows`].
+    pub(crate) fn rows_of(&self, stretches: &[Prepared]) -> Result<Rows, ServoError> {
         let (mut joined, mut first_error): (Option<Rows>, Option<ServoError>) = (None, None);
-        for stretch in log.evenly()?.stretches {
-            match (self.rows_of_stretch(&stretch), &mut joined) {
+        for stretch in stretches {
+            match (self.rows_of_stretch(stretch), &mut joined) {
                 (Ok(rows), None) => joined = Some(rows),
                 (Ok(rows), Some(all)) => all.append(rows),
                 (
@@ -157,15 +231,22 @@ impl Chain {
         joined.ok_or_else(|| first_error.unwrap_or(ServoError::TooFewRows { rows: 0, needed: 3 }))
     }
 
-    fn rows_of_stretch(&self, log: &ServoLog) -> Result<Rows, ServoError> {
-        let rate_hz = log.rate_hz()?;
-        let motion = self.motion(&log.position_m, rate_hz)?;
-        let force_n = self.force_n(&log.command_v, None);
-        let regressors = self.regressors(&motion)?;
+    fn rows_of_stretch(&self, prepared: &Prepared) -> Result<Rows, ServoError> {
+        let Prepared { stretch, rate_hz, motion } = prepared;
+        let (log, rate_hz, motion) = (&stretch.log, *rate_hz, motion.as_ref().map_err(Clone::clone)?);
+        let command = stretch.command(self.delay.at_s);
+        let forces = |x: &[f64]| x.iter().map(|x| self.force_per_volt_n_v * x).collect::<Vec<f64>>();
+        let mut force_n = forces(&command.value_v);
+        self.less_known(&mut force_n, motion);
+        let mut regressors = self.regressors(motion)?;
+        if self.delay.is_estimated {
+            regressors.push(delay_column(forces(&command.slope_v_s)));
+        }
         if !self.is_moving {
             return self.decimated(&log.time_s, &force_n, regressors, rate_hz);
         }
-        let near = self.near_rest(&motion);
+        let near: Vec<f64> =
+            self.near_rest(motion).iter().zip(&command.is_missing).map(|(near, missing)| near.max(*missing)).collect();
         let moving = |x: &[f64]| x.iter().zip(&near).map(|(x, near)| x * (1.0 - near)).collect::<Vec<f64>>();
         let regressors = regressors.into_iter().map(|r| Regressor { values: moving(&r.values), ..r }).collect();
         let rows = self.decimated(&log.time_s, &moving(&force_n), regressors, rate_hz)?;
@@ -178,11 +259,50 @@ impl Chain {
         Ok(rows.chosen(&moving))
     }
 
-    /// Columns at the full rate: inertia, then friction.
+    /// Columns at the full rate: inertia, friction, load.
     pub(crate) fn regressors(&self, motion: &Motion) -> Result<Vec<Regressor>, ServoError> {
-        let inertia = Regressor { name: "M".to_owned(), unit: "kg", values: motion.acceleration_m_s2.clone() };
-        let friction = self.friction.regressors(&motion.velocity_m_s, &motion.position_m)?;
-        Ok(std::iter::once(inertia).chain(friction).collect())
+        let [name, unit] = self.coordinate.names().inertia;
+        let inertia = Regressor { name: name.to_owned(), unit: unit.into(), values: motion.acceleration_m_s2.clone() };
+        let mut out = vec![inertia];
+        out.extend(self.friction.regressors(&motion.velocity_m_s, &motion.position_m, self.coordinate)?);
+        let mut terms = self.load.columns(&motion.position_m);
+        if self.friction.is_of_load && !self.at.load.is_empty() {
+            let load = self.load_at(&terms, motion);
+            let sign = motion.velocity_m_s.iter().map(|v| signum(*v));
+            let values: Vec<f64> = sign.clone().zip(&load).map(|(s, load)| s * load.abs()).collect();
+            // F_l sgn v |load| changes with the coefficients of the load too.
+            for term in &mut terms {
+                let moved = term.values.iter_mut().zip(sign.clone()).zip(&load);
+                moved.for_each(|((x, s), load)| *x *= 1.0 + self.at.of_load * s * signum(*load));
+            }
+            out.push(Regressor { name: OF_LOAD.to_owned(), unit: "1".into(), values });
+        }
+        out.extend(terms);
+        Ok(out)
+    }
+
+    /// The load with the coefficients that the model is linearised at.
+    fn load_at(&self, terms: &[Regressor], motion: &Motion) -> Vec<f64> {
+        let mut out = self.load.known(&motion.position_m);
+        for (term, k) in terms.iter().zip(&self.at.load) {
+            out.iter_mut().zip(&term.values).for_each(|(load, x)| *load += k * x);
+        }
+        out
+    }
+
+    /// Takes the known load off the force, and adds what linearising counts twice.
+    fn less_known(&self, force_n: &mut [f64], motion: &Motion) {
+        if self.load.is_none() {
+            return;
+        }
+        let known = self.load.known(&motion.position_m);
+        force_n.iter_mut().zip(&known).for_each(|(force, load)| *force -= load);
+        if self.friction.is_of_load && !self.at.load.is_empty() {
+            let load = self.load_at(&self.load.columns(&motion.position_m), motion);
+            for (((force, load), known), v) in force_n.iter_mut().zip(&load).zip(&known).zip(&motion.velocity_m_s) {
+                *force += self.at.of_load * signum(*v) * signum(*load) * (load - known);
+            }
+        }
     }
 
     pub(crate) fn decimated(
@@ -212,6 +332,41 @@ impl Chain {
         let time_s = time_s.iter().step_by(self.decimation).copied().collect::<Vec<f64>>();
         Ok(Rows { rate_hz, time_s: time_s[trim..total - trim].to_vec(), force_n: keep(force_n)?, names, columns })
     }
+}
+
+/// Least part of the column of the delay that no other column has.
+const LEAST_PART: f64 = 0.02;
+
+/// Whether a fit knows more of the delay than that it lies within a step: its standard uncertainty, and the part of its column that no other column has.
+pub(crate) fn is_delay_known(standard_s: f64, part: f64, step_s: f64) -> bool {
+    standard_s <= step_s / 12.0_f64.sqrt() && part >= LEAST_PART
+}
+
+/// What is said where it does not.
+pub(crate) fn delay_unknown(step_s: f64) -> String {
+    format!(
+        "the motion does not determine the delay of the command: it is taken to lie between 0 and one step ({} ms), which the intervals include; move at several \
+         frequencies, or declare `delay`",
+        plain(1e3 * step_s, 4)
+    )
+}
+
+/// The coefficient of friction in proportion to the load.
+pub(crate) const OF_LOAD: &str = "F_l";
+
+/// The column of the delay: what a second of it takes off the force.
+pub(crate) fn delay_column(values: Vec<f64>) -> Regressor {
+    Regressor { name: DELAY.to_owned(), unit: "s".into(), values }
+}
+
+/// A stretch of a log with its filtered motion.
+#[derive(Debug)]
+pub(crate) struct Prepared {
+    stretch: Stretch,
+    /// Its rate, Hz.
+    pub rate_hz: f64,
+    /// Its motion; an error where it is too short for the filter.
+    pub motion: Result<Motion, ServoError>,
 }
 
 /// Filtered motion at the full rate.

@@ -5,8 +5,13 @@
 //!
 //! b_a = N C_M/M,  b_v = N C_v τ/M
 //!
-//! (C_M, C_v: columns of C). The disturbance in a log is unknown, so each b is treated as a rectangular error within ± b, and its covariance b bᵀ/3 is added to that of the scatter. It does not become smaller
-//! in longer logs, and neither does b_p, which is 0.2 % of M, F_v and F_c, each for itself, at a corner of 50 Hz and grows with 1/corner²: filters smear a sudden acceleration across the samples near rest that are left out. The M component of b_a is M/R², where R is the ratio of two forces: that of the coefficient, without what the other columns explain, to the residual.
+//! (C_M, C_v: columns of C). A loop also makes the command answer the disturbance; where the delay of the command is fitted, its column, the slope g u̇ of the force, then
+//! follows n. Stationary n and a loop no faster than n itself give |E(g u̇ n)| ≤ σ²/τ, and
+//!
+//! b_d = N C_d/τ
+//!
+//! (encoder steps that a loop differentiates are such a disturbance). The disturbance in a log is unknown, so each b is treated as a rectangular error within ± b, and its covariance b bᵀ/3 is added to that of the scatter. It does not become smaller
+//! in longer logs, and neither does b_p, which is 0.2 % of M, F_v, F_c and of a load, each for itself, at a corner of 50 Hz and grows with 1/corner²: filters smear a sudden acceleration across the samples near rest that are left out. The M component of b_a is M/R², where R is the ratio of two forces: that of the coefficient, without what the other columns explain, to the residual.
 //!
 //! | coefficient | needed for an interval | at least |
 //! |-------------|--------|-------|
@@ -24,6 +29,7 @@ use froude_fit::stream::Solution;
 use froude_records::number::significant;
 
 use crate::servo::chain::CORNER_HZ;
+use crate::servo::coordinate::{DELAY, is_inertia, is_place};
 
 /// Least force of the inertia over what the model leaves: below, the motion is that of the disturbance.
 const LEAST_FORCE: f64 = 2.0;
@@ -65,11 +71,11 @@ pub(crate) fn excitation(
     let root = (n as f64).sqrt();
     let left = |j: usize| solution.sigma / (solution.standard[j] * root);
     let part = |j: usize| left(j) / columns[j].rms;
-    let inertia = columns.iter().position(|c| c.name == "M");
+    let inertia = columns.iter().position(|c| is_inertia(c.name));
     let force = inertia.map_or(f64::INFINITY, |j| solution.coefficients[j].abs() * left(j) / solution.sigma);
     let is_driven = force >= LEAST_FORCE;
     let is_told = |j: usize| match columns[j].name {
-        "M" => is_driven,
+        name if is_inertia(name) => is_driven,
         name if name.starts_with("F_") => is_driven && part(j) >= LEAST_PART,
         _ => true,
     };
@@ -77,8 +83,9 @@ pub(crate) fn excitation(
     let mut findings = Vec::new();
     if !is_driven {
         findings.push(format!(
-            "M and friction: no interval is given, because the inertia force is {} times the residual force (at least {LEAST_FORCE} times is needed); move with larger accelerations (pulses, \
+            "{} and friction: no interval is given, because the load of the inertia is {} times the residual (at least {LEAST_FORCE} times is needed); move with larger accelerations (pulses, \
              steps, a sine of 1 Hz or more)",
+            inertia.map_or("M", |j| columns[j].name),
             significant(force, 2)
         ));
     }
@@ -92,9 +99,9 @@ pub(crate) fn excitation(
             significant(least, 2)
         ));
     }
-    let by = inertia.map_or_else(Vec::new, |j| by_disturbance(columns, solution, (j, n as f64), rate_hz).into());
+    let by = inertia.map_or_else(Vec::new, |j| by_disturbance(columns, solution, (j, n as f64), rate_hz));
     let preparation = BY_PREPARATION * (CORNER_HZ / corner_hz).powi(2);
-    let is_of_motion = |j: usize| columns[j].name == "M" || columns[j].name.starts_with("F_");
+    let is_of_motion = |j: usize| columns[j].name != "offset" && !is_place(columns[j].name);
     let variance = |i: usize, j: usize| {
         let own = if i == j && is_of_motion(j) { (preparation * solution.coefficients[j]).powi(2) } else { 0.0 };
         (own + by.iter().map(|b| b[i] * b[j]).sum::<f64>()) / 3.0
@@ -102,13 +109,13 @@ pub(crate) fn excitation(
     Excitation { findings, is_told, moved: Mat::from_fn(p, p, variance) }
 }
 
-/// b_a and b_v. If F_v has one column per direction, the columns share b_v in proportion to their mean squares.
+/// b_a and b_v, and b_d where there is a delay. If F_v has one column per direction, the columns share b_v in proportion to their mean squares.
 fn by_disturbance(
     columns: &[Column<'_>],
     solution: &Solution,
     (inertia, n): (usize, f64),
     rate_hz: f64,
-) -> [Vec<f64>; 2] {
+) -> Vec<Vec<f64>> {
     let p = columns.len();
     let of_mass = n / solution.coefficients[inertia].abs();
     let speeds: Vec<usize> = (0..p).filter(|j| columns[*j].name.starts_with("F_v")).collect();
@@ -116,8 +123,15 @@ fn by_disturbance(
     let longest = (0..p).map(|j| (columns[j].hac / solution.standard[j]).powi(2)).fold(0.0, f64::max);
     let time_s = 0.5 * longest / rate_hz;
     let by_speed = |i: usize, j: usize| time_s * columns[j].rms.powi(2) / squares * solution.covariance[(i, j)];
+    let by_delay = columns
+        .iter()
+        .position(|c| c.name == DELAY)
+        .map(|d| (0..p).map(|i| n / time_s * solution.covariance[(i, d)]).collect::<Vec<f64>>());
     [
         (0..p).map(|i| of_mass * solution.covariance[(i, inertia)]).collect(),
         (0..p).map(|i| of_mass * speeds.iter().map(|j| by_speed(i, *j)).sum::<f64>()).collect(),
     ]
+    .into_iter()
+    .chain(by_delay)
+    .collect()
 }

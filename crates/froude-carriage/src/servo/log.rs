@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use froude_records::number::{percent, plain, significant};
-use froude_records::run::stamps::{gaps, usual_step_s};
+use froude_records::number::{percent, plain};
+use froude_records::run::stamps::{LACKS, gaps, usual_step_s};
 use froude_records::text::counted;
 use froude_signal::resample::Spline;
 
@@ -42,11 +42,59 @@ const FEWEST: usize = 8;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evenly {
     /// The stretches, in order; all of one rate.
-    pub stretches: Vec<ServoLog>,
+    pub stretches: Vec<Stretch>,
     /// That rate, Hz.
     pub rate_hz: f64,
     /// What was done for it; `None` for a log that is even and whole.
     pub done: Option<String>,
+}
+
+/// A stretch of even steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stretch {
+    /// Its samples at even times.
+    pub log: ServoLog,
+    /// Times and commands as they were recorded; `None` where these are the even ones.
+    recorded: Option<[Vec<f64>; 2]>,
+}
+
+/// The command of a stretch some time before each sample.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Command {
+    /// By straight lines between the recorded ones, V.
+    pub value_v: Vec<f64>,
+    /// Slope of these lines, V/s.
+    pub slope_v_s: Vec<f64>,
+    /// 1 where the line spans missing samples, or begins before the record; else 0.
+    pub is_missing: Vec<f64>,
+}
+
+impl Stretch {
+    /// The command `late_s` before each sample; a held command (zero-order hold) acts half a step late on average.
+    pub(crate) fn command(&self, late_s: f64) -> Command {
+        let [times, commands] = match &self.recorded {
+            Some([times, commands]) => [times.as_slice(), commands.as_slice()],
+            None => [self.log.time_s.as_slice(), self.log.command_v.as_slice()],
+        };
+        let longest_s = LACKS * usual_step_s(times).unwrap_or(f64::INFINITY);
+        let mut out = Command::default();
+        let mut after = 1;
+        for t in &self.log.time_s {
+            let t = t - late_s;
+            while after + 1 < times.len() && times[after] < t {
+                after += 1;
+            }
+            let [a, b] = [times[after - 1], times[after]];
+            let [u, w] = [commands[after - 1], commands[after]];
+            let slope = (w - u) / (b - a);
+            // Times are rounded: an end is not beyond itself.
+            let is_within = (a - UNEVEN * (b - a)..=b + UNEVEN * (b - a)).contains(&t);
+            out.value_v.push(u + slope * (t.clamp(a, b) - a));
+            out.slope_v_s.push(slope);
+            out.is_missing.push(f64::from(u8::from(b - a > longest_s || !is_within)));
+        }
+        out
+    }
 }
 
 /// One record, columns of equal length.
@@ -91,8 +139,8 @@ impl ServoLog {
         Ok(n)
     }
 
-    /// The log as stretches of even steps: it is cut at its gaps, and where steps are uneven or samples missing, position (by a cubic spline) and command (by a
-    /// straight line) are read at even times.
+    /// The log as stretches of even steps: it is cut at its gaps, and where steps are uneven or samples missing, the position is read at even times by a cubic
+    /// spline, and the command is kept as it was recorded.
     ///
     /// # Errors
     ///
@@ -108,25 +156,23 @@ impl ServoLog {
         for rows in starts.zip(ends).map(|(from, to)| from..to) {
             let part = self.part(rows.clone());
             if part.time_s.windows(2).all(|w| is_even(w[1] - w[0], step_s)) && rows.len() >= FEWEST {
-                stretches.push(part);
+                stretches.push(Stretch { log: part, recorded: None });
             } else if rows.len() >= FEWEST {
                 let even = part.at_even_times(step_s)?;
                 put += even.time_s.len().saturating_sub(part.on_time(step_s));
-                stretches.push(even);
+                stretches.push(Stretch { log: even, recorded: Some([part.time_s, part.command_v]) });
             } else {
                 short += rows.len();
             }
         }
-        let samples = stretches.iter().map(|part| part.time_s.len()).sum::<usize>();
+        let samples = stretches.iter().map(|part| part.log.time_s.len()).sum::<usize>();
         let mut done = Vec::new();
         if put > 0 {
             done.push(format!(
-                "position and command are read at even times {} ms apart, {put} of {samples} samples ({}) are interpolated: the position by a cubic \
-                 spline, the command linearly, with an error of {} V rms estimated from its second differences. The residuals, from which the \
-                 intervals are computed, include this error",
+                "the position is read at even times {} ms apart by a cubic spline, {put} of {samples} samples ({}) are interpolated; the command is used \
+                 as recorded, and no row is made where it is missing",
                 plain(1e3 * step_s, 6),
-                percent(put as f64 / samples.max(1) as f64),
-                significant(self.off_lines_v(), 2)
+                percent(put as f64 / samples.max(1) as f64)
             ));
         }
         if !gaps.is_empty() {
@@ -169,13 +215,6 @@ impl ServoLog {
         })
     }
 
-    /// What a straight line between two samples, with one missing between them, misses of the command: half of a second difference, V rms.
-    fn off_lines_v(&self) -> f64 {
-        let off = |w: &[f64]| 0.25 * (w[0] - 2.0 * w[1] + w[2]).powi(2);
-        let n = self.command_v.len().saturating_sub(2).max(1) as f64;
-        (self.command_v.windows(3).map(off).sum::<f64>() / n).sqrt()
-    }
-
     /// The samples of a range.
     #[must_use]
     pub fn part(&self, rows: Range<usize>) -> Self {
@@ -200,16 +239,21 @@ mod tests {
     fn missing_and_jittering_samples_are_read_at_even_times() {
         let log = log(|i| i % 30 != 7, |i| 5e-4 * f64::from(i * 7 % 11) / 11.0);
         let even = log.evenly().unwrap();
-        let [part] = even.stretches.as_slice() else { panic!("one stretch") };
+        let [stretch] = even.stretches.as_slice() else { panic!("one stretch") };
+        let part = &stretch.log;
         assert!((even.rate_hz - 200.0).abs() < 0.1, "{}", even.rate_hz);
         assert!(part.rate_hz().is_ok());
+        // Two even times for each missing sample lie on a line that spans it, or one where it lies on a sample.
+        let missing = stretch.command(0.0).is_missing.iter().sum::<f64>();
+        assert!((133.0..=2.0 * 134.0).contains(&missing), "{missing}");
         for ((t, x), u) in part.time_s.iter().zip(&part.position_m).zip(&part.command_v) {
             assert!((x - 0.2 * (2.0 * t).sin()).abs() < 1e-7, "{t}: {x}");
             assert!((u - (2.0 * t).cos()).abs() < 1e-4, "{t}: {u}");
         }
         let done = even.done.unwrap();
         assert!(
-            done.starts_with("position and command are read at even times 5.0") && done.contains(" V rms"),
+            done.starts_with("the position is read at even times 5.0")
+                && done.ends_with("no row is made where it is missing"),
             "{done}"
         );
     }
@@ -218,9 +262,10 @@ mod tests {
     fn a_log_is_cut_at_its_gaps_and_an_even_one_is_left_as_it_is() {
         let whole = log(|_| true, |_| 0.0);
         let even = whole.evenly().unwrap();
-        assert_eq!((even.stretches.as_slice(), even.done), ([whole].as_slice(), None));
+        assert_eq!(even.stretches.iter().map(|part| &part.log).collect::<Vec<_>>(), [&whole]);
+        assert_eq!(even.done, None);
         let cut = log(|i| !(1000..1400).contains(&i) && !(1404..1600).contains(&i), |_| 0.0).evenly().unwrap();
-        assert_eq!(cut.stretches.iter().map(|part| part.time_s.len()).collect::<Vec<_>>(), [1000, 2400]);
+        assert_eq!(cut.stretches.iter().map(|part| part.log.time_s.len()).collect::<Vec<_>>(), [1000, 2400]);
         assert_eq!(
             cut.done.unwrap(),
             "the log is cut at 2 gaps: no filter runs across them; 4 rows between gaps are too few for a filter and left out"

@@ -16,15 +16,18 @@
 //!
 //! Not here: blocks and the test of whiteness, which need all rows at once ([`crate::servo::interval`]).
 
+use std::borrow::Cow;
 use std::collections::VecDeque;
 
 use froude_fit::faer::Mat;
 use froude_fit::stream::{Accumulator, Shape};
+use froude_records::number::plain;
 use froude_signal::butterworth;
 use froude_signal::decimate::Decimator;
 use froude_signal::stream::{Differences, Link, SecondDifferences, ZeroPhase};
 
-use crate::servo::chain::{Chain, MOST_NEAR_REST, Motion};
+use crate::servo::chain::{Chain, MOST_NEAR_REST, Motion, delay_column, delay_unknown, is_delay_known};
+use crate::servo::coordinate::DELAY;
 use crate::servo::error::ServoError;
 use crate::servo::excitation::{Column, excitation};
 use crate::servo::interval::{BLOCK_S, diagonal_roots};
@@ -64,7 +67,7 @@ const BEGINNING: usize = 4096;
 #[derive(Debug)]
 pub struct LongServo {
     chain: Chain,
-    names: Vec<(String, &'static str)>,
+    names: Vec<(String, Cow<'static, str>)>,
     rate_hz: f64,
     trim: usize,
     taken: usize,
@@ -73,8 +76,9 @@ pub struct LongServo {
     acceleration: Acceleration,
     /// Filtered and differentiated, not yet made into regressors; the three end at different samples.
     motion: Motion,
-    /// Force of the samples whose motion is not yet complete.
+    /// Force of the samples whose motion is not yet complete, and their columns of the delay.
     force_n: Vec<f64>,
+    by_delay: Vec<f64>,
     /// The command before the next one.
     before_v: Option<f64>,
     force: Decimator,
@@ -156,7 +160,8 @@ impl LongServo {
             });
         }
         let none = Motion { position_m: Vec::new(), velocity_m_s: Vec::new(), acceleration_m_s2: Vec::new() };
-        let names: Vec<_> = (chain.regressors(&none)?.into_iter()).map(|r| (r.name, r.unit)).collect();
+        let of_delay = chain.delay.is_estimated.then(|| delay_column(Vec::new()));
+        let names: Vec<_> = chain.regressors(&none)?.into_iter().chain(of_delay).map(|r| (r.name, r.unit)).collect();
         let decimator = Decimator::new(chain.decimation)?;
         let trim = (chain.trim_s * row_rate_hz).round() as usize;
         Ok(Self {
@@ -168,6 +173,7 @@ impl LongServo {
             acceleration: Acceleration::new(chain, rate_hz)?,
             motion: none,
             force_n: Vec::new(),
+            by_delay: Vec::new(),
             before_v: None,
             force: decimator.clone(),
             near_rest: decimator.clone(),
@@ -203,7 +209,9 @@ impl LongServo {
             let bite = start..position_m.len().min(start + BITE);
             self.taken += bite.len();
             let command_v = &command_v[bite.clone()];
-            self.force_n.extend(self.chain.force_n(command_v, self.before_v));
+            let [force_n, by_delay] = self.chain.forces(command_v, self.before_v, self.rate_hz);
+            self.force_n.extend(force_n);
+            self.by_delay.extend(by_delay);
             self.before_v = command_v.last().copied();
             let position = self.motion.position_m.len();
             self.filter.take(&position_m[bite], &mut self.motion.position_m);
@@ -233,6 +241,10 @@ impl LongServo {
         };
         let mut regressors = self.chain.regressors(&motion)?;
         let mut force_n: Vec<f64> = self.force_n.drain(..n).collect();
+        let by_delay: Vec<f64> = self.by_delay.drain(..n).collect();
+        if self.chain.delay.is_estimated {
+            regressors.push(delay_column(by_delay));
+        }
         let near = self.chain.near_rest(&motion);
         self.near_rest.take(&near, &mut self.decimated.near_rest);
         if self.chain.is_moving {
@@ -312,7 +324,7 @@ impl LongServo {
             return Err(ServoError::AtRest { rows, needed });
         }
 
-        let solution = self.rows.finish().solve(0)?;
+        let mut solution = self.rows.finish().solve(0)?;
         let p = self.names.len();
         let middle = self.windows.finish(&solution.coefficients);
         let dof = rows as f64 / (rows - p) as f64;
@@ -332,13 +344,41 @@ impl LongServo {
             covariance += &found.moved;
             (weak, is_told) = (found.findings, found.is_told);
         }
+        let mut findings = Vec::new();
+        let delay = self.names.iter().position(|(name, _)| name == DELAY);
+        if let Some(d) = delay {
+            let (step_s, late_s) = (self.rate_hz.recip(), solution.coefficients[d]);
+            let part = solution.sigma / (solution.standard[d] * self.squares[d].sqrt());
+            if !is_delay_known(covariance[(d, d)].sqrt(), part, step_s) {
+                // The other coefficients for a delay that lies within a step: they are linear in it.
+                let by: Vec<f64> = (0..p).map(|i| solution.covariance[(i, d)] / solution.covariance[(d, d)]).collect();
+                for (c, by) in solution.coefficients.iter_mut().zip(&by) {
+                    *c -= by * late_s;
+                }
+                let whole = covariance[(d, d)] + step_s * step_s / 12.0;
+                covariance = Mat::from_fn(p, p, |i, j| {
+                    covariance[(i, j)] - by[i] * covariance[(d, j)] - by[j] * covariance[(i, d)] + by[i] * by[j] * whole
+                });
+                findings.push(delay_unknown(step_s));
+            } else if late_s.abs() > step_s {
+                findings.push(format!(
+                    "the command acts {} ms after its stamp, more than a step: a log that is read in chunks is fitted for delays of up to one. Cut it to fewer rows, or shift the command",
+                    plain(1e3 * (late_s + self.chain.delay.at_s), 4)
+                ));
+            }
+        }
         let hac = diagonal_roots(&covariance);
         let dof = vec![(1.5 * windows).min(solution.dof); p];
-        let coefficients = coefficients(&self.names, &solution, [&hac, &hac, &dof], &is_told);
+        let mut coefficients = coefficients(&self.names, &solution, [&hac, &hac, &dof], &is_told);
+        if let Some(c) = delay.and_then(|d| coefficients.get_mut(d)) {
+            c.value += self.chain.delay.at_s;
+            c.interval = c.interval.map(|end| end + self.chain.delay.at_s);
+        }
         Ok(RigidFit {
-            findings: negative(&coefficients).collect(),
+            findings: negative(&coefficients).chain(findings).collect(),
             excitation: weak,
             coefficients,
+            shape: self.chain.shape(),
             covariance,
             dof,
             pieces: format!("HAC with a lag of {:.1} s", self.windows.lag as f64 / rate_hz),
@@ -559,7 +599,7 @@ mod tests {
         assert_eq!(fit.n_rows, rows.force_n.len());
         let own = |of: fn(&ServoCoefficient) -> f64| fit.coefficients.iter().map(of).collect::<Vec<f64>>();
         for (c, (name, unit)) in fit.coefficients.iter().zip(&rows.names) {
-            assert_eq!((&c.name, c.unit), (name, *unit));
+            assert_eq!((&c.name, &c.unit), (name, unit));
         }
         same(&own(|c| c.value), &whole.coefficients);
         same(&own(|c| c.classical_std), &whole.standard);

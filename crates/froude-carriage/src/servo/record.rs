@@ -9,6 +9,8 @@
 //! | `servo_over_position` | `F_c` a line between knots over the travel: no formula                         |
 //! | `servo_two_mass`      | motor and load with a chain between them (MCD eq. 2 and 3): no formula          |
 //!
+//! Of an axis that turns, the law gives `drive_torque`, N m, over `angle_dot` and `angle_dot_dot`, with J in the place of M. Formulas of a load are part of the law.
+//!
 //! An error of the force per volt scales all coefficients of the chain alike, one of the sprocket's radius those of speed, acceleration and stretch
 //! twice: they are type B, by the key of the rig, so that two records of one rig have them in common. Of a log without a rig the force
 //! per volt is taken as exact, unless a campaign declares its error.
@@ -22,6 +24,8 @@ use froude_records::estimate::{
 use froude_records::number::finite;
 use indexmap::IndexMap;
 
+use crate::servo::coordinate::{Coordinate, STRIBECK_SPEED, is_inertia, is_place};
+use crate::servo::load::Shape;
 use crate::servo::motor::Drive;
 use crate::servo::report::{RigidFit, ServoCoefficient};
 use crate::servo::scale::{ForcePerVolt, combined, errors_of};
@@ -53,51 +57,64 @@ pub fn law_of(friction: &str) -> String {
 #[must_use]
 pub fn rigid(source: &str, friction: &str, fit: &RigidFit, gain: &ForcePerVolt<'_>) -> Estimate {
     let method = law_of(friction);
-    let names: Vec<String> = fit.coefficients.iter().map(|c| in_formulas(&c.name)).collect();
-    let coefficients = fit.coefficients.iter().zip(&names).zip(&fit.dof).map(|((c, name), dof)| {
+    let axis = fit.shape.coordinate.names();
+    // Delay and Stribeck's speed say when and where; they are no coefficients of the law.
+    let kept: Vec<usize> = (0..fit.coefficients.len()).filter(|j| !is_place(&fit.coefficients[*j].name)).collect();
+    let of_law: Vec<ServoCoefficient> = kept.iter().map(|j| fit.coefficients[*j].clone()).collect();
+    let dof: Vec<f64> = kept.iter().map(|j| fit.dof[*j]).collect();
+    let covariance = Mat::from_fn(kept.len(), kept.len(), |i, j| fit.covariance[(kept[i], kept[j])]);
+    let places = fit.coefficients.iter().filter(|c| is_place(&c.name));
+    let places = places.map(|c| (c.name.clone(), derived(c, "fitted with the law".to_owned())));
+    let names: Vec<String> = of_law.iter().map(|c| in_formulas(&c.name)).collect();
+    let coefficients = of_law.iter().zip(&names).zip(&dof).map(|((c, name), dof)| {
         let label = (*name != c.name).then(|| c.name.clone());
         let of_scatter = Coefficient { label, ..coefficient(c, *dof) };
         (name.clone(), combined(of_scatter, (c, *dof), &gain.scales, &radii))
     });
-    let formula = formula(&names);
-    let constants = IndexMap::from([("force_per_volt".to_owned(), Measured::of(gain.n_v, "N/V"))]);
-    let fewest = finite(fit.dof.iter().copied().reduce(f64::min));
-    let errors = errors_of(&gain.scales, &fit.coefficients, &radii);
+    let formula = formula(&names, &fit.shape);
+    let mut constants = IndexMap::from([(gain.name.to_owned(), Measured::of(gain.n_v, gain.unit.as_str()))]);
+    let fitted = fit.coefficient(STRIBECK_SPEED).map(|c| c.value);
+    if let Some(speed) = fitted.or(fit.shape.stribeck_speed) {
+        constants.insert(STRIBECK_SPEED.to_owned(), Measured::of(speed, axis.speed[1]));
+    }
+    let fewest = finite(dof.iter().copied().reduce(f64::min));
+    let errors = errors_of(&gain.scales, &of_law, &radii);
     let pieces = if gain.drive.is_none() { with_bias(&fit.pieces) } else { fit.pieces.clone() };
-    let exact = errors
-        .is_empty()
-        .then(|| "the force per volt is taken as exact: an error of it scales all coefficients alike; declare it by [[source.uncertainty]] with \
-             quantity = \"drive_gain\""
-                .to_owned());
+    let exact = errors.is_empty().then(|| gain.exact.to_owned());
     Estimate {
         id: format!("{source}/{method}"),
         source: source.to_owned(),
         method: MethodUsed::of(&method, format!("linear least squares; friction {friction}; {}", fit.preparation)),
-        law: Law { constants, ..law(&method, formula) },
+        law: Law { constants, ..law_along(&method, formula, &fit.shape) },
         coefficients: coefficients.collect(),
-        type_a: type_a(names, &fit.covariance, &fit.dof, format!("scatter of the residuals ({pieces})")),
+        type_a: type_a(names, &covariance, &dof, format!("scatter of the residuals ({pieces})")),
         errors,
-        sigma: IndexMap::from([(LOAD.to_owned(), Measured::of(fit.sigma_n, "N"))]),
-        dof: IndexMap::from([(LOAD.to_owned(), fewest)]),
+        sigma: IndexMap::from([(axis.drive.to_owned(), Measured::of(fit.sigma_n, axis.load))]),
+        dof: IndexMap::from([(axis.drive.to_owned(), fewest)]),
         n_observations: fit.n_rows,
         clusters: fit.runs.map(|n| Clusters::of("run", n)),
         interval: if fit.runs.is_some() { Interval::default() } else { of_one_excitation() },
-        derived: gain.drive.map_or_else(IndexMap::new, |drive| effective(fit, drive)),
+        derived: gain
+            .drive
+            .map_or_else(IndexMap::new, |drive| effective(fit, drive))
+            .into_iter()
+            .chain(places)
+            .collect(),
         validity: validity(fit),
         diagnostics: Diagnostics {
             condition_number: fit.condition_number,
-            relative_residual: IndexMap::from([(LOAD.to_owned(), fit.relative_force_error)]),
+            relative_residual: IndexMap::from([(axis.drive.to_owned(), fit.relative_force_error)]),
             notes: exact.into_iter().chain(fit.findings.iter().cloned()).collect(),
             ..Diagnostics::default()
         },
-        ..on_the_chain()
+        ..along(fit.shape.coordinate)
     }
 }
 
 /// The power with which the sprocket's radius goes into a coefficient of a rigid model: once into the force, and once more into a speed or an
 /// acceleration.
 fn radii(name: &str) -> f64 {
-    if name == "M" || name.starts_with("F_v") { -2.0 } else { -1.0 }
+    if is_inertia(name) || name.starts_with("F_v") { -2.0 } else { -1.0 }
 }
 
 /// Two masses with a chain between them as an estimate of `source`; `drive` has the uncertainties that the report was made with.
@@ -159,34 +176,63 @@ fn on_the_chain() -> Estimate {
     }
 }
 
+/// The frame of a model of one coordinate.
+fn along(coordinate: Coordinate) -> Estimate {
+    match coordinate {
+        Coordinate::Linear => on_the_chain(),
+        Coordinate::Rotary => Estimate {
+            kind: "towing".to_owned(),
+            frame: Frame { name: "joint".to_owned(), words: "rotation about the axis".to_owned(), ..Frame::default() },
+            signs: Signs(
+                "torque of the drive on the axis, ideal gear; positive in the direction of the angle".to_owned(),
+            ),
+            ..Estimate::default()
+        },
+    }
+}
+
+fn law_along(name: &str, formula: Option<String>, shape: &Shape) -> Law {
+    let axis = shape.coordinate.names();
+    let read = shape.loads.iter().flat_map(|load| &load.channels).map(|name| [name.as_str(), axis.position[1]]);
+    let inputs = [axis.speed, axis.acceleration].into_iter().chain(read).map(|[name, unit]| (name, unit));
+    Law::of(name, inputs).giving(axis.drive, axis.load, formula)
+}
+
 fn law(name: &str, formula: Option<String>) -> Law {
     Law::of(name, [("v_y", "m/s"), ("v_y_dot", "m/s^2")]).giving(LOAD, "N", formula)
 }
 
 /// A name as a formula can have it: a sign becomes a word.
-fn in_formulas(name: &str) -> String {
+pub(crate) fn in_formulas(name: &str) -> String {
     match name.strip_suffix(['+', '-']) {
         Some(stem) => format!("{stem}_{}", if name.ends_with('+') { "pos" } else { "neg" }),
         None => name.to_owned(),
     }
 }
 
-/// The law over v_y and v_y_dot; `None` with a term that no formula gives, as a map over position.
-fn formula(names: &[String]) -> Option<String> {
+/// The law over speed and acceleration; `None` with a term that no formula gives, as a map over position.
+fn formula(names: &[String], shape: &Shape) -> Option<String> {
+    let axis = shape.coordinate.names();
+    let (v, a) = (axis.speed[0], axis.acceleration[0]);
+    let is_of_load =
+        |name: &&String| shape.loads.iter().flat_map(|load| &load.coefficients).any(|(own, _)| own == *name);
     let of = |name: &String| {
         Some(match name.as_str() {
-            "M" => "M*v_y_dot",
-            "F_v" => "F_v*v_y",
-            "F_c" => "F_c*sign(v_y)",
-            "F_v_pos" => "0.5*F_v_pos*(v_y + abs(v_y))",
-            "F_v_neg" => "0.5*F_v_neg*(v_y - abs(v_y))",
-            "F_c_pos" => "0.5*F_c_pos*(sign(v_y) + 1)",
-            "F_c_neg" => "0.5*F_c_neg*(sign(v_y) - 1)",
-            "offset" => "offset",
+            "M" | "J" => format!("{name}*{a}"),
+            "F_v" => format!("F_v*{v}"),
+            "F_c" => format!("F_c*sign({v})"),
+            "F_v_pos" => format!("0.5*F_v_pos*({v} + abs({v}))"),
+            "F_v_neg" => format!("0.5*F_v_neg*({v} - abs({v}))"),
+            "F_c_pos" => format!("0.5*F_c_pos*(sign({v}) + 1)"),
+            "F_c_neg" => format!("0.5*F_c_neg*(sign({v}) - 1)"),
+            "F_s" => format!("F_s*sign({v})*exp(-({v}/v_s)^2)"),
+            "offset" => "offset".to_owned(),
             _ => return None,
         })
     };
-    Some(names.iter().map(of).collect::<Option<Vec<_>>>()?.join(" + "))
+    let own = names.iter().filter(|name| !is_of_load(name)).map(of).collect::<Option<Vec<_>>>()?;
+    let terms = own.into_iter().chain(shape.loads.iter().map(|load| load.text.clone()));
+    (!shape.is_tabled).then(|| terms.collect::<Vec<_>>().join(" + "))
 }
 
 fn coefficient(c: &ServoCoefficient, dof: f64) -> Coefficient {
@@ -196,13 +242,13 @@ fn coefficient(c: &ServoCoefficient, dof: f64) -> Coefficient {
         type_a: finite(Some(c.block_std)),
         interval_95: interval(c),
         effective_dof: finite(Some(dof)),
-        ..Coefficient::of(Some(c.value), c.unit, Status::Free)
+        ..Coefficient::of(Some(c.value), c.unit.as_ref(), Status::Free)
     }
 }
 
 fn derived(c: &ServoCoefficient, formula: String) -> Derived {
     let standard_uncertainty = finite(Some(c.block_std));
-    Derived { standard_uncertainty, interval_95: interval(c), ..Derived::of(formula, Some(c.value), c.unit) }
+    Derived { standard_uncertainty, interval_95: interval(c), ..Derived::of(formula, Some(c.value), c.unit.as_ref()) }
 }
 
 fn interval(c: &ServoCoefficient) -> Option<[f64; 2]> {
@@ -236,10 +282,11 @@ fn effective(fit: &RigidFit, drive: &Drive) -> IndexMap<String, Derived> {
 /// Range of the speeds and accelerations of the rows, from those of the columns of the regression; a column of one direction is 0 in the other.
 fn validity(fit: &RigidFit) -> IndexMap<String, Range> {
     let mut out: IndexMap<String, Range> = IndexMap::new();
+    let axis = fit.shape.coordinate.names();
     for (c, ends) in fit.coefficients.iter().zip(&fit.ranges) {
-        let (key, unit) = match c.name.as_str() {
-            "M" => ("v_y_dot", "m/s^2"),
-            "F_v" | "F_v+" | "F_v-" => ("v_y", "m/s"),
+        let [key, unit] = match c.name.as_str() {
+            "M" | "J" => axis.acceleration,
+            "F_v" | "F_v+" | "F_v-" => axis.speed,
             _ => continue,
         };
         if ends[0] <= ends[1] {

@@ -1,5 +1,6 @@
 //! One record, one report.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use froude_fit::diagnostics::condition_number;
@@ -9,10 +10,11 @@ use froude_fit::stream::Solution;
 use froude_records::text::counted;
 
 use crate::servo::chain::Chain;
+use crate::servo::coordinate::is_inertia;
 use crate::servo::error::ServoError;
 use crate::servo::excitation::{Column, excitation};
 use crate::servo::interval::{CONFIDENCE, Spread, Whiteness, diagonal_roots, over_runs, spread, whiteness};
-use crate::servo::log::ServoLog;
+use crate::servo::load::Shape;
 use crate::servo::motor::MotorSide;
 use crate::servo::regression::least_squares;
 use crate::servo::rows::Rows;
@@ -26,7 +28,7 @@ pub struct ServoCoefficient {
     /// `M`, `F_v`, `F_c+`, `offset`…
     pub name: String,
     /// Its unit.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// Value.
     pub value: f64,
     /// Standard deviation if residuals were white. They are not: see [`ServoReport::whiteness`].
@@ -41,26 +43,26 @@ pub struct ServoCoefficient {
 
 impl ServoCoefficient {
     /// With its standard deviations, white, HAC and of the blocks, and the half-width of its interval.
-    pub(crate) fn new(name: &str, unit: &'static str, value: f64, std: [f64; 3], half: f64) -> Self {
+    pub(crate) fn new(name: &str, unit: impl Into<Cow<'static, str>>, value: f64, std: [f64; 3], half: f64) -> Self {
         let ([classical_std, hac_std, block_std], interval) = (std, [value - half, value + half]);
-        Self { name: name.to_owned(), unit, value, classical_std, hac_std, block_std, interval }
+        Self { name: name.to_owned(), unit: unit.into(), value, classical_std, hac_std, block_std, interval }
     }
 }
 
 /// Coefficients with this scatter: standard deviations by HAC and of the blocks, and degrees of freedom. What the motion does not determine has
 /// no interval.
 pub(crate) fn coefficients(
-    names: &[(String, &'static str)],
+    names: &[(String, Cow<'static, str>)],
     solution: &Solution,
     [hac, blocks, dof]: [&[f64]; 3],
     is_told: &[bool],
 ) -> Vec<ServoCoefficient> {
-    let of = |(j, (name, unit)): (usize, &(String, &'static str))| {
+    let of = |(j, (name, unit)): (usize, &(String, Cow<'static, str>))| {
         let [hac_std, block_std] = [hac[j], blocks[j]].map(|s| if is_told[j] { s } else { f64::NAN });
         let std = [solution.standard[j], hac_std, block_std];
         ServoCoefficient::new(
             name,
-            unit,
+            unit.clone(),
             solution.coefficients[j],
             std,
             coverage_factor(CONFIDENCE, dof[j]) * block_std,
@@ -74,6 +76,8 @@ pub(crate) fn coefficients(
 pub struct RigidFit {
     /// Coefficients in the order of the regression.
     pub coefficients: Vec<ServoCoefficient>,
+    /// What the law says beside friction.
+    pub shape: Shape,
     /// Their covariance, of what their intervals are made of.
     pub covariance: Mat<f64>,
     /// Degrees of freedom of each.
@@ -129,39 +133,7 @@ pub struct ServoReport {
     pub runs: Vec<Range<usize>>,
 }
 
-/// Identifies a rigid axis from one record.
-///
-/// # Errors
-///
-/// [`ServoError`]: see its variants.
-///
-/// # Example
-///
-/// An axis of 6 kg with friction, driven by two tones:
-///
-/// ```
-/// use froude_carriage::servo::{Chain, Friction, ServoLog, identify_servo};
-/// let time_s: Vec<f64> = (0..20_000).map(|i| 1e-3 * f64::from(i)).collect();
-/// let position_m = time_s.iter().map(|t| 0.2 * (1.3 * t).sin() + 0.1 * (3.1 * t).sin()).collect();
-/// let command_v = time_s
-///     .iter()
-///     .map(|t| {
-///         let v = 0.26 * (1.3 * t).cos() + 0.31 * (3.1 * t).cos();
-///         let a = -0.338 * (1.3 * t).sin() - 0.961 * (3.1 * t).sin();
-///         (6.0 * a + 2.0 * v + 2.5 * v.signum()) / 6.0
-///     })
-///     .collect();
-/// let log = ServoLog { time_s, position_m, command_v };
-/// let report = identify_servo(&log, &Chain::new(6.0, Friction::symmetric()))?;
-/// let mass_kg = report.fit.coefficient("M").map_or(f64::NAN, |c| c.value);
-/// assert!((mass_kg - 6.0).abs() < 0.01);
-/// # Ok::<(), froude_carriage::servo::ServoError>(())
-/// ```
-pub fn identify_servo(columns: &ServoLog, chain: &Chain) -> Result<ServoReport, ServoError> {
-    of_rows(chain.rows(columns)?, chain)
-}
-
-/// As [`identify_servo`], from rows that are already there, of one record.
+/// From rows that are already there, of one record.
 ///
 /// # Errors
 ///
@@ -176,7 +148,7 @@ pub fn of_rows(rows: Rows, chain: &Chain) -> Result<ServoReport, ServoError> {
     Ok(reported(rows, vec![whole], &solution, spread, chain))
 }
 
-/// As [`identify_servo`], from several runs of the same axis: the run is the piece of evidence.
+/// From several runs of the same axis: the run is the piece of evidence.
 ///
 /// Friction and force per volt change from run to run and stay within one, so that no block within a run shows it. The intervals are
 /// those of whole runs as clusters, with Student's t of each coefficient's own degrees of freedom. With fewer than
@@ -186,17 +158,7 @@ pub fn of_rows(rows: Rows, chain: &Chain) -> Result<ServoReport, ServoError> {
 ///
 /// [`ServoError`].
 pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError> {
-    let mut ranges = Vec::new();
-    let mut joined: Option<Rows> = None;
-    for rows in runs {
-        let first = joined.as_ref().map_or(0, |r| r.force_n.len());
-        ranges.push(first..first + rows.force_n.len());
-        match &mut joined {
-            None => joined = Some(rows),
-            Some(all) => all.append(rows),
-        }
-    }
-    let rows = joined.ok_or(ServoError::TooFewRows { rows: 0, needed: FEWEST_RUNS })?;
+    let (rows, ranges) = joined(runs)?;
     if ranges.len() == 1 {
         return of_rows(rows, chain);
     }
@@ -221,6 +183,48 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
     }
 }
 
+/// As [`of_runs`], from logs each of which determines all coefficients: with two to four of them the intervals are those of the scatter between fits of single
+/// logs, S/n with Student's t of n − 1 degrees of freedom, and what the blocks show within them.
+///
+/// # Errors
+///
+/// [`ServoError`].
+pub(crate) fn of_logs(logs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError> {
+    let n = logs.len();
+    let each: Option<Vec<Vec<f64>>> = (2..FEWEST_RUNS)
+        .contains(&n)
+        .then(|| logs.iter().map(|rows| Some(least_squares(rows).ok()?.coefficients)).collect())
+        .flatten();
+    let Some(each) = each else { return of_runs(logs, chain) };
+    let (all, ranges) = joined(logs)?;
+    let solution = least_squares(&all)?;
+    let mut spread = spread(&all, &solution, chain.hac_lag_s)?;
+    let mean = |j: usize| each.iter().map(|b| b[j]).sum::<f64>() / n as f64;
+    let between = |i: usize, j: usize| {
+        let products = each.iter().map(|b| (b[i] - mean(i)) * (b[j] - mean(j)));
+        products.sum::<f64>() / ((n - 1) * n) as f64
+    };
+    let p = solution.coefficients.len();
+    spread.covariance += &Mat::from_fn(p, p, between);
+    (spread.runs, spread.dof) = (Some(n), vec![(n - 1) as f64; p]);
+    Ok(reported(all, ranges, &solution, spread, chain))
+}
+
+/// Rows of runs behind each other, and which are of which.
+pub(crate) fn joined(runs: Vec<Rows>) -> Result<(Rows, Vec<Range<usize>>), ServoError> {
+    let mut ranges = Vec::new();
+    let mut joined: Option<Rows> = None;
+    for rows in runs {
+        let first = joined.as_ref().map_or(0, |r| r.force_n.len());
+        ranges.push(first..first + rows.force_n.len());
+        match &mut joined {
+            None => joined = Some(rows),
+            Some(all) => all.append(rows),
+        }
+    }
+    Ok((joined.ok_or(ServoError::TooFewRows { rows: 0, needed: FEWEST_RUNS })?, ranges))
+}
+
 /// Sums at the motor's shaft (MCD Table II) of a rigid model: J_eff, B_eff, C_eff.
 #[must_use]
 pub fn effective(fit: &RigidFit, motor: &MotorSide) -> Vec<ServoCoefficient> {
@@ -228,7 +232,7 @@ pub fn effective(fit: &RigidFit, motor: &MotorSide) -> Vec<ServoCoefficient> {
     let moved = |from: &str, to: &str, unit: &'static str, factor: f64| {
         fit.coefficient(from).map(|c| ServoCoefficient {
             name: to.to_owned(),
-            unit,
+            unit: unit.into(),
             value: factor * c.value,
             classical_std: factor * c.classical_std,
             hac_std: factor * c.hac_std,
@@ -267,6 +271,12 @@ fn reported(
         .collect();
     let mut weak = Vec::new();
     let mut is_told = vec![true; rows.names.len()];
+    for (j, change) in chain.delay.changes.iter().enumerate() {
+        for (k, other) in chain.delay.changes.iter().enumerate() {
+            spread.covariance[(j, k)] += change * other;
+        }
+        spread.hac[j] = spread.hac[j].hypot(*change);
+    }
     let not_white = whiteness.as_ref().and_then(|w| not_white(w, &spread.covariance, &solution.standard, &pieces));
     if chain.is_moving {
         let found = excitation(&columns, solution, n, rows.rate_hz, chain.corner_hz);
@@ -282,6 +292,7 @@ fn reported(
         findings: not_white.into_iter().chain(negative(&coefficients)).collect(),
         excitation: weak,
         coefficients,
+        shape: chain.shape(),
         covariance: spread.covariance,
         dof: spread.dof,
         pieces,
@@ -321,7 +332,7 @@ fn not_white(w: &Whiteness, covariance: &Mat<f64>, classical: &[f64], pieces: &s
 
 /// What resists must not drive: a sentence for each coefficient that does beyond its interval.
 pub(crate) fn negative(coefficients: &[ServoCoefficient]) -> impl Iterator<Item = String> {
-    let must_resist = |c: &&ServoCoefficient| c.name == "M" || c.name.starts_with("F_") && c.name != "F_s";
+    let must_resist = |c: &&ServoCoefficient| is_inertia(&c.name) || c.name.starts_with("F_") && c.name != "F_s";
     coefficients
         .iter()
         .filter(must_resist)

@@ -1,5 +1,7 @@
 //! Rows of a regression.
 
+use std::borrow::Cow;
+
 /// Rows of the regression `force = Σ column · coefficient`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
@@ -10,7 +12,7 @@ pub struct Rows {
     /// Force, N.
     pub force_n: Vec<f64>,
     /// Name and unit of each coefficient.
-    pub names: Vec<(String, &'static str)>,
+    pub names: Vec<(String, Cow<'static, str>)>,
     /// A column per coefficient.
     pub columns: Vec<Vec<f64>>,
 }

@@ -8,28 +8,43 @@ use indexmap::IndexMap;
 use crate::servo::motor::Drive;
 use crate::servo::report::ServoCoefficient;
 
-/// The force per volt of a command, with what is declared of its error.
+/// The force or torque per unit of a command, with what is declared of its error.
 #[derive(Debug, Clone)]
 pub struct ForcePerVolt<'a> {
-    /// N/V.
+    /// N/V, or in `unit`.
     pub n_v: f64,
+    /// Its name in a record.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: String,
+    /// What is said where it has no error.
+    pub exact: &'static str,
     /// Its errors; none where it is taken as exact.
     pub scales: Vec<Scale>,
     /// The drive that it follows from; `None` of a log without a rig.
     pub drive: Option<&'a Drive>,
 }
 
+/// What is said of a force per volt that has no error.
+const EXACT: &str = "the force per volt is taken as exact: an error of it scales all coefficients alike; declare it by [[source.uncertainty]] with \
+                     quantity = \"drive_gain\"";
+
 impl<'a> ForcePerVolt<'a> {
     /// As it follows from a declared drive.
     #[must_use]
     pub fn of_drive(drive: &'a Drive) -> Self {
-        Self { n_v: drive.motor.force_per_volt_n_v(), scales: drive.scales().into(), drive: Some(drive) }
+        Self {
+            scales: drive.scales().into(),
+            drive: Some(drive),
+            ..Self::of_log(drive.motor.force_per_volt_n_v(), None)
+        }
     }
 
     /// As a number, with its error where one is declared.
     #[must_use]
     pub fn of_log(n_v: f64, scale: Option<Scale>) -> Self {
-        Self { n_v, scales: scale.into_iter().collect(), drive: None }
+        let scales = scale.into_iter().collect();
+        Self { n_v, name: "force_per_volt", unit: "N/V".to_owned(), exact: EXACT, scales, drive: None }
     }
 }
 

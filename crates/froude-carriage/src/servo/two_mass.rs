@@ -413,7 +413,7 @@ impl<'a> Record<'a> {
                 if is_log { [value * (-half).exp(), value * half.exp()] } else { [value - half, value + half] };
             ServoCoefficient {
                 name: name.to_owned(),
-                unit,
+                unit: unit.into(),
                 value,
                 classical_std: scale * quadratic(&gradient, &covariance.classical).sqrt(),
                 hac_std: scale * quadratic(&gradient, &covariance.hac).sqrt(),

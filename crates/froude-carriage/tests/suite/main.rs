@@ -2,6 +2,7 @@
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, missing_docs)]
 
 mod carriage;
+mod joint;
 mod one_plant;
 mod rigid;
 mod scatter;

@@ -443,7 +443,7 @@ fn anyones_servo_log_is_identified_with_intervals() {
     let findings = found["findings"].as_array().unwrap();
     let by_direction = findings.iter().find(|f| f["code"] == "friction-by-direction").unwrap();
     assert!(
-        by_direction["message"].as_str().unwrap().contains("F_v+ minus F_v- is −76.9 ± 7.4 N s/m"),
+        by_direction["message"].as_str().unwrap().contains("F_v+ minus F_v- is −76.8 ± 7.2 N s/m"),
         "{by_direction}"
     );
     assert!(out.join("report.html").exists());

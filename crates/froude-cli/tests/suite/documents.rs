@@ -58,6 +58,7 @@ fn the_key_tables_of_the_book_are_those_that_the_methods_declare() {
         ("free-decay", decay::section::PLAN),
         ("excited-response", excited_response::section::KEYS),
         ("excited-response", excited_response::section::PLAN),
+        ("joint", froude::methods::carriage::axis::declared::KEYS),
         ("cfd", froude::cfd::forces::keys::KEYS),
     ] {
         let table = key_table(keys);

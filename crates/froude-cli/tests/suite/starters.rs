@@ -143,23 +143,26 @@ fn mesh(lab: &Path) {
     std::fs::write(lab.join("hull.stl"), text + "endsolid hull\n").unwrap();
 }
 
-/// 12 kg, 30 kg/s and 4 N, at 35 N/V.
+/// 0.0049 kg m², 0.010 N m s, 0.020 N m and gravity of 0.20 N m, at 0.35 N m/A.
 fn servo(lab: &Path) {
-    let mut noise = noise(5);
-    let mut text = "t,x,u\n".to_owned();
-    for i in 0..6000 {
-        let time = f64::from(i) * 0.005;
-        let (mut x, mut v, mut a) = (0.0, 0.0, 0.0);
-        for (amplitude, hertz) in [(0.08, 0.3), (0.03, 0.7), (0.01, 1.7)] {
-            let omega = TAU * hertz;
-            x += amplitude * (omega * time).sin();
-            v += amplitude * omega * (omega * time).cos();
-            a -= amplitude * omega * omega * (omega * time).sin();
+    std::fs::create_dir(lab.join("logs")).unwrap();
+    for log in 1..=5_u32 {
+        let mut noise = noise(log);
+        let mut text = "time [s],angle [rad],current [A]\n".to_owned();
+        for i in 0..2400 {
+            let time = f64::from(i) * 0.005;
+            let (mut x, mut v, mut a) = (0.0, 0.0, 0.0);
+            for (amplitude, hertz) in [(0.5, 0.3), (0.3, 0.7), (0.1, 1.7)] {
+                let (omega, phase) = (TAU * hertz, f64::from(log));
+                x += amplitude * (omega * time + phase).sin();
+                v += amplitude * omega * (omega * time + phase).cos();
+                a -= amplitude * omega * omega * (omega * time + phase).sin();
+            }
+            let torque = 0.0049 * a + 0.010 * v + 0.020 * f64::signum(v) + 0.20 * f64::sin(x);
+            writeln!(text, "{time:.3},{},{}", x + 1e-6 * noise(), torque / 0.35 + 1e-3 * noise()).unwrap();
         }
-        let force = 12.0 * a + 30.0 * v + 4.0 * f64::signum(v);
-        writeln!(text, "{time:.3},{},{}", x + 1e-6 * noise(), force / 35.0 + 2e-3 * noise()).unwrap();
+        std::fs::write(lab.join(format!("logs/log_{log}.csv")), text).unwrap();
     }
-    std::fs::write(lab.join("axis.csv"), text).unwrap();
 }
 
 /// The cell shows the force of the rig: what moves the 46 kg less what the water does.
@@ -207,7 +210,10 @@ fn every_campaign_runs_as_it_is_written() {
                 run(kind, openfoam, &lines, &[("D_x_II", 4.0), ("Y_uv", -28.0), ("N_uv", -14.0)]);
             }
             "mesh" => run(kind, mesh, &[INSPECT, &["added-mass", "hull.stl", "--unit", "mm", "--check"]], &[]),
-            "servo" => run(kind, servo, &[INSPECT, IDENTIFY], &[("M", 12.0)]),
+            "servo" => {
+                let lines: [&[&str]; 3] = [&["inspect", "logs/log_1.csv"], INSPECT, IDENTIFY];
+                run(kind, servo, &lines, &[("J", 0.0049), ("m_g_l", 0.2)]);
+            }
             "sway" => run(kind, sway, &[INSPECT, IDENTIFY], &[("Y_v_dot", -38.0), ("N_v", -35.0)]),
             other => panic!("no data for froude new {other}"),
         }
