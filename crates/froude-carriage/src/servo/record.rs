@@ -22,6 +22,7 @@ use froude_records::estimate::{
 use froude_records::number::finite;
 use indexmap::IndexMap;
 
+use crate::drag::setup::DriveUnit;
 use crate::servo::motor::Drive;
 use crate::servo::report::{RigidFit, ServoCoefficient};
 use crate::servo::scale::{ForcePerVolt, combined, errors_of};
@@ -60,7 +61,9 @@ pub fn rigid(source: &str, friction: &str, fit: &RigidFit, gain: &ForcePerVolt<'
         (name.clone(), combined(of_scatter, (c, *dof), &gain.scales, &radii))
     });
     let formula = formula(&names);
-    let constants = IndexMap::from([("force_per_volt".to_owned(), Measured::of(gain.n_v, "N/V"))]);
+    let is_current = gain.scales.iter().any(|scale| scale.quantity == DriveUnit::CURRENT.name);
+    let unit = if is_current { DriveUnit::CURRENT } else { DriveUnit::COMMAND };
+    let constants = IndexMap::from([(unit.name.to_owned(), Measured::of(gain.n_v, unit.unit))]);
     let fewest = finite(fit.dof.iter().copied().reduce(f64::min));
     let errors = errors_of(&gain.scales, &fit.coefficients, &radii);
     let pieces = if gain.drive.is_none() { with_bias(&fit.pieces) } else { fit.pieces.clone() };

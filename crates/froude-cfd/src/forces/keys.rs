@@ -48,7 +48,12 @@ pub const KEYS: &[Key] = &[
         "a table with the columns case, speed [m/s] and angle [deg]",
     ),
     optional("object", Kind::Text, "the only one with force files", "name of the function object in postProcessing"),
-    required("forward", Kind::Word(&AXES), FORWARD, "axis of the force files that points to the bow, at no drift: that of the mesh, unless the function object has a `coordinateSystem`"),
+    required(
+        "forward",
+        Kind::Word(&AXES),
+        FORWARD,
+        "axis of the force files that points to the bow, at no drift: that of the mesh, unless the function object has a `coordinateSystem`",
+    ),
     required("up", Kind::Word(&AXES), UP, "axis of the force files that points up"),
     optional(
         "turned",

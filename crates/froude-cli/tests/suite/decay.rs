@@ -172,7 +172,7 @@ fn what_is_missing_is_named() {
     // Logs of another method than the one asked for: what they are, and what reads them.
     let said = told("\"mcd\"", "");
     let instead = "3 logs there are of other programs (a table of steady runs is what froude identify FILE reads, a servo's log what froude carriage \
-                   identify FILE does), and runs of the method tow are read here: a [[source]] with method = [\"decay_envelope\", \
+                   identify FILE does; wet and dry tows need a sidecar, which froude new carriage-logs begins), and runs of the method tow are read here: a [[source]] with method = [\"decay_envelope\", \
                    \"decay_output_error\"] reads releases; else name a folder with runs of tow";
     assert!(said.contains(&format!("{}: {instead}", runs.display())), "{said}");
     let tows = Path::new(env!("CARGO_MANIFEST_DIR")).join("../froude-records/tests/golden/runs-1");
