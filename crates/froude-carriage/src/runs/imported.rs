@@ -111,10 +111,15 @@ pub(super) fn read(
         all
     };
     let mut out = Runs { folder: first_folder(paths), declared_by: vec![campaign], ..Runs::default() };
-    let (mut directions, mut settings) = (Directions::default(), Vec::new());
+    let (mut directions, mut settings, mut members) = (Directions::default(), Vec::new(), Vec::new());
     let mut said: IndexMap<String, (Finding, usize)> = IndexMap::new();
     for path in all {
-        let tow = told(path)?;
+        let mut tow = told(path)?;
+        let meta = &mut tow.imported.log.meta;
+        if let ([_, _, ..], Some(folder)) = (folders.as_slice(), folder_of(path).file_name()) {
+            meta.id = format!("{}-{}", folder.to_string_lossy(), meta.id);
+        }
+        members.push(Member::of(path, meta)?);
         out.declared_by.extend([Some(tow.sidecar.path.clone()), tow.sidecar.list.clone()].into_iter().flatten());
         if !roles.contains(&tow.role) {
             continue;
@@ -134,13 +139,13 @@ pub(super) fn read(
                 continue;
             }
         };
-        if let ([_, _, ..], Some(folder)) = (folders.as_slice(), folder_of(path).file_name()) {
-            log.meta.id = format!("{}-{}", folder.to_string_lossy(), log.meta.id);
-        }
         directions.agree(path, &direction, log.meta.carriage.direction)?;
         settings.push((list, repeat));
         log.meta.campaign.clone_from(&driven.campaign.name);
         out.logs.push(log);
+    }
+    if let Some(first) = doubles(&members).into_iter().next() {
+        return Err(MethodError::NoSet { first: first.message, more: 0 });
     }
     pair(&mut out.logs, &settings)?;
     for (mut finding, n) in said.into_values() {
@@ -148,10 +153,6 @@ pub(super) fn read(
             finding.message += &format!(" (so it is with {} more)", n - 1);
         }
         out.findings.push(finding);
-    }
-    let members = out.logs.iter().map(|log| Member::of(&log.path, &log.meta)).collect::<Result<Vec<_>, _>>()?;
-    if let Some(first) = doubles(&members).into_iter().next() {
-        return Err(MethodError::NoSet { first: first.message, more: 0 });
     }
     out.declared_by.sort();
     out.declared_by.dedup();
@@ -192,7 +193,11 @@ fn campaign_of(paths: &[PathBuf], named: Option<&Path>) -> Result<PathBuf, Metho
         return Ok(named.to_owned());
     }
     let folder = first_folder(paths);
-    let places = [folder.join(CAMPAIGN_COPY), folder.join("..").join(CAMPAIGN_COPY)];
+    let above = match folder.parent() {
+        Some(above) if folder.file_name().is_some() => above.to_owned(),
+        _ => folder.join(".."),
+    };
+    let places = [folder.join(CAMPAIGN_COPY), above.join(CAMPAIGN_COPY)];
     places.iter().find(|place| place.is_file()).cloned().ok_or_else(|| {
         let what = format!(
             "no {CAMPAIGN_COPY} lies with these logs or in the folder above, and none was named: the force per volt or ampere is not known; {RIG}"
@@ -434,7 +439,7 @@ fn not_there(declared_by: &[PathBuf], all: &[PathBuf]) -> Result<Option<Finding>
 fn steady_by_position() -> Finding {
     let settle_s = SteadySettings::default().settle_s;
     let text = format!(
-        "the logs state no reference speed: a run is steady where its position, differenced over {SPAN_S} s, keeps its median speed within {}, less {settle_s} s \
+        "no reference speed is used of logs of another program: a run is steady where its position, differenced over {SPAN_S} s, keeps its median speed within {}, less {settle_s} s \
          at the start and {CORNER_S} s at the end, unless [[segments]] declare it",
         percent(HELD_WITHIN)
     );

@@ -42,6 +42,9 @@ mod sidecars;
 mod small_disk;
 mod starters;
 mod steady;
+mod student;
+#[path = "../../../froude-carriage/tests/student_tank/mod.rs"]
+mod student_tank;
 mod sway;
 mod swim;
 mod swim_3d;

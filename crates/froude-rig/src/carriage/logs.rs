@@ -80,7 +80,7 @@ fn read(s: &Section<'_>) -> Result<LogsRig, RecordError> {
         }
     };
     if force_per_unit.standard_uncertainty <= 0.0 {
-        let problem = "has no standard uncertainty, and the drag is never known better: write { value = \"…\", standard = \"1 %\" } with your own";
+        let problem = "has no standard uncertainty, and the drag is known no better than it: write { value = \"…\", standard = \"1 %\" } with your own";
         return Err(values.wrong(key, problem));
     }
     let position_relative = values.number("position_standard").ok_or_else(|| {
