@@ -237,7 +237,7 @@ impl<'r, 'a> Tows<'r, 'a> {
             (xx > 0.0).then(|| vec![xy / xx])
         };
         let mut sweeps: Vec<Cluster> =
-            without_drag.iter().map(|c| c.0).filter(|c| matches!(c, Cluster::Sweep(_))).collect();
+            without_drag.iter().map(|c| c.0).filter(|c| !matches!(c, Cluster::Pair(_))).collect();
         sweeps.dedup();
         // A wet run alone has half the variance of a difference, and friction that is known exactly adds none.
         let floor = self.promised(&points, setup).map(|d| of_dry_repeats(&d, 0.5_f64.sqrt(), &points, setup));
@@ -245,7 +245,8 @@ impl<'r, 'a> Tows<'r, 'a> {
         let of_sweeps = Replicates::leaving_out("friction run", sweeps.len(), |g| without(sweeps[g]));
         let by_pairs: Vec<Replicates> = match of_pairs {
             Some(pairs) => std::iter::once(Replicates { floor, ..pairs }).chain(of_sweeps).collect(),
-            None => Vec::new(),
+            // Of one pair the wet runs are left out in turn, and the dry ones.
+            None => of_sweeps.map_or_else(Vec::new, |dry| repeats(&points).into_iter().chain([dry]).collect()),
         };
         // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
         let of_nothing: Vec<Point> = self.dry.iter().filter_map(|d| point(d).ok()).collect();
@@ -301,6 +302,7 @@ fn repeats(points: &[Point]) -> Option<Replicates> {
 fn scatter(sets: Vec<Replicates>) -> Scatter {
     let name = match sets.as_slice() {
         [one] if one.left_out == "run" => "scatter of the runs about the law",
+        [wet, _] if wet.left_out == "run" => "scatter of wet runs about the law and of dry runs",
         [_, _] => "scatter of pairs and of friction runs",
         _ => "scatter between pairs",
     };
@@ -365,6 +367,8 @@ fn unseen_drift(
 enum Cluster {
     /// A dry tow: with its pair.
     Pair(u32),
+    /// A dry tow of the only pair: alone.
+    Tow(u32),
     /// A friction run: with its repeat of all speeds, or alone where repeats are not distinguished.
     Sweep(u32),
 }
@@ -374,8 +378,12 @@ fn clusters(runs: &[&DragRun<'_>]) -> Vec<Cluster> {
     let mut repeats = runs.iter().filter(|r| r.kind == RunKind::Friction).map(|r| r.pair);
     let first = repeats.next();
     let is_told = repeats.any(|r| Some(r) != first);
+    let mut tows = runs.iter().filter(|r| r.kind != RunKind::Friction).map(|r| r.pair);
+    let first_pair = tows.next();
+    let is_one_pair = tows.all(|pair| Some(pair) == first_pair);
     let of = |(i, r): (usize, &&DragRun<'_>)| match r.kind {
         RunKind::Friction => Cluster::Sweep(if is_told { r.pair } else { i as u32 }),
+        _ if is_one_pair => Cluster::Tow(i as u32),
         _ => Cluster::Pair(r.pair),
     };
     runs.iter().enumerate().map(of).collect()

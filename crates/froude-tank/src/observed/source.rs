@@ -147,7 +147,8 @@ fn with_scales(mut source: Source, logs: &[TankLog]) -> Source {
         let quantity = if channel.ends_with("position") { "speed" } else { channel.as_str() };
         for (constant, part) in &told.scale_errors {
             let known = errors.entry((quantity, constant)).or_default();
-            *known = known.max(*part);
+            // The effect of a constant is found by differences, to ten digits.
+            *known = known.max((1e9 * part).round() / 1e9);
         }
     }
     let entry = |((quantity, constant), standard): ((&str, &str), f64)| BudgetEntry {
