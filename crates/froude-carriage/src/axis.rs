@@ -16,14 +16,16 @@ use froude_records::number;
 use froude_records::run::{BodyState, Declared, ImportedRun, Role, RunLog, import_run};
 use froude_records::sidecar_file::{sidecar_of, sidecar_path};
 use froude_records::units::Dimension;
+use froude_rig::carriage::LogsRig;
 
+use crate::drag::setup::DriveUnit;
 use crate::drag::steady::{SteadySettings, window};
 use crate::reduction::rig_key;
 use crate::runs::{Runs, column, for_drag, mounts};
 use crate::servo::motor::{Drive, MotorSide};
 use crate::servo::report::{effective, of_runs as of_several};
 use crate::servo::rows::Rows;
-use crate::servo::scale::ForcePerVolt;
+use crate::servo::scale::{ForcePerVolt, Scale};
 use crate::servo::two_mass::FlexibleReport;
 use crate::servo::{
     Chain, Friction, RigidFit, ServoCoefficient, ServoError, ServoLog, ServoReport, identify_servo, record,
@@ -278,10 +280,22 @@ const MOST_STRETCHES: usize = 1000;
 ///
 /// Runs that do not say what rig they come from, or that no model can be fitted to.
 pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModels, MethodError> {
-    let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis()).ok_or_else(|| {
-        MethodError::input(&runs.folder, "the runs do not state which rig they come from (their .toml has no [rig])")
-    })?;
-    let motor = motor_of(constants);
+    let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
+    let rig = rig_key(runs, constants).unwrap_or_else(|| format!("{OWN}rig"));
+    let drive = constants.map(|constants| {
+        let [torque_relative, radius_relative] = relative_errors(constants);
+        Drive { motor: motor_of(constants), torque_relative, radius_relative, rig: rig.clone() }
+    });
+    let logs = runs.campaign.as_ref().and_then(|c| c.logs);
+    let gain = match (&drive, logs) {
+        (Some(drive), _) => ForcePerVolt::of_drive(drive),
+        (None, Some(logs)) => of_logs(&logs, &rig),
+        (None, None) => {
+            let what = "the runs do not state which rig they come from (their .toml has no [rig])";
+            return Err(MethodError::input(&runs.folder, what));
+        }
+    };
+    let motor = drive.as_ref().map(|drive| drive.motor);
     let slow: Vec<&RunLog> = runs.logs.iter().filter(|l| l.meta.role == Role::Friction).collect();
     let slow = if slow.is_empty() { runs.logs.iter().filter(|l| l.meta.role == Role::Dry).collect() } else { slow };
     let (mut models, mut not_fitted) = (Vec::new(), Vec::new());
@@ -293,13 +307,13 @@ pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModel
         };
         let rigid = asked.iter().filter_map(|model| Some((model.friction()?, friction(*model))));
         (models, not_fitted) =
-            each(rigid.map(|(name, friction)| (name, friction.and_then(|f| of_slow(&slow, &motor, f)))));
+            each(rigid.map(|(name, friction)| (name, friction.and_then(|f| of_slow(&slow, gain.n_v, f)))));
     }
     let mut findings = reported(&models, runs.findings.clone());
     findings.extend(by_direction(&models));
     findings.extend(varies(&models));
     let declared = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref()).and_then(|c| c.rig.y.coulomb_n_m);
-    findings.extend(declared.and_then(|d| contradicted(&models, &motor, d)));
+    findings.extend(declared.zip(motor).and_then(|(d, motor)| contradicted(&models, &motor, d)));
     if !models.is_empty() {
         findings.push(Finding::new(
             Severity::Note,
@@ -315,20 +329,13 @@ pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModel
     if let Some(report) = &flexible {
         findings.extend(report.findings.iter().map(|t| Finding::new(Severity::Note, "two-mass", t.clone())));
     }
-    let repeatability = repeatability(&slow, &motor)?;
+    let repeatability = repeatability(&slow, gain.n_v)?;
     let files = |logs: &[&RunLog]| -> Vec<ReadFile> { logs.iter().copied().map(file_of).collect() };
-    let [torque_relative, radius_relative] = relative_errors(constants);
-    let drive = Drive {
-        motor,
-        torque_relative,
-        radius_relative,
-        rig: rig_key(runs, Some(constants)).unwrap_or_else(|| format!("{OWN}rig")),
-    };
-    let gain = ForcePerVolt::of_drive(&drive);
     let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report.fit, &gain), files(&slow));
     let excited: Vec<&RunLog> = pulses(&runs.logs).into_iter().collect();
-    let two_mass = |report: &FlexibleReport| (record::two_mass(name, report, &drive), files(&excited));
-    let estimates = models.iter().map(rigid).chain(flexible.as_ref().map(two_mass)).collect();
+    let two_mass =
+        |(report, drive): (&FlexibleReport, &Drive)| (record::two_mass(name, report, drive), files(&excited));
+    let estimates = models.iter().map(rigid).chain(flexible.as_ref().zip(drive.as_ref()).map(two_mass)).collect();
     Ok(AxisModels {
         estimates,
         models,
@@ -336,9 +343,24 @@ pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModel
         flexible,
         two_mass_mounts: mounts(pulses(&runs.logs)),
         repeatability,
-        motor: Some(motor),
+        motor,
         findings,
     })
+}
+
+/// The force per volt or ampere that a campaign declares for logs of other programs.
+fn of_logs(logs: &LogsRig, rig: &str) -> ForcePerVolt<'static> {
+    let drive = if logs.is_current { DriveUnit::CURRENT } else { DriveUnit::DECLARED };
+    let Declared { value, standard_uncertainty } = logs.force_per_unit;
+    let scale = Scale {
+        key: format!("{rig}/force"),
+        name: drive.error.to_owned(),
+        quantity: drive.name.to_owned(),
+        relative: standard_uncertainty / value,
+        dof: None,
+        is_radius: false,
+    };
+    ForcePerVolt { name: drive.name, unit: drive.unit.to_owned(), ..ForcePerVolt::of_log(value, Some(scale)) }
 }
 
 /// Knots over the travel that the runs cover.
@@ -372,8 +394,8 @@ fn moving(log: &RunLog) -> Result<Option<RunLog>, MethodError> {
 }
 
 /// All slow runs as rows of one regression; the run is the piece of evidence.
-fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<ServoReport, MethodError> {
-    let mut chain = Chain::new(motor.force_per_volt_n_v(), friction);
+fn of_slow(logs: &[&RunLog], force_per_volt_n: f64, friction: Friction) -> Result<ServoReport, MethodError> {
+    let mut chain = Chain::new(force_per_volt_n, friction);
     let mut runs: Vec<Rows> = Vec::new();
     for log in logs {
         let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
@@ -475,12 +497,12 @@ fn contradicted(models: &[Model], motor: &MotorSide, declared: Declared) -> Opti
 }
 
 /// Mean force of the steady windows by speed and direction, with the standard deviation over runs.
-fn repeatability(logs: &[&RunLog], motor: &MotorSide) -> Result<Vec<Repeatability>, MethodError> {
+fn repeatability(logs: &[&RunLog], force_per_volt_n: f64) -> Result<Vec<Repeatability>, MethodError> {
     let mut cells: Vec<(f64, f64, Vec<f64>)> = Vec::new();
     for log in logs {
         let Some(run) = for_drag(log)? else { continue };
         let Ok(w) = window(&run, SteadySettings::default()) else { continue };
-        let force_n = run.direction * motor.force_per_volt_n_v() * mean(w.of(run.command_v), run.step_s()).value;
+        let force_n = run.direction * force_per_volt_n * mean(w.of(run.command_v), run.step_s()).value;
         match cells.iter_mut().find(|c| (c.0 - run.target_speed_m_s).abs() < 1e-9 && c.1 == run.direction) {
             Some(cell) => cell.2.push(force_n),
             None => cells.push((run.target_speed_m_s, run.direction, vec![force_n])),

@@ -42,7 +42,7 @@ impl Live {
     /// Nothing is known yet of a campaign that `carriage` drives as `asked`; what is known is noted in `folder`.
     #[must_use]
     pub fn new(campaign: &Campaign, carriage: &CarriageCampaign, asked: &CarriagePlan, folder: &Path) -> Self {
-        let campaign = DrivenCampaign { campaign: campaign.clone(), carriage: Some(carriage.clone()) };
+        let campaign = DrivenCampaign { campaign: campaign.clone(), carriage: Some(carriage.clone()), logs: None };
         let axis = if asked.axis as usize == 0 { Some(&carriage.rig.y) } else { carriage.rig.x.as_ref() };
         let constants = axis.map(|axis| &axis.constants);
         let directions = if asked.directions == Directions::Both { 2 } else { 1 };

@@ -7,19 +7,20 @@ use froude_fit::budget::Uncertain;
 use froude_fit::distribution::t_two_sided;
 use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_identify::method::MethodError;
+use froude_records::campaign::Fluid;
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::{sha256_of_file, short_key};
 use froude_records::number;
-use froude_records::run::{AxisConstants, Role, RunLog};
+use froude_records::run::{AxisConstants, Declared, Role, RunLog};
 use froude_records::text::counted;
-use froude_rig::carriage::DrivenCampaign;
+use froude_rig::carriage::{DrivenCampaign, LogsRig};
 
 use crate::drag::calibration::record::Known;
 use crate::drag::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
 use crate::drag::point::Method;
 use crate::drag::report::{DragReport, drag_by};
 use crate::drag::run::{self as drag_run, DragRun};
-use crate::drag::setup::{Ballast, DragSetup, Efficiency, ErrorKeys, SensorBudget};
+use crate::drag::setup::{Ballast, DragSetup, DriveUnit, Efficiency, ErrorKeys, SensorBudget};
 use crate::runs::whole::STOPPED_EARLY;
 use crate::runs::{Runs, density_kg_m3, for_drag};
 use crate::two_masses::{relative_errors, two_masses};
@@ -61,7 +62,7 @@ pub fn reduce(runs: Runs, methods: &[Method]) -> Result<Reduction, MethodError> 
     setup.travel = runs.travel;
     setup.flexible = two_masses.map(|report| report.flexible());
     let (calibration, why_not) = calibration_of(&reduced, runs.campaign.as_ref(), &setup);
-    setup.calibration = calibration.as_ref().map(|c| c.force_per_volt);
+    setup.calibration = calibration.as_ref().map(|c| c.force_per_volt).or(setup.calibration);
     setup.keys = keys(&runs, constants)?;
     let undeclared = undeclared(runs.campaign.as_ref(), &reduced)?;
     let stopped = stopped_early(&runs, &reduced);
@@ -151,7 +152,9 @@ fn stopped_early(runs: &Runs, reduced: &[DragRun<'_>]) -> Option<EarlyStop> {
 /// Wet runs without ballast of a body whose volume is not declared: the wheel load that buoyancy removes is not known.
 fn undeclared(campaign: Option<&DrivenCampaign>, runs: &[DragRun<'_>]) -> Result<Option<Finding>, MethodError> {
     let carriage = campaign.and_then(|c| c.carriage.as_ref());
-    let is_ballasted = carriage.and_then(|c| c.plan.as_ref()).is_none_or(|p| p.is_ballasted);
+    let logs = campaign.and_then(|c| c.logs.as_ref());
+    let planned = carriage.and_then(|c| c.plan.as_ref()).map(|p| p.is_ballasted);
+    let is_ballasted = planned.or(logs.map(|logs| logs.is_ballasted)).unwrap_or(true);
     let volume_m3 = campaign.and_then(|c| c.campaign.body.as_ref()).and_then(|b| b.volume_m3);
     if !is_ballasted && volume_m3.is_none() {
         return Err(MethodError::Undeclared { place: String::new(), what:
@@ -159,6 +162,12 @@ fn undeclared(campaign: Option<&DrivenCampaign>, runs: &[DragRun<'_>]) -> Result
              known. Write volume = \"6.283e-3 m^3\" (its own) in [body]; 0 is not assumed"
                 .to_owned(),
         });
+    }
+    if let (Some(_), Some(DrivenCampaign { campaign, .. })) = (logs, campaign)
+        && campaign.fluid == Fluid::default()
+    {
+        let what = "the water is not declared, and C_D refers to its density: write [fluid] density = \"998 kg/m^3\", or temperature = \"20 degC\"";
+        return Err(MethodError::input(&campaign.path, what));
     }
     let has_sensor = runs.iter().any(|r| r.force_n.is_some());
     let gain = carriage.and_then(|c| c.rig.force_sensor.as_ref()).and_then(|f| f.gain_standard);
@@ -202,9 +211,18 @@ pub fn setup_of(campaign: Option<&DrivenCampaign>, axis: Option<&AxisConstants>)
     setup.sensor.gain_relative = declared.unwrap_or(UNDECLARED_GAIN);
     let displaced_kg =
         campaign.and_then(|c| c.campaign.body.as_ref()).and_then(|b| b.volume_m3).map(|v| setup.density_kg_m3 * v);
-    let strut = carriage.and_then(|c| c.plan.as_ref()).and_then(|p| p.strut_drag_n_s2_m2);
+    let logs = campaign.and_then(|c| c.logs.as_ref());
+    if let Some(logs) = logs {
+        let LogsRig { force_per_unit: Declared { value, standard_uncertainty }, .. } = *logs;
+        setup.ideal_force_per_volt_n = value;
+        setup.calibration = Some(Uncertain::new(value, standard_uncertainty));
+        setup.drive = if logs.is_current { DriveUnit::CURRENT } else { DriveUnit::DECLARED };
+        setup.speed_scale_relative = logs.position_relative;
+    }
+    let plan = carriage.and_then(|c| c.plan.as_ref());
+    let strut = plan.and_then(|p| p.strut_drag_n_s2_m2).or(logs.and_then(|logs| logs.strut_drag_n_s2_m2));
     setup.strut_n_s2_m2 = strut.map(|s| Uncertain::new(s.value, s.standard_uncertainty));
-    setup.ballast = match carriage.and_then(|c| c.plan.as_ref()).map(|p| p.is_ballasted) {
+    setup.ballast = match plan.map(|p| p.is_ballasted).or(logs.map(|logs| logs.is_ballasted)) {
         Some(false) => Ballast::Unballasted { unloaded_n: GRAVITY_M_S2 * displaced_kg.unwrap_or(0.0), rolling: None },
         _ => Ballast::Matched { carried_kg: displaced_kg.map(|kg| Uncertain::new(kg, BALLAST_RELATIVE * kg)) },
     };
@@ -331,6 +349,9 @@ fn calibrated_by(runs: &Runs) -> Result<Option<String>, MethodError> {
 /// Key of the rig: campaigns that declare the same constants drove the same one. Runs without their campaign say theirs themselves (`axis`).
 #[must_use]
 pub fn rig_key(runs: &Runs, axis: Option<&AxisConstants>) -> Option<String> {
+    if let Some(logs) = runs.campaign.as_ref().and_then(|c| c.logs.as_ref()) {
+        return Some(format!("rig/{}", short_key(format!("{logs:?}").as_bytes())));
+    }
     let carriage = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref());
     let AxisConstants {
         torque_constant_n_m_a,
@@ -349,9 +370,12 @@ fn keys(runs: &Runs, axis: Option<&AxisConstants>) -> Result<ErrorKeys, MethodEr
     let carriage = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref());
     let sensor = carriage.and_then(|c| c.rig.force_sensor.as_ref()).filter(|sensor| sensor.gain_standard.is_some());
     let key = |what: &str, text: String| format!("{what}/{}", short_key(text.as_bytes()));
+    let rig = rig_key(runs, axis);
+    let is_of_logs = runs.campaign.as_ref().is_some_and(|c| c.logs.is_some());
     Ok(ErrorKeys {
-        calibration: calibrated_by(runs)?,
-        rig: rig_key(runs, axis),
+        // A declared force per volt is the rig's.
+        calibration: if is_of_logs { rig.clone().map(|rig| format!("{rig}/force")) } else { calibrated_by(runs)? },
+        rig,
         sensor: sensor.map(|sensor| key("sensor", format!("{sensor:?}"))),
     })
 }

@@ -11,6 +11,7 @@ use froude_identify::wild;
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Campaign, Fluid};
 use froude_records::finding::{Finding, Severity};
+use froude_records::run::marks::SegmentKind;
 use froude_records::run::{
     BodyState, CAMPAIGN_COPY, DoubtKind, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, read_run_meta,
 };
@@ -19,7 +20,10 @@ use froude_records::units::Dimension;
 use froude_rig::carriage::DrivenCampaign;
 
 use crate::drag::run as drag;
+use crate::drag::steady::Window;
 
+mod held;
+mod imported;
 pub mod inspect;
 pub mod set;
 mod topics;
@@ -43,6 +47,8 @@ pub struct Runs {
     pub travel: Option<BodyAxis>,
     /// How many runs of the same roles lie beside single runs that were named, and were not named; 0 where whole folders were read.
     pub beside: usize,
+    /// Files that say what the runs are, where those are logs of other programs.
+    pub declared_by: Vec<PathBuf>,
     /// What was named, as results are called after it.
     named: Named,
 }
@@ -84,6 +90,7 @@ impl Runs {
 
 /// Reads the complete tows of these roles below `paths` (folders, or single runs by their log or their sidecar). Truths of a twin are not read.
 ///
+/// Logs of other programs whose sidecars state the method `tow` are read by what their campaign declares of the rig.
 /// A log that is damaged, cut off or gone is left out with a finding, and so is said what a folder lacks of its campaign.
 ///
 /// # Errors
@@ -91,6 +98,10 @@ impl Runs {
 /// A path without runs, a run that cannot be read; a run that is there twice, of another campaign than the runs beside it, or
 /// whose log and sidecar were exchanged.
 pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Result<Runs, MethodError> {
+    let logs = imported::logs(paths)?;
+    if !logs.is_empty() {
+        return imported::read(paths, &logs, roles, campaign);
+    }
     let mut out = Runs { folder: first_folder(paths), ..Runs::default() };
     let (mut members, mut doubts, mut others) = (Vec::new(), Vec::new(), Vec::new());
     let mut complete = Complete::default();
@@ -404,6 +415,27 @@ pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&
     }
 }
 
+/// What drives a run, in the unit that its force is known for: the command, V, or of a log without one the current, A.
+///
+/// # Errors
+///
+/// As [`column`].
+pub fn drive(log: &RunLog) -> Result<&[f64], MethodError> {
+    let [command, current] = ["command", "current"].map(|name| format!("{}/{name}", log.meta.carriage.axis.name()));
+    if !log.channels.contains_key(&command) && log.channels.contains_key(&current) {
+        return column(log, &current, Dimension::CURRENT);
+    }
+    column(log, &command, Dimension::VOLTAGE)
+}
+
+/// The rows that are declared to be steady.
+fn window_of(log: &RunLog) -> Option<Window> {
+    let steady = log.meta.declared.segments.iter().find(|segment| segment.kind == SegmentKind::Steady)?;
+    let first = log.time_s.partition_point(|t| *t < steady.from_s);
+    let end = log.time_s.partition_point(|t| *t <= steady.to_s);
+    (end > first).then_some(Window { first, end })
+}
+
 /// A run as the reductions of drag and calibration take it; `None` for runs that are neither.
 ///
 /// # Errors
@@ -432,7 +464,8 @@ pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, MethodError> 
         time_s: &log.time_s,
         position_m: column("position", Dimension::LENGTH)?,
         reference_speed_m_s: column("reference_velocity", Dimension::SPEED)?,
-        command_v: column("command", Dimension::VOLTAGE)?,
+        command_v: drive(log)?,
+        held: window_of(log),
         force_n,
         kind,
         body: meta.mounted.body,

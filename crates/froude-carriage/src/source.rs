@@ -7,6 +7,8 @@ use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{Role, RunLog, TOW};
 
+use froude_rig::carriage::LogsRig;
+
 use crate::drag::coefficient::Coefficient;
 use crate::drag::point::Method as CarriageMethod;
 use crate::reduction::page::sections;
@@ -52,8 +54,10 @@ impl Method for Carriage {
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
         let methods: Vec<CarriageMethod> = asked.iter().filter_map(|name| method_of(name)).collect();
-        let mut found = identify(source, &methods, progress)?;
-        found.findings.extend(passed_over(campaign, source));
+        let mut found = identify(campaign, source, &methods, progress)?;
+        if LogsRig::declared(campaign)?.is_none() {
+            found.findings.extend(passed_over(campaign, source));
+        }
         Ok(found)
     }
 }
@@ -103,8 +107,13 @@ pub(crate) fn lacking_in(needs: &[Need], runs: &Runs) -> Option<String> {
 }
 
 /// Reduces the runs of a source: a result for each method, in the order asked for.
-fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)) -> Result<Found, MethodError> {
-    let Some(runs) = runs_of(source, &roles(), progress)? else { return Ok(Found::default()) };
+fn identify(
+    campaign: &Campaign,
+    source: &Source,
+    methods: &[CarriageMethod],
+    progress: &dyn Fn(&str),
+) -> Result<Found, MethodError> {
+    let Some(runs) = runs_of(campaign, source, &roles(), progress)? else { return Ok(Found::default()) };
     progress("reducing the runs");
     let mut reduction = reduce(runs, methods)?;
     let (summary, blocks) = sections(&reduction);
@@ -151,11 +160,18 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
     })
 }
 
-/// The runs of a source in these roles; `None` of any other source.
-pub(crate) fn runs_of(source: &Source, roles: &[Role], progress: &dyn Fn(&str)) -> Result<Option<Runs>, MethodError> {
+/// The runs of a source of a campaign in these roles; `None` of any other source.
+pub(crate) fn runs_of(
+    of: &Campaign,
+    source: &Source,
+    roles: &[Role],
+    progress: &dyn Fn(&str),
+) -> Result<Option<Runs>, MethodError> {
     let Input::Runs { paths, campaign } = &source.input else { return Ok(None) };
     progress("reading the runs");
-    Ok(Some(read(paths, roles, campaign.as_deref())?))
+    // Logs of other programs may have the campaign that names them.
+    let own = LogsRig::declared(of)?.map(|_| of.path.as_path());
+    Ok(Some(read(paths, roles, campaign.as_deref().or(own))?))
 }
 
 /// The finding that a requested method gave no result.
@@ -192,10 +208,11 @@ pub(crate) fn named(source: &Source, runs: &Runs, what: &str) -> String {
     if source.name.is_empty() { runs.own_name(what) } else { source.name.clone() }
 }
 
-/// The logs of runs, each in its role.
+/// The logs of runs, each in its role, and what says of logs of other programs what they are.
 #[must_use]
 pub fn files_of(runs: &Runs) -> Vec<ReadFile> {
-    runs.logs.iter().map(file_of).collect()
+    let declared = runs.declared_by.iter().map(|path| ReadFile::new(path.clone(), "sidecar"));
+    runs.logs.iter().map(file_of).chain(declared).collect()
 }
 
 /// The log of a run in its role.

@@ -6,7 +6,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::run::{AxisConstants, Declared, Role, RunLog};
 use froude_records::units::Dimension;
 
-use crate::runs::column;
+use crate::runs::{column, drive};
 use crate::servo::motor::MotorSide;
 use crate::servo::two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};
 use crate::servo::{Gear, ServoLog};
@@ -22,7 +22,7 @@ pub fn servo_log(log: &RunLog) -> Result<ServoLog, MethodError> {
     Ok(ServoLog {
         time_s: log.time_s.clone(),
         position_m: column("position", Dimension::LENGTH)?,
-        command_v: column("command", Dimension::VOLTAGE)?,
+        command_v: drive(log)?.to_vec(),
     })
 }
 

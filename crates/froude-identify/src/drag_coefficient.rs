@@ -147,15 +147,7 @@ fn line(estimate: &Estimate, name: &str, rows: Option<&Dataset>, campaign: &Camp
     }
     // A law of the angle alone, or of a thruster at rest, gives no drag along the axis.
     let is_drag = c_d.iter().all(|x| x.is_finite()) && c_d.iter().any(|x| *x != 0.0);
-    is_drag.then(|| Line {
-        name: name.to_owned(),
-        reference,
-        speed_m_s,
-        c_d,
-        standard,
-        interval_95,
-        is_shown: false,
-    })
+    is_drag.then(|| Line { name: name.to_owned(), reference, speed_m_s, c_d, standard, interval_95, is_shown: false })
 }
 
 /// The force that a law gives along one axis, and the velocity there: along x where it gives several.

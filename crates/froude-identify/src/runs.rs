@@ -134,7 +134,7 @@ pub fn refuse_others(folder: &Path, wanted: &str, found: &[RunMeta]) -> Result<(
             n => (
                 format!(
                     "{} of other programs (a table of steady runs is what froude identify FILE reads, a servo's log what froude carriage \
-                     identify FILE does)",
+                     identify FILE does; wet and dry tows need a sidecar, which froude new carriage-logs begins)",
                     counted(n, "log there is", "logs there are")
                 ),
                 String::new(),

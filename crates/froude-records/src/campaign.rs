@@ -534,7 +534,8 @@ impl Campaign {
     /// Whether it drives a carriage.
     #[must_use]
     pub fn is_driven(&self) -> bool {
-        self.root().is_some_and(|root| root.get("rig").is_some())
+        let rig = self.root().and_then(|root| root.section("rig").ok()?);
+        rig.is_some_and(|rig| !matches!(rig.text("kind"), Ok(Some("logs"))))
     }
 
     /// A table with a plan may still have to be simulated or run, and cases to be computed, those of this source or of another that reads them; everything else must be there.

@@ -74,10 +74,12 @@ impl Kind {
         let key = |line: &str| line.split('=').next().unwrap_or_default().trim().to_owned();
         let keys: Vec<String> = lines().take_while(|line| !line.starts_with('[')).map(key).collect();
         let has_key = |name: &str| keys.iter().any(|key| key == name);
+        // A rig of which there are only logs is not driven.
+        let is_of_logs = lines().any(|line| line.replace(' ', "").starts_with("kind=\"logs\""));
         let shape = || lines().any(|line| key(line) == "shape");
         Some(if has_key("id") && has_key("campaign") {
             Self::RunSidecar
-        } else if has_section("rig") {
+        } else if has_section("rig") && !is_of_logs {
             Self::Drive
         } else if has_section("module") && has_section("fluid") {
             Self::Robot

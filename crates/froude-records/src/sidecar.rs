@@ -24,7 +24,7 @@ use crate::run::sidecar::{configuration, quantities};
 use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};
 use crate::section_values::one_of;
-use crate::table::{Column, ColumnData};
+use crate::table::{Column, ColumnData, Table};
 use crate::texts::Texts;
 use crate::units::{Dimension, Quantity, Unit, parse_unit};
 
@@ -48,6 +48,8 @@ pub struct Sidecar {
     pub run: RunFacts,
     /// `[constants]`.
     pub constants: IndexMap<String, Quantity>,
+    /// Standard uncertainties of those that state one, as parts.
+    pub standards: IndexMap<String, f64>,
     /// `[columns]` in the order written: header in the table → what it is.
     pub columns: IndexMap<String, Mapping>,
 }
@@ -61,6 +63,10 @@ pub struct RunFacts {
     pub role: Option<Role>,
     /// Which configuration is mounted; empty where nobody said.
     pub configuration: String,
+    /// Which way it went, as its list calls it; empty where nobody said.
+    pub direction: String,
+    /// Which repeat of its setting it is, as its list calls it; empty where nobody said.
+    pub repeat: String,
     /// What it was done in.
     pub conditions: IndexMap<String, Measured>,
     /// What is declared of its data beside the channels.
@@ -142,12 +148,19 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
         configuration: configuration(&root)?,
         conditions: quantities(&root, "conditions")?,
         declared: Declarations::read(&root)?,
+        ..RunFacts::default()
     };
-    let mut constants = IndexMap::new();
+    let (mut constants, mut standards) = (IndexMap::new(), IndexMap::new());
     if let Some(section) = root.section("constants")? {
         for (name, _, value) in section.entries() {
-            constants.insert(name.to_owned(), section.as_quantity(name, value)?);
+            let (quantity, standard) = constant(&section, name, value)?;
+            constants.insert(name.to_owned(), quantity);
+            standards.extend(standard.map(|standard| (name.to_owned(), standard)));
         }
+    }
+    if !standards.is_empty() && run.method.as_deref() != Some(COUNTS_STANDARDS) {
+        let problem = "states a standard uncertainty, which logs of method = \"steady\" alone count; write the value, and its error as [[source.uncertainty]] of the column";
+        root.refuse("constants", true, problem)?;
     }
     let mut columns = IndexMap::new();
     let advice = "write [columns] with lines like speed_col = { name = \"speed\", unit = \"m/s\" }";
@@ -171,7 +184,32 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
         list.is_some() && files.is_none(),
         "lists tables; name them with files = \"run_*.csv\", for example",
     )?;
-    Ok(Sidecar { path: path.to_owned(), files, list, file, run, constants, columns })
+    Ok(Sidecar { path: path.to_owned(), files, list, file, run, constants, standards, columns })
+}
+
+/// The method whose budget takes the standard uncertainty of a constant.
+const COUNTS_STANDARDS: &str = "steady";
+
+/// A constant, `"4.77 N/V"` or `{ value = "4.77 N/V", standard = "1 %" }`, with its standard uncertainty as a part.
+fn constant<'a>(
+    s: &Section<'a>,
+    name: &str,
+    value: &'a crate::section::Value<'a>,
+) -> Result<(Quantity, Option<f64>), RecordError> {
+    if value.get_ref().as_table().is_none() {
+        return Ok((s.as_quantity(name, value)?, None));
+    }
+    let table = s.as_section(name, value)?;
+    table.only(&["value", "standard"])?;
+    let advice = "a constant is a quantity, or { value = \"…\", standard = \"…\" }";
+    let quantity = table.as_quantity("value", table.need("value", advice)?)?;
+    let written = table.need("standard", advice)?;
+    let standard = table.as_quantity("standard", written)?;
+    let part = if standard.unit.text == "%" { standard.value_si } else { standard.value_si / quantity.value_si.abs() };
+    let is_alike = standard.unit.text == "%" || standard.unit.dimension == quantity.unit.dimension;
+    let problem = "is not a standard uncertainty: write it in per cent or in the unit of the value, larger than zero";
+    table.refuse("standard", !is_alike || !(part > 0.0 && part.is_finite()), problem)?;
+    Ok((quantity, Some(part)))
 }
 
 /// What is done to the data of a run is done by the methods of runs: a table's is read as it stands.
@@ -213,7 +251,9 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
         Some(text) => {
             let (unit, note) = unit_for(&name, text)
                 .map_err(|e| RecordError::value(place.clone(), "unit", format!("cannot be read: {e}")))?;
-            check_dimension(&place, &format!("{name} [{text}]"), &name, &unit)?;
+            if section.get("scale").is_none() {
+                check_dimension(&place, &format!("{name} [{text}]"), &name, &unit)?;
+            }
             (Some(unit_of_column(&name, unit)), note)
         }
         None => (None, None),
@@ -231,16 +271,21 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
             })
         })
         .transpose()?;
-    if scale.is_some() && unit.as_ref().is_some_and(|u| u.dimension != Dimension::ONE) {
-        let problem = "belongs to a dimensionless column: leave `unit` out, the scale gives it";
-        return Err(RecordError::value(place, "scale", problem));
+    for key in ["range", "resolution"] {
+        let problem = "is not used of a scaled column; leave it out, or write unit = \"…\" in the place of scale";
+        section.refuse(key, scale.is_some(), problem)?;
     }
     let dimension = unit.as_ref().map(|unit| unit.dimension);
     let words = Words::read(section, dimension, frames)?;
     let sensor = Sensor::read(section, dimension.filter(|_| scale.is_none()))?;
-    let undeclared = ["unit", "sign", "frame", "clock"].into_iter().filter(|key| section.get(key).is_none()).collect();
+    // A scale gives the unit.
+    let is_stated = |key: &'static str| section.get(key).is_some() || (key == "unit" && scale.is_some());
+    let undeclared = ["unit", "sign", "frame", "clock"].into_iter().filter(|key| !is_stated(key)).collect();
     Ok(Mapping { name, unit, note, sign, undeclared, scale, sensor, words, place })
 }
+
+/// Part by which a constant is moved for its effect.
+const MOVED: f64 = 1e-6;
 
 impl Mapping {
     /// The same with the unit that the table states, where the sidecar leaves it out.
@@ -354,8 +399,11 @@ impl Sidecar {
                 unit: unit.clone(),
             },
             (Some(scale), unit) => {
-                let factor = unit.as_ref().map_or(1.0, |unit| unit.factor);
-                self.scaled(mapping, scale, factor, &values, done)?
+                let number = unit.as_ref().map_or(Value { si: 1.0, dimension: Dimension::ONE }, |unit| Value {
+                    si: unit.factor,
+                    dimension: unit.dimension,
+                });
+                self.scaled(mapping, scale, number, &values, done)?
             }
             (None, None) => ColumnData::Text(Texts::default()),
         };
@@ -365,12 +413,41 @@ impl Sidecar {
         Ok(data)
     }
 
+    /// What the uncertain constants make of a scaled column of a table: each with its standard error as a part of the column, the largest of its first,
+    /// middle and last row.
+    pub(crate) fn scale_errors(&self, mapping: &Mapping, table: &Table) -> Vec<(String, f64)> {
+        let Some(scale) = &mapping.scale else { return Vec::new() };
+        let at = |row: usize, moved: Option<&str>| {
+            let name = |name: &str| {
+                let constant = self.constants.get(name).map(|q| {
+                    let by = if moved == Some(name) { 1.0 + MOVED } else { 1.0 };
+                    Value { si: by * q.value_si, dimension: q.unit.dimension }
+                });
+                let column = || match &table.columns.iter().find(|column| column.name == name)?.data {
+                    ColumnData::Number { si, dimension, .. } => {
+                        Some(Value { si: *si.get(row)?, dimension: *dimension })
+                    }
+                    ColumnData::Text(_) => None,
+                };
+                constant.or_else(column)
+            };
+            scale.evaluate(&name).map_or(f64::NAN, |value| value.si)
+        };
+        let rows = [0, table.n_rows / 2, table.n_rows.saturating_sub(1)];
+        let part = |name: &str| {
+            let of = |row: &usize| (at(*row, Some(name)) / at(*row, None) - 1.0).abs() / MOVED;
+            rows.iter().map(of).fold(0.0, f64::max)
+        };
+        let errors = self.standards.iter().map(|(name, standard)| (name.clone(), standard * part(name)));
+        errors.filter(|(_, part)| *part > 0.0).collect()
+    }
+
     /// value · scale, over the constants and the columns that are done.
     fn scaled(
         &self,
         mapping: &Mapping,
         scale: &Scale,
-        factor: f64,
+        number: Value,
         values: &[f64],
         done: &[(usize, Column)],
     ) -> Result<ColumnData, RecordError> {
@@ -395,8 +472,8 @@ impl Sidecar {
             if !scale.si.is_finite() {
                 return Err(refuse(format!("is not finite in row {}", row + 1)));
             }
-            dimension = Some(scale.dimension);
-            si.push(mapping.sign * value * factor * scale.si);
+            dimension = scale.dimension.checked_mul(number.dimension);
+            si.push(mapping.sign * value * number.si * scale.si);
         }
         let unit = Unit::si(dimension.unwrap_or(Dimension::ONE));
         let header = format!("{} [{unit}]", mapping.name);

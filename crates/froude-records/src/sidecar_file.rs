@@ -4,7 +4,7 @@
 //! # logs.toml
 //! schema = 1
 //! files = "run_*.csv"
-//! list = "runs.csv"      # columns: file, role, configuration, and conditions such as `speed [m/s]`
+//! list = "runs.csv"      # columns: file, role (or state), configuration, direction, repeat, and conditions such as `speed [m/s]`
 //! method = "steady"
 //! [columns]
 //! "t (ms)" = { name = "time" }
@@ -121,21 +121,27 @@ fn listed(mut sidecar: Sidecar, list: &Path, table: &Path) -> Result<Sidecar, Re
         let problem = format!("has no row for {name}; {near}");
         return Err(RecordError::value(Place::whole(list), "file", problem));
     };
+    let has_role = rows.columns.iter().any(|column| column.name == "role");
     for column in &rows.columns {
+        let text = || match &column.data {
+            ColumnData::Text(texts) => texts.get(row).map_or("", |text| text.trim()).to_owned(),
+            ColumnData::Number { si, .. } => si.get(row).map(f64::to_string).unwrap_or_default(),
+        };
         match (&column.data, column.name.as_str()) {
+            (_, "direction") => sidecar.run.direction = text(),
+            (_, "repeat") => sidecar.run.repeat = text(),
             (ColumnData::Number { si, dimension, .. }, name) => {
                 let value = si.get(row).copied().unwrap_or(f64::NAN);
                 sidecar.run.conditions.insert(name.to_owned(), Measured::of(value, dimension.to_string()));
             }
-            (ColumnData::Text(texts), "configuration") => {
-                sidecar.run.configuration = texts.get(row).cloned().unwrap_or_default();
-            }
-            (ColumnData::Text(texts), "role") => {
-                sidecar.run.role = Some(role(&rows, row, texts.get(row).map_or("", String::as_str))?);
+            (ColumnData::Text(_), "configuration") => sidecar.run.configuration = text(),
+            (ColumnData::Text(_), "role") => sidecar.run.role = Some(role(&rows, row, "role", &text())?),
+            (ColumnData::Text(_), "state") if !has_role => {
+                sidecar.run.role = Some(role(&rows, row, "state", &text())?);
             }
             (ColumnData::Text(_), "file" | "note" | "comment") => {}
             (ColumnData::Text(_), other) => {
-                let problem = "is no column of a list: file, role, configuration, note, and conditions with a unit, such as `speed [m/s]`";
+                let problem = "is no column of a list: file, role, configuration, direction, repeat, note, and conditions with a unit, such as `speed [m/s]`";
                 return Err(RecordError::column(Place::whole(list), other, format!(" {problem}")));
             }
         }
@@ -147,11 +153,11 @@ fn shown(folder: &Path) -> String {
     if folder.as_os_str().is_empty() { "this folder".to_owned() } else { folder.display().to_string() }
 }
 
-/// The role of a row of a list.
-fn role(list: &Table, row: usize, word: &str) -> Result<Role, RecordError> {
+/// The role of a row of a list, by its column `column`.
+fn role(list: &Table, row: usize, column: &str, word: &str) -> Result<Role, RecordError> {
     Role::ALL.into_iter().find(|role| role.name() == word).ok_or_else(|| {
         let near = suggestion(word, Role::ALL.iter().map(|role| role.name()));
-        RecordError::value(list.place_of_row(row), "role", format!("is {word:?}; {near}"))
+        RecordError::value(list.place_of_row(row), column, format!("is {word:?}; {near}"))
     })
 }
 

@@ -34,12 +34,17 @@ macro_rules! starter {
 }
 
 /// All kinds.
-pub const STARTERS: [Starter; 9] = [
+pub const STARTERS: [Starter; 10] = [
     starter!("table", "steady forces over speed, a row per run"),
     starter!("drift", "forces and yaw moment over speed and drift angle, a row per run"),
     starter!("decay", "free-decay tests of a released body, one log each"),
     starter!("steady", "raw logs of steady tows, with a sidecar", "runs/run_01.toml" = "steady-run.toml"),
     starter!("carriage", "a towing carriage that Froude drives, on its twin"),
+    starter!(
+        "carriage-logs",
+        "wet and dry tows of a carriage of your own, by its encoder and motor voltage",
+        "logs/logs.toml" = "carriage-logs-sidecar.toml"
+    ),
     starter!("openfoam", "force files of OpenFOAM cases that are computed already"),
     starter!("mesh", "added mass of a closed surface mesh"),
     starter!("servo", "inertia, friction and loads of a robot's joint or another axis, from its logs"),
@@ -55,7 +60,7 @@ pub fn kinds() -> Vec<&'static str> {
 /// The kinds with what each is for, for a help text.
 #[must_use]
 pub fn help() -> String {
-    let line = |starter: &Starter| format!("  {:<9} {}", starter.kind, starter.words);
+    let line = |starter: &Starter| format!("  {:<13} {}", starter.kind, starter.words);
     let lines: Vec<String> = STARTERS.iter().map(line).collect();
     format!("Kinds:\n{}\n\nExample: froude new decay --out buoy", lines.join("\n"))
 }
@@ -110,7 +115,7 @@ mod tests {
                 assert!(text.starts_with("# ") && text.lines().count() < 90, "{}", starter.kind);
             }
         }
-        assert!(help().contains("\n  openfoam  force files"));
+        assert!(help().contains("\n  openfoam      force files"));
     }
 
     #[test]

@@ -19,6 +19,7 @@
 //! ```
 
 pub mod keys;
+mod logs;
 pub mod plan;
 mod section;
 
@@ -30,6 +31,7 @@ use froude_records::run::{Axis, AxisConstants, Declared};
 use froude_records::units::Quantity;
 use froude_records::{Place, RecordError};
 
+pub use logs::LogsRig;
 pub use section::declared;
 
 /// A campaign with what it drives.
@@ -39,6 +41,8 @@ pub struct DrivenCampaign {
     pub campaign: Campaign,
     /// What it drives; `None` where it drives nothing.
     pub carriage: Option<CarriageCampaign>,
+    /// What is known of the carriage where another program recorded its runs.
+    pub logs: Option<LogsRig>,
 }
 
 impl DrivenCampaign {
@@ -49,8 +53,8 @@ impl DrivenCampaign {
     /// See [`RecordError`].
     pub fn read(path: &Path) -> Result<Self, RecordError> {
         let campaign = read_campaign(path)?;
-        let carriage = declared(&campaign)?;
-        Ok(Self { campaign, carriage })
+        let (carriage, logs) = (declared(&campaign)?, LogsRig::declared(&campaign)?);
+        Ok(Self { campaign, carriage, logs })
     }
 }
 

@@ -55,6 +55,7 @@ pub(crate) fn recorded_run(path: &Path) -> Result<TankLog, RecordError> {
                 factor: unit.factor,
                 sign,
                 time_standard_s: 0.0,
+                scale_errors: Vec::new(),
                 place: Place::whole(if sidecar.exists() { &sidecar } else { path }),
             },
         );

@@ -34,7 +34,7 @@ pub fn sections(outcome: &AxisModels) -> (Section, Vec<Section>) {
     }
     blocks.extend(outcome.flexible.as_ref().map(|f| flexible_table(f, &mounted(&outcome.two_mass_mounts)).into()));
     if !outcome.repeatability.is_empty() {
-        blocks.push(repeatability_table(&outcome.repeatability).into());
+        blocks.push(repeatability_table(&outcome.repeatability, outcome.motor.is_some()).into());
     }
     blocks.push(Block::words(outcome.flexible.iter().flat_map(splits)));
     let fit = |model: &Model| {
@@ -163,8 +163,9 @@ fn flexible_table(report: &FlexibleReport, mounted: &str) -> ResultTable {
 }
 
 /// Repeats by speed and direction.
-fn repeatability_table(cells: &[Repeatability]) -> ResultTable {
-    let caption = "Mean drive force of the steady windows, with the gear taken as lossless, and its standard deviation from run to run.";
+fn repeatability_table(cells: &[Repeatability], has_gear: bool) -> ResultTable {
+    let gear = if has_gear { ", with the gear taken as lossless," } else { "" };
+    let caption = format!("Mean drive force of the steady windows{gear} and its standard deviation from run to run.");
     let t = TableBuilder::new("repeats", caption, cells);
     t.build(vec![
         t.number("speed_m_s", "speed [m/s]", |c| c.speed_m_s).plain(3),

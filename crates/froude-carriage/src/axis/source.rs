@@ -89,7 +89,7 @@ impl Method for Servo {
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
         let asked: Vec<AxisModel> = asked.iter().filter_map(|name| model_of(name)).collect();
-        if let Some(runs) = runs_of(source, &KINDS, progress)? {
+        if let Some(runs) = runs_of(campaign, source, &KINDS, progress)? {
             progress("identifying the axis");
             let axis = of_runs(&runs, &asked, &named(source, &runs, "servo"))?;
             let found = found(axis, source, &asked, |model| lacking_in(needs(model), &runs))?;

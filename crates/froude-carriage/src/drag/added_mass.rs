@@ -143,6 +143,10 @@ fn mass<'a>(ramps: impl Iterator<Item = &'a Ramp>) -> Option<f64> {
 /// Added mass by motor current difference; `None` without ramps in at least two pairs, or without the force per volt.
 #[must_use]
 pub fn added_mass(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<AddedMass> {
+    // Ramps of a log without a reference have no sharp beginning.
+    if runs.iter().any(|r| r.held.is_some()) {
+        return None;
+    }
     let tows = |body: BodyState| runs.iter().filter(move |r| r.kind == RunKind::Tow && r.body == body);
     let k = setup.force_per_volt_n();
     let all: Vec<Ramp> = tows(BodyState::Wet)

@@ -18,8 +18,8 @@ pub(super) fn shared(method: Method, points: &[Point], measured: f64, setup: &Dr
     if method.is_sensorless() {
         match (setup.calibration, setup.efficiency) {
             (Some(f), _) => {
-                let error = of("force per volt, calibrated", &of_force, f.relative(), f.dof);
-                out.push(error.known_as(setup.keys.calibration.clone(), "force_per_volt"));
+                let error = of(setup.drive.error, &of_force, f.relative(), f.dof);
+                out.push(error.known_as(setup.keys.calibration.clone(), setup.drive.name));
             }
             (None, efficiency) => {
                 let error = of("K_T and amplifier gain, declared", &of_force, setup.torque_constant_relative, never);

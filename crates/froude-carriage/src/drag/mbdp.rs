@@ -302,6 +302,7 @@ mod tests {
             pair: 1,
             is_ballasted: true,
             hung_weight_n: None,
+            held: None,
         };
         let friction = Friction {
             coulomb_v: vec![COULOMB_N / N_PER_VOLT],

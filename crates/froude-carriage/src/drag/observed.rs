@@ -3,16 +3,18 @@
 //! The scatter is that of the pairs, each left out in turn, since runs of one pair share mounts and the hour; with one pair that of its runs. It is
 //! not believed below what is known to differ between any two runs: noise and zeros of the sensor, or what the dry repeats show.
 
+use froude_fit::budget::jackknife_of_one;
 use froude_fit::replicates::{Floor, Replicates, together};
 use froude_identify::regression::Scatter;
 use froude_identify::uncertainty::SharedError;
 use froude_records::finding::{Finding, Severity};
+use froude_records::number::{percent, short_form};
 use froude_records::text::counted;
 
 use super::detectability::{Detectability, DryMean, predict};
 use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
 use super::run::{BodyState, DragRun, RunKind};
-use super::steady::{Rejected, still_windows};
+use super::steady::{Rejected, mean_speed, still_windows, window};
 use super::{fsm, mbdp, mcd};
 use crate::drag::point::{Method, Point, pairs, slope};
 use crate::drag::setup::{Ballast, DragSetup};
@@ -70,6 +72,9 @@ pub(super) struct Tows<'r, 'a> {
     means: Vec<DryMean>,
 }
 
+/// Speeds of a wet and a dry run that differ by no more than this part are one: the loop of a carriage keeps closer to its reference.
+const SPEEDS_DIFFER: f64 = 2e-3;
+
 impl<'r, 'a> Tows<'r, 'a> {
     pub fn of(runs: &'r [DragRun<'a>], setup: &DragSetup) -> Self {
         let of = |kind: RunKind, body: Option<BodyState>| {
@@ -123,9 +128,58 @@ impl<'r, 'a> Tows<'r, 'a> {
                 w.target_speed_m_s * w.direction
             ))),
         });
-        let points = keep(all, Method::Mcd, reported);
+        let mut points = keep(all, Method::Mcd, reported);
+        let error = self.at_one_speed(&mut points, setup, reported);
         let promised = self.promised(&points, setup);
-        Observed::of_differences(points, promised.as_ref(), setup)
+        let observed = Observed::of_differences(points, promised.as_ref(), setup);
+        Observed { errors: error.into_iter().collect(), ..observed }
+    }
+
+    /// Takes off the differences what friction changes between the speeds of a wet and its dry run, B (v_wet − v_dry), with B of the dry runs; its
+    /// error is that of B.
+    fn at_one_speed(&self, points: &mut [Point], setup: &DragSetup, reported: &mut Reported) -> Option<SharedError> {
+        let faster = |p: &Point| {
+            let wet = self.wet.iter().find(|w| w.id == p.run)?;
+            let dry = self.dry.iter().find(|d| d.is_partner_of(wet))?;
+            let by_m_s = p.speed_m_s - mean_speed(dry, window(dry, setup.steady).ok()?);
+            (by_m_s.abs() > SPEEDS_DIFFER * p.speed_m_s.abs()).then_some(by_m_s)
+        };
+        let faster_m_s: Vec<f64> = points.iter().map(|p| faster(p).unwrap_or(0.0)).collect();
+        let most = points.iter().zip(&faster_m_s).map(|(p, by)| (by / p.speed_m_s).abs()).fold(0.0, f64::max);
+        if most == 0.0 {
+            return None;
+        }
+        let cells: Vec<Vec<Cell>> = self.dry.iter().map(|d| cells(d, setup.steady)).collect();
+        let viscous = |skip: Option<usize>| {
+            let kept = cells.iter().enumerate().filter(|(i, _)| Some(*i) != skip).flat_map(|(_, cells)| cells);
+            Friction::identify(kept, false).map(|friction| friction.viscous_v_s_m).filter(|b| *b != 0.0)
+        };
+        let known = viscous(None).zip(jackknife_of_one(cells.len(), |i| viscous(Some(i))));
+        let differ = format!("wet and dry runs differ in speed by up to {}", percent(most));
+        let k = setup.force_per_volt_n();
+        let Some((b, (standard, dof))) = known else {
+            let text = format!(
+                "mcd: {differ}, and dry runs at one speed do not show how friction changes with it: the difference is in the drag. Add dry runs at other speeds"
+            );
+            reported.findings.push(Finding::new(Severity::Warning, "speeds-differ", text));
+            return None;
+        };
+        for (p, by_m_s) in points.iter_mut().zip(&faster_m_s) {
+            p.force_n -= k * b * by_m_s;
+        }
+        let text = format!(
+            "mcd: {differ}; friction changes by {} N s/m with the speed (dry runs), and the differences are corrected for it",
+            short_form(k * b, k * standard)
+        );
+        reported.findings.push(Finding::new(Severity::Note, "speeds-differ", text));
+        let direction: Vec<f64> = faster_m_s.iter().map(|by| k * by).collect();
+        Some(SharedError::of_load(
+            "friction between the speeds of wet and dry runs",
+            setup.load(),
+            &direction,
+            standard,
+            dof,
+        ))
     }
 
     /// MBDP. Its type A has the scatter of the pairs, the friction identified anew without each of them, and that of the friction runs, each of
@@ -183,7 +237,7 @@ impl<'r, 'a> Tows<'r, 'a> {
             (xx > 0.0).then(|| vec![xy / xx])
         };
         let mut sweeps: Vec<Cluster> =
-            without_drag.iter().map(|c| c.0).filter(|c| matches!(c, Cluster::Sweep(_))).collect();
+            without_drag.iter().map(|c| c.0).filter(|c| !matches!(c, Cluster::Pair(_))).collect();
         sweeps.dedup();
         // A wet run alone has half the variance of a difference, and friction that is known exactly adds none.
         let floor = self.promised(&points, setup).map(|d| of_dry_repeats(&d, 0.5_f64.sqrt(), &points, setup));
@@ -191,7 +245,8 @@ impl<'r, 'a> Tows<'r, 'a> {
         let of_sweeps = Replicates::leaving_out("friction run", sweeps.len(), |g| without(sweeps[g]));
         let by_pairs: Vec<Replicates> = match of_pairs {
             Some(pairs) => std::iter::once(Replicates { floor, ..pairs }).chain(of_sweeps).collect(),
-            None => Vec::new(),
+            // Of one pair the wet runs are left out in turn, and the dry ones.
+            None => of_sweeps.map_or_else(Vec::new, |dry| repeats(&points).into_iter().chain([dry]).collect()),
         };
         // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
         let of_nothing: Vec<Point> = self.dry.iter().filter_map(|d| point(d).ok()).collect();
@@ -247,6 +302,7 @@ fn repeats(points: &[Point]) -> Option<Replicates> {
 fn scatter(sets: Vec<Replicates>) -> Scatter {
     let name = match sets.as_slice() {
         [one] if one.left_out == "run" => "scatter of the runs about the law",
+        [wet, _] if wet.left_out == "run" => "scatter of wet runs about the law and of dry runs",
         [_, _] => "scatter of pairs and of friction runs",
         _ => "scatter between pairs",
     };
@@ -311,6 +367,8 @@ fn unseen_drift(
 enum Cluster {
     /// A dry tow: with its pair.
     Pair(u32),
+    /// A dry tow of the only pair: alone.
+    Tow(u32),
     /// A friction run: with its repeat of all speeds, or alone where repeats are not distinguished.
     Sweep(u32),
 }
@@ -320,8 +378,12 @@ fn clusters(runs: &[&DragRun<'_>]) -> Vec<Cluster> {
     let mut repeats = runs.iter().filter(|r| r.kind == RunKind::Friction).map(|r| r.pair);
     let first = repeats.next();
     let is_told = repeats.any(|r| Some(r) != first);
+    let mut tows = runs.iter().filter(|r| r.kind != RunKind::Friction).map(|r| r.pair);
+    let first_pair = tows.next();
+    let is_one_pair = tows.all(|pair| Some(pair) == first_pair);
     let of = |(i, r): (usize, &&DragRun<'_>)| match r.kind {
         RunKind::Friction => Cluster::Sweep(if is_told { r.pair } else { i as u32 }),
+        _ if is_one_pair => Cluster::Tow(i as u32),
         _ => Cluster::Pair(r.pair),
     };
     runs.iter().enumerate().map(of).collect()

@@ -96,7 +96,7 @@ fn stated(method: Method, name: String, setup: &DragSetup) -> Stated {
     }
     let mut constants = IndexMap::new();
     if method.is_sensorless() {
-        constants.insert("force_per_volt".to_owned(), Measured::of(setup.force_per_volt_n(), "N/V"));
+        constants.insert(setup.drive.name.to_owned(), Measured::of(setup.force_per_volt_n(), setup.drive.unit));
     }
     Stated {
         method: method.name().to_owned(),

@@ -2,6 +2,8 @@
 
 pub use froude_records::run::BodyState;
 
+use super::steady::Window;
+
 /// What a run is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RunKind {
@@ -24,8 +26,10 @@ pub struct DragRun<'a> {
     pub position_m: &'a [f64],
     /// Speed that was asked for, m/s, with its sign.
     pub reference_speed_m_s: &'a [f64],
-    /// Drive command v_c, V, positive drives towards +y.
+    /// Drive command v_c, V, or the motor's current, A; positive drives towards +y.
     pub command_v: &'a [f64],
+    /// Where its speed is held and has settled, if that is known by other means than the reference speed.
+    pub held: Option<Window>,
     /// Force sensor, N, resistance to +y motion positive; its zero is not subtracted.
     pub force_n: Option<&'a [f64]>,
     /// What it is for.

@@ -50,6 +50,26 @@ pub struct SensorBudget {
     pub drift_half_width_n: f64,
 }
 
+/// What the force of a sensorless method is per unit of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DriveUnit {
+    /// As it stands in records.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Its line in a budget.
+    pub error: &'static str,
+}
+
+impl DriveUnit {
+    /// The command of a drive, by known weights.
+    pub const COMMAND: Self = Self { name: "force_per_volt", unit: "N/V", error: "force per volt, calibrated" };
+    /// The command of a drive, as declared.
+    pub const DECLARED: Self = Self { error: "force per volt, declared", ..Self::COMMAND };
+    /// The motor's current, as declared.
+    pub const CURRENT: Self = Self { name: "force_per_ampere", unit: "N/A", error: "force per ampere, declared" };
+}
+
 /// Names of the errors that other campaigns may have too; `None` where nobody knows.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ErrorKeys {
@@ -82,8 +102,10 @@ pub struct DragSetup {
     pub torque_constant_drift_relative: f64,
     /// What is known about the gear; counts only without a calibration.
     pub efficiency: Efficiency,
-    /// Force per volt as calibrated, N/V.
+    /// Force per volt as calibrated, N/V; of logs of other programs as declared, N/V or N/A.
     pub calibration: Option<Uncertain>,
+    /// What that is per unit of.
+    pub drive: DriveUnit,
     /// The sensor, if the rig has one.
     pub sensor: SensorBudget,
     /// Standard uncertainty of the length that an encoder count stands for, as a part.
@@ -121,6 +143,7 @@ impl DragSetup {
             torque_constant_drift_relative: 0.005,
             efficiency: Efficiency::Undeclared,
             calibration: None,
+            drive: DriveUnit::COMMAND,
             sensor: SensorBudget { gain_relative: 0.002, drift_half_width_n: 0.2 },
             speed_scale_relative: 0.0005,
             ballast: Ballast::Matched { carried_kg: Some(Uncertain::new(0.0, 0.0)) },

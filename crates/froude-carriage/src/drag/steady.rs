@@ -117,12 +117,20 @@ fn stretches(column: &[f64], is_in: impl Fn(f64) -> bool) -> Vec<Window> {
     out
 }
 
-/// The steady window of a tow by its reference speed alone.
+/// The steady window of a tow by its reference speed alone, or the one that is declared.
 ///
 /// # Errors
 ///
 /// [`Rejected`] when the speed is never held, or not for long enough.
 pub fn window(run: &DragRun<'_>, settings: SteadySettings) -> Result<Window, Rejected> {
+    if let Some(held) = run.held {
+        let found_s = held.len() as f64 * run.step_s();
+        return if found_s < settings.shortest_s {
+            Err(too_short(run, found_s, 0.0, settings.shortest_s))
+        } else {
+            Ok(held)
+        };
+    }
     let target = run.target_speed_m_s * run.direction;
     let slack = CONSTANT_WITHIN * run.target_speed_m_s;
     let held = stretches(run.reference_speed_m_s, |v| (v - target).abs() <= slack)
@@ -337,6 +345,7 @@ mod tests {
             pair: 1,
             is_ballasted: true,
             hung_weight_n: None,
+            held: None,
         }
     }
 

@@ -50,6 +50,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
         let value =
             c.interval_95.map_or_else(|| number::plain(c.value, 4), |ends| number::value_and_interval(c.value, ends));
         out.push(format!("Recommended: {}, D_d = {value} N s²/m² (95 %).", c.method.words()));
+        out.extend(drag_coefficient(c, setup));
     } else {
         let has_interval = report.coefficients.iter().any(|c| c.interval_95.is_some());
         let why = if has_interval {
@@ -116,6 +117,17 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
         ));
     }
     out
+}
+
+/// C_D with its interval, and what it refers to; `None` where no area is declared.
+fn drag_coefficient(c: &Coefficient, setup: &DragSetup) -> Option<String> {
+    let ((value, interval), area_m2) = (c.drag_coefficient(setup)?, setup.reference_area_m2?);
+    let value = interval.map_or_else(|| number::plain(value, 4), |ends| number::value_and_interval(value, ends));
+    Some(format!(
+        "C_D = {value} (95 %), for an area of {} m² and {} kg/m³.",
+        number::plain(area_m2, 4),
+        number::plain(setup.density_kg_m3, 5)
+    ))
 }
 
 /// The methods side by side: the paper's Table IV.

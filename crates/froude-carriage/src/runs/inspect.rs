@@ -218,6 +218,10 @@ fn logs(paths: &[PathBuf]) -> Inspection {
         }
     }
     let next = match methods.first().map(String::as_str) {
+        Some(TOW) => {
+            let folder = paths.first().and_then(|path| path.parent()).unwrap_or(Path::new(".")).display();
+            format!("froude carriage drag {folder} reduces them together")
+        }
         Some(method) if !["", "free_decay"].contains(&method) => {
             format!("runs = \"FOLDER\" and method = \"{method}\" in a [[source]] take a folder of such runs")
         }

@@ -119,7 +119,7 @@ fn found(
     progress: &dyn Fn(&str),
     reduce: impl FnOnce(&Runs, &str) -> Result<(Vec<(Estimate, Vec<ReadFile>)>, Section), MethodError>,
 ) -> Result<Found, MethodError> {
-    let Some(runs) = runs_of(source, roles, progress)? else { return Ok(Found::default()) };
+    let Some(runs) = runs_of(&Campaign::default(), source, roles, progress)? else { return Ok(Found::default()) };
     let (estimates, summary) = reduce(&runs, &named(source, &runs, what))?;
     let answer = |(estimate, files): (Estimate, Vec<ReadFile>)| -> Answer {
         Made { name: format!("{}, {}", estimate.source, estimate.law.name), estimate, files }.into()

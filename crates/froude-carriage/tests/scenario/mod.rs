@@ -362,6 +362,7 @@ impl Logged {
             pair: self.pair,
             is_ballasted: self.is_ballasted,
             hung_weight_n: self.hung_weight_n,
+            held: None,
         }
     }
 }

@@ -4,9 +4,12 @@
 mod carriage;
 mod joint;
 mod one_plant;
+mod own_logs;
 mod rigid;
 mod scatter;
 #[path = "../scenario/mod.rs"]
 mod scenario;
 mod servo_logs;
+#[path = "../student_tank/mod.rs"]
+mod student_tank;
 mod tuning;

@@ -46,6 +46,9 @@ mod small_disk;
 mod starters;
 mod steady;
 mod stories;
+mod student;
+#[path = "../../../froude-carriage/tests/student_tank/mod.rs"]
+mod student_tank;
 mod sway;
 mod swim;
 mod swim_3d;

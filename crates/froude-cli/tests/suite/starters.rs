@@ -6,6 +6,7 @@ use std::path::Path;
 
 use froude::records::starter::kinds;
 
+use crate::student_tank::Tank;
 use crate::tank::froude;
 
 /// Starts a campaign, puts data into its folder and runs each line, where every truth is among the coefficients of the record within 2 %.
@@ -205,6 +206,11 @@ fn every_campaign_runs_as_it_is_written() {
             "decay" => run(kind, decay, &[INSPECT, IDENTIFY], &[("A33", 8.0), ("D_z_II", 15.0)]),
             "steady" => run(kind, steady, &[INSPECT, IDENTIFY], &[("D_x_II", 3.0)]),
             "carriage" => run(kind, |_| {}, &[INSPECT, check], &[]),
+            // What it gives is in the story of the student's tank.
+            "carriage-logs" => {
+                let lines: [&[&str]; 4] = [INSPECT, &["inspect", "logs"], &["carriage", "drag", "logs"], IDENTIFY];
+                run(kind, |lab| Tank::default().write(lab), &lines, &[]);
+            }
             "openfoam" => {
                 let lines: [&[&str]; 3] = [&["inspect", "cases"], INSPECT, IDENTIFY];
                 run(kind, openfoam, &lines, &[("D_x_II", 4.0), ("Y_uv", -28.0), ("N_uv", -14.0)]);

@@ -248,3 +248,32 @@ fn runs_that_block_the_tank_are_said_one_by_one() {
         of_runs[0]
     );
 }
+
+/// Columns of a cell that shows volts, at 4.77 N/V ± 1 %.
+const VOLTS: &str = "t = { name = \"time\", unit = \"s\" }\nu = { name = \"speed\", unit = \"m/s\", sign = 1, frame = \"body\", clock = \"log\" }\n\
+                     fx = { name = \"f_x\", unit = \"V\", scale = \"gain\", sign = 1, frame = \"body\", clock = \"log\" }\n\
+                     [constants]\ngain = { value = \"4.77 N/V\", standard = \"1 %\" }\n";
+
+/// Volts become newtons, and the standard uncertainty of what scales them is the type B of every coefficient.
+#[test]
+fn a_scale_applies_to_the_volts_of_a_log_and_its_error_is_in_the_budget() {
+    let logs: Vec<Log> = three(60.0).into_iter().map(|log| Log { columns: VOLTS, ..log }).collect();
+    let folder = tows(&logs);
+    let (scaled, record) = coefficient(folder.path());
+    let (newtons, _) = coefficient(tows(&three(60.0)).path());
+    assert!((scaled / newtons / 4.77 - 1.0).abs() < 1e-9, "{scaled} {newtons}");
+    let only = &record["estimates"][0]["coefficients"].as_object().unwrap().values().next().unwrap().clone();
+    assert!((only["type_b"].as_f64().unwrap() / scaled - 0.01).abs() < 1e-6, "{only}");
+    let errors = record["estimates"][0]["errors"].to_string();
+    assert!(errors.contains("gain, which scales f_x"), "{errors}");
+    // Numbers without a unit, and a scale that gives another one.
+    let sidecar = folder.path().join("runs/t0.2.toml");
+    replace_in(&sidecar, "unit = \"V\", scale", "scale");
+    let text = refused(folder.path(), IDENTIFY);
+    assert!(text.contains("column `f_x [N/V]`: wrong unit: expected a force (N), found a quantity in N/V"), "{text}");
+    replace_in(&sidecar, "4.77 N/V", "4.77 N");
+    assert!((coefficient(folder.path()).0 / scaled - 1.0).abs() < 1e-9);
+    replace_in(&sidecar, "scale = \"gain\"", "scale = \"gain\", range = \"±5 N\"");
+    let text = refused(folder.path(), IDENTIFY);
+    assert!(text.contains("`range` is not used of a scaled column; leave it out"), "{text}");
+}

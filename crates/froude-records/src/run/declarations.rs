@@ -59,6 +59,8 @@ pub struct Told {
     pub sign: f64,
     /// Standard uncertainty of its times, s, by clock and delay.
     pub time_standard_s: f64,
+    /// Uncertain constants of its scale, each with its standard error as a part of the channel.
+    pub scale_errors: Vec<(String, f64)>,
     /// Where it is written.
     pub place: Place,
 }

@@ -126,7 +126,8 @@ pub fn run_of(table: &Table, sidecar: Option<&Sidecar>, times: LogTimes) -> Resu
         let entry = sidecar.and_then(|s| s.columns.iter().find(|(_, entry)| entry.name == column.name));
         if let Some((header, entry)) = entry {
             entry.words.set(&mut meaning);
-            told.insert(channel_name(&column.name), entry.told(header));
+            let scale_errors = sidecar.map(|s| s.scale_errors(entry, table)).unwrap_or_default();
+            told.insert(channel_name(&column.name), Told { scale_errors, ..entry.told(header) });
         }
         if channels.insert(channel_name(&column.name), Channel { meaning, values: si[rows.clone()].to_vec() }).is_some()
         {
@@ -165,6 +166,7 @@ impl Mapping {
             factor: self.unit.as_ref().map_or(1.0, |unit| unit.factor),
             sign: self.sign,
             time_standard_s: 0.0,
+            scale_errors: Vec::new(),
             place: self.place.clone(),
         }
     }

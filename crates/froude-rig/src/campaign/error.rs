@@ -31,7 +31,7 @@ pub enum CampaignError {
     Runner(#[from] RunnerError),
 
     /// There is no rig.
-    #[error("{}: nothing to drive: the campaign has no [rig]", .path.display())]
+    #[error("{}: nothing to drive: the campaign has no [rig] of a twin or a board", .path.display())]
     NoRig {
         /// The campaign.
         path: PathBuf,

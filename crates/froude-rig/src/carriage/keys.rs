@@ -16,6 +16,10 @@ const INERTIA: Dimension = Dimension::new(2, 1, 0);
 const VISCOUS: Dimension = Dimension::new(2, 1, -1);
 /// N s²/m² = kg/m.
 const DRAG: Dimension = Dimension::new(-1, 1, 0);
+/// N/V.
+const FORCE_PER_VOLT: Dimension = Dimension { m: -1, kg: 0, s: 1, k: 0, a: 1 };
+/// N/A.
+const FORCE_PER_AMPERE: Dimension = Dimension { m: 1, kg: 1, s: -2, k: 0, a: -1 };
 /// m/s³.
 const JERK: Dimension = Dimension::new(1, 0, -3);
 
@@ -51,21 +55,16 @@ const fn gain(name: &'static str, dimension: Dimension, write: &'static str, doc
 pub const RIG: &[Key] = &[
     required(
         "kind",
-        Kind::Word(&["twin", "serial"]),
-        "write kind = \"twin\" or kind = \"serial\"",
-        "`twin` (simulated) or `serial` (a board)",
+        Kind::Word(&["twin", "serial", "logs"]),
+        "write kind = \"twin\" or kind = \"serial\", or kind = \"logs\" for runs that another program recorded",
+        "`twin` (simulated), `serial` (a board) or `logs` (runs that another program recorded)",
     ),
     optional("seed", Kind::Whole, "required for a twin", "the same seed gives the same runs"),
     optional("port", Kind::Text, "required for a board", "serial port: \"/dev/ttyUSB0\""),
     optional("baud", Kind::Count(100_000_000), "3_000_000", "baud rate of the port"),
     usual("log_rate", Kind::Quantity(Dimension::ANGULAR_SPEED), "4 kHz", "samples a second in the files")
         .within(Range::Positive),
-    required(
-        "y",
-        Kind::Table(AXIS),
-        "describe the long axis in [rig.y]: travel, limits, drive, controller",
-        "the long axis",
-    ),
+    optional("y", Kind::Table(AXIS), "required, but for logs", "the long axis"),
     optional("x", Kind::Table(AXIS), "none", "the short axis"),
     optional("force_sensor", Kind::Table(FORCE_SENSOR), "none", "the force sensor"),
     optional(
@@ -74,6 +73,15 @@ pub const RIG: &[Key] = &[
         "the twin's own",
         "true values of the twin",
     ),
+    constant("force_per_volt", FORCE_PER_VOLT, "required for logs", "force along the rail for a volt of the command"),
+    constant("force_per_ampere", FORCE_PER_AMPERE, "force_per_volt", "the same for an ampere of the motor's current"),
+    part(
+        "position_standard",
+        IfMissing::Nothing("required for logs"),
+        "the standard uncertainty of a length along the rail",
+    ),
+    optional("ballasted", Kind::Flag, "required for logs", "whether the wheels carry the same load wet and dry"),
+    constant("strut_drag", DRAG, "no strut", "drag of a strut that goes into the water with the body"),
 ];
 
 /// Keys of `[rig.y]` and `[rig.x]`.

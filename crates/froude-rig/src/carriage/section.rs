@@ -9,18 +9,22 @@ use froude_records::section_values::MOST_RUNS;
 use froude_records::units::Dimension;
 
 use super::keys::{AXIS, CARRIAGE, RIG, SETTLING};
+use super::logs::{LogsRig, OF_LOGS};
 use super::{
     AxisSpec, Calibration, CarriageCampaign, CarriagePlan, Directions, ForceSensorSpec, FrictionSweep, GainsSpec,
     LimitsSpec, Order, PulseTrain, RigKind, RigSpec, TwinTruth, WarmUp,
 };
 
-/// What a campaign drives, by its `[rig]` and `[carriage]`; `None` where it has neither.
+/// What a campaign drives, by its `[rig]` and `[carriage]`; `None` where it has neither, or a rig of which there are only logs.
 ///
 /// # Errors
 ///
 /// [`RecordError`] with its place.
 pub fn declared(campaign: &Campaign) -> Result<Option<CarriageCampaign>, RecordError> {
     let Some(root) = campaign.root() else { return Ok(None) };
+    if LogsRig::declared(campaign)?.is_some() {
+        return Ok(None);
+    }
     let plan = root.section("carriage")?.map(|s| plan(&s)).transpose()?;
     let Some(section) = root.section("rig")? else {
         return match plan {
@@ -32,12 +36,15 @@ pub fn declared(campaign: &Campaign) -> Result<Option<CarriageCampaign>, RecordE
     Ok(Some(CarriageCampaign { rig: rig(&section)?, plan }))
 }
 
+/// What to write where the long axis is missing.
+const DESCRIBE_Y: &str = "describe the long axis in [rig.y]: travel, limits, drive, controller";
+
 fn rig(s: &Section<'_>) -> Result<RigSpec, RecordError> {
     let values = Values::read(s, RIG)?;
-    let is_twin = values.need("kind", values.word("kind", &[true, false]))?;
+    let is_twin = values.need("kind", values.word("kind", &[true, false, false]))?;
     let (own, foreign): (_, &[&'static str]) =
         if is_twin { ("twin", &["port", "baud"]) } else { ("serial", &["seed", "twin"]) };
-    for key in foreign {
+    for key in foreign.iter().chain(&OF_LOGS) {
         if let Some(value) = s.get(key) {
             return Err(s.wrong(key, value, format!("does not belong to a rig of kind {own:?}; take it out")));
         }
@@ -60,7 +67,7 @@ fn rig(s: &Section<'_>) -> Result<RigSpec, RecordError> {
     Ok(RigSpec {
         kind,
         log_rate_hz: values.need("log_rate", values.number("log_rate"))?,
-        y: axis(&values.need("y", s.section("y")?)?)?,
+        y: axis(&s.section("y")?.ok_or_else(|| values.missing("y", DESCRIBE_Y))?)?,
         x: s.section("x")?.map(|s| axis(&s)).transpose()?,
         force_sensor: values.table("force_sensor").map(|sensor| ForceSensorSpec {
             range_n: sensor.number("range"),

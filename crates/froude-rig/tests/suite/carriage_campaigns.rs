@@ -39,7 +39,7 @@ fn line(of: &str) -> String {
 
 #[test]
 fn the_papers_campaign_is_read_as_it_is_written() {
-    let DrivenCampaign { campaign, carriage } = DrivenCampaign::read(Path::new(EXAMPLE)).unwrap();
+    let DrivenCampaign { campaign, carriage, .. } = DrivenCampaign::read(Path::new(EXAMPLE)).unwrap();
     assert!(campaign.sources.is_empty(), "what drives a rig needs no source");
     let CarriageCampaign { rig, plan } = carriage.unwrap();
     let RigKind::Twin { seed, truths } = &rig.kind else { panic!("{:?}", rig.kind) };

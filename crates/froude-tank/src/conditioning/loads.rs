@@ -75,6 +75,7 @@ pub fn of_cell(run: &mut TankLog) -> Result<(), MethodError> {
             factor: unit.factor,
             sign: 1.0,
             time_standard_s,
+            scale_errors: Vec::new(),
             place: place.clone(),
         };
         let entries: Vec<String> = row.iter().map(|x| plain(*x, 8)).collect();

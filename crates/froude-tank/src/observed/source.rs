@@ -8,12 +8,14 @@ use froude_records::campaign::{BudgetEntry, Campaign, Shared, Source};
 use froude_records::estimate::ErrorKind;
 use froude_records::run::Role;
 use froude_records::units::Dimension;
+use indexmap::IndexMap;
 
 use super::method::Observed;
 use super::read::{check, read, reduced, run};
 use super::reduced::Reduced;
 use super::{plan, twin};
 use crate::error::{TankError, undeclared};
+use crate::log::TankLog;
 use crate::logs::{self, Logs, Wanted};
 use crate::method::TankMethod;
 use crate::steady::row::{Row, table};
@@ -84,7 +86,7 @@ fn identified<M: Observed>(
     findings.extend(found);
     let walls = Walls::of(campaign);
     findings.extend(rows.iter().filter_map(|row| walls.and_then(|walls| walls.finding(row))));
-    let own = with_speeds(source, &method, &observed);
+    let own = with_scales(with_speeds(source, &method, &observed), &logs);
     let mut observations = reduce_table(campaign, &own, &table(source.input.path(), &rows), files)?;
     errors.extend(shared(&method, &observed, &observations.data.loads()));
     if !errors.is_empty() && observations.data.rows != rows.len() {
@@ -136,6 +138,33 @@ pub fn with_speeds<M: Observed>(source: &Source, method: &M, reduced: &[Reduced<
         });
     }
     own
+}
+
+/// The source with the errors of the constants that scale its channels: the same for all runs.
+fn with_scales(mut source: Source, logs: &[TankLog]) -> Source {
+    let mut errors: IndexMap<(&str, &str), f64> = IndexMap::new();
+    for (channel, told) in logs.iter().flat_map(|log| &log.told) {
+        let quantity = if channel.ends_with("position") { "speed" } else { channel.as_str() };
+        for (constant, part) in &told.scale_errors {
+            let known = errors.entry((quantity, constant)).or_default();
+            // The effect of a constant is found by differences, to ten digits.
+            *known = known.max((1e9 * part).round() / 1e9);
+        }
+    }
+    let entry = |((quantity, constant), standard): ((&str, &str), f64)| BudgetEntry {
+        quantity: quantity.to_owned(),
+        standard,
+        relative: true,
+        shared: Shared::Campaign,
+        dof: None,
+        name: Some(format!("{constant}, which scales {quantity}")),
+        kind: ErrorKind::B,
+        dimension: Dimension::ONE,
+        place: source.place.clone(),
+    };
+    let entries: Vec<BudgetEntry> = errors.into_iter().map(entry).collect();
+    source.uncertainty.extend(entries);
+    source
 }
 
 /// What all runs have in common, as the rows take it: what it moves each load by, and the speed.

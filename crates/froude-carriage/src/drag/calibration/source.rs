@@ -48,13 +48,13 @@ impl Method for KnownWeights {
     /// Without a calibration there are no answers, and what the jogs show is said all the same.
     fn identify(
         &self,
-        _: &Campaign,
+        campaign: &Campaign,
         source: &Source,
         _: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
         let roles = [Role::Calibration, Role::Jog];
-        let Some(runs) = runs_of(source, &roles, progress)? else { return Ok(Found::default()) };
+        let Some(runs) = runs_of(campaign, source, &roles, progress)? else { return Ok(Found::default()) };
         progress("calibrating");
         let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
         let mut setup = setup_of(runs.campaign.as_ref(), constants);
