@@ -4,8 +4,8 @@
 //! the velocity or the acceleration of what the first saw, the first is differentiated by the same window, so that neither is delayed. The correlation over all shifts gives
 //! candidates; each is refined by Gauss and Newton's method to y(s) = a + b x(t(s)), a, b, lag and drift being free.
 //!
-//! **Uncertainty.** H⁻¹ M H⁻¹ with the whole second derivative H of the sum of squares, which noise of x does not bias, and M = Σ γ_{i−j} z_i z_j from the autocovariance γ of the residuals: noise may
-//! be correlated. Twelve windows give a lag each; where these scatter about the line by more than chance, by Birge's ratio the intervals are wider, and what is left is [`Lag::left_s`].
+//! **Uncertainty.** H⁻¹ M H⁻¹ with the whole second derivative H of the sum of squares, which noise of x does not bias, and M = Σ γ_{i−j} z_i z_j from the autocovariance γ of what is left in each of
+//! twelve windows: noise may be correlated. Each window gives a lag; where these scatter about the line by more than chance, by Birge's ratio the intervals are wider, and what is left is [`Lag::left_s`].
 //! A trigger is known to no better than its samples: its lag has at least the variance of the rounding of both clocks, (h₁² + h₂²)/12.
 //!
 //! **Units.** Time in s. **Range.** Refused: a pair that does not correlate, shifts that fit equally well, a line that the lags of the windows do not follow, a drift that rests on one moment.
@@ -20,13 +20,15 @@ mod shifts;
 use faer::Mat;
 use faer::prelude::*;
 
-use covariance::Noise;
 use crate::error::SignalError;
 use crate::resample::Spline;
 use crate::smooth::{Smooth, smooth};
+use covariance::Noise;
 
-/// Correlation below which two records are not of one thing.
-const LEAST_CORRELATION: f64 = 0.5;
+/// Correlation below which two records are not of one thing: half of the variance is common to both.
+const LEAST_CORRELATION: f64 = 0.7;
+/// By how much a correlation of opposite sign is larger than that of any shift.
+const OPPOSITE: f64 = 0.05;
 /// Logarithm of the likelihood ratio by which the best shift beats any other, and none at all: 5 standard deviations, over some hundred independent shifts.
 const SURE: f64 = 20.0;
 /// The same as a ratio of mean squares, for records whose misfit is not noise.
@@ -46,7 +48,7 @@ const MOST_VALUES: f64 = 2e5;
 /// A drift beyond this is of no two clocks.
 pub const MOST_DRIFT: f64 = 0.1;
 /// Steps of Gauss and Newton, and part of a step of the records at which they end.
-const STEPS: (usize, f64) = (40, 1e-6);
+const STEPS: (usize, f64) = (25, 1e-5);
 
 /// A record with stamps of its own clock.
 #[derive(Debug, Clone, Copy)]
@@ -165,7 +167,9 @@ pub enum LagError {
         time_s: f64,
     },
     /// The clocks wander.
-    #[error("the lags of {WINDOWS} windows leave a straight line by {left_s:.4} s (rms), beyond a 36th of the motion's period of {period_s:.3} s: the clocks wander")]
+    #[error(
+        "the lags of {WINDOWS} windows leave a straight line by {left_s:.4} s (rms), beyond a 36th of the motion's period of {period_s:.3} s: the clocks wander"
+    )]
     NotLinear {
         /// Root mean square, s.
         left_s: f64,
@@ -202,13 +206,12 @@ pub fn find(first: &Record<'_>, second: &Record<'_>, known: &Known) -> Result<La
             LagError::Undetermined
         });
     };
+    let opposite = shifts::most_opposite(&pair.x, &pair.y, known.lag_s);
+    if opposite > best.correlation.max(LEAST_CORRELATION) + OPPOSITE {
+        return Err(LagError::Opposite { correlation: opposite });
+    }
     if best.correlation < LEAST_CORRELATION {
-        let opposite = shifts::most_opposite(&pair.x, &pair.y, known.lag_s);
-        return Err(if opposite > best.correlation.max(LEAST_CORRELATION) {
-            LagError::Opposite { correlation: opposite }
-        } else {
-            LagError::NotAlike { correlation: best.correlation.max(best_shift.correlation) }
-        });
+        return Err(LagError::NotAlike { correlation: best.correlation.max(best_shift.correlation) });
     }
     let at_begin = |fit: &Fit| fit.lag_s + fit.drift * (begin_s - fit.origin_s);
     if let Some([value, range]) = known.lag_s
@@ -217,27 +220,28 @@ pub fn find(first: &Record<'_>, second: &Record<'_>, known: &Known) -> Result<La
         return Err(LagError::AtTheEnd { lag_s: value + range * (at_begin(&best) - value).signum() });
     }
     let rows = pair.rows(&best);
-    let noise = Noise::of(&rows.residuals(&best), rows.values.len());
-    let n = best.n as f64 / noise.time;
-    let loses = |mean_square: f64| {
+    let loses = |n: f64, mean_square: f64| {
         mean_square >= CLEARLY * best.mean_square && n * (mean_square / best.mean_square).ln() >= SURE
     };
+    // Two records of nothing in common have two degrees of freedom a period.
+    let [from, to] = rows.ends_s;
+    let alone = best.mean_square / (1.0 - best.correlation * best.correlation).max(f64::MIN_POSITIVE);
+    if !loses(2.0 * (to - from) / pair.period_s, alone) {
+        return Err(LagError::NotAlike { correlation: best.correlation });
+    }
+    let n = best.n as f64 / Noise::of(&rows.residuals(&best)).time;
     let apart = 0.25 * pair.period_s;
-    let rival = fits.iter().find(|fit| (at_begin(fit) - at_begin(&best)).abs() > apart && !loses(fit.mean_square));
+    let rival = fits.iter().find(|fit| (at_begin(fit) - at_begin(&best)).abs() > apart && !loses(n, fit.mean_square));
     if let Some(rival) = rival {
         return Err(LagError::Ambiguous { lag_s: at_begin(&best), other_s: at_begin(rival) });
     }
-    if !loses(best.mean_square / (1.0 - best.correlation * best.correlation).max(f64::MIN_POSITIVE)) {
-        return Err(LagError::NotAlike { correlation: best.correlation });
-    }
-    let found = covariance::of(&rows, &mut best, &noise, is_free).ok_or(LagError::Undetermined)?;
+    let found = covariance::of(&rows, &mut best, is_free).ok_or(LagError::Undetermined)?;
     let mut standard = found.standard;
     let steps = [first, second].map(|record| record.step_s);
     if is_stepped(first.values) || is_stepped(second.values) {
         let rounding_s = (steps[0].hypot(steps[1])) / 12.0_f64.sqrt();
         standard = [standard[0].hypot(rounding_s), standard[1].hypot(rounding_s / found.arm_s)];
     }
-    let [from, to] = rows.ends_s;
     if is_free && standard[1] * 0.5 * (to - from) > LEVER * standard[0].max(0.05 * steps[0]) {
         return Err(LagError::DriftOpen { lag_s: best.lag_s, origin_s: best.origin_s });
     }
@@ -307,15 +311,17 @@ impl Pair {
         let seen = |r: &Record<'_>, width_s: f64, d: i32| {
             smooth(r.time_s, r.values, r.step_s, r.gaps_s, [width_s, step_s], d.max(0) as usize)
         };
-        // Noise of a record that is differentiated is kept small by a window of a part of the motion's period.
-        let differentiated = if derivative > 0 { first } else { second };
-        let width_s = match derivative {
-            0 => step_s,
-            _ => step_s.max(mean_period_s(&seen(differentiated, step_s, 0)?) / 12.0),
+        // Derivatives are the noisier ones.
+        let period_s = match derivative {
+            0 => mean_period_s(&seen(first, step_s, 0)?).max(mean_period_s(&seen(second, step_s, 0)?)),
+            1.. => mean_period_s(&seen(first, step_s, 0)?),
+            _ => mean_period_s(&seen(second, step_s, 0)?),
         };
+        let period_s = period_s.max(4.0 * step_s);
+        // Noise of a record that is differentiated is kept small by a window of a part of the motion's period.
+        let width_s = if derivative == 0 { step_s } else { step_s.max(period_s / 12.0) };
         let (x, y) = (seen(first, width_s, derivative)?, seen(second, width_s, -derivative)?);
         let spline = Spline::through(x.time_s.clone(), x.values.clone())?;
-        let period_s = mean_period_s(&y).max(4.0 * step_s);
         Ok(Self { x, y, spline, period_s })
     }
 

@@ -49,9 +49,8 @@ pub fn smooth(
     let h = (last - first) / n_own;
     // About the mean, so that a large one costs no digits, and the sum over K' and K'' need not be exactly zero.
     let mean = record.iter().sum::<f64>() / record.len() as f64;
-    let own: Vec<f64> = (0..=n_own as usize)
-        .map(|i| spline.at((first + i as f64 * h).min(last)).unwrap_or(mean) - mean)
-        .collect();
+    let own: Vec<f64> =
+        (0..=n_own as usize).map(|i| spline.at((first + i as f64 * h).min(last)).unwrap_or(mean) - mean).collect();
     let reach = REACH * width_s;
     let room = last - first - 2.0 * reach;
     if room < step_s {

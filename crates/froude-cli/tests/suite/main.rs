@@ -26,6 +26,7 @@ mod hostile;
 mod inference;
 #[cfg(target_os = "linux")]
 mod interrupted;
+mod join;
 mod limits;
 mod logs;
 mod nothing_read_wrongly;

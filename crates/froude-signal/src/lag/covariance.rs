@@ -6,6 +6,8 @@ use super::{Fit, JUMP, Rows, WINDOWS, solved};
 
 /// Correlation times of the noise that its autocovariance is summed over, and those after which its time is known (Sokal's window).
 const TIMES: (f64, f64) = (10.0, 5.0);
+/// Standard deviations of χ² beyond which the clocks wander.
+const CHANCE: f64 = 5.0;
 /// Most products that a covariance takes.
 const MOST_PRODUCTS: usize = 100_000_000;
 
@@ -17,10 +19,10 @@ pub(crate) struct Noise {
 }
 
 impl Noise {
-    /// Of residuals that are 0 where there are none; `rows` is their number.
-    pub fn of(residuals: &[f64], rows: usize) -> Self {
+    /// Of residuals that are 0 where there are none.
+    pub fn of(residuals: &[f64]) -> Self {
         let at = |lag: usize| residuals.iter().zip(&residuals[lag..]).map(|(a, b)| a * b).sum::<f64>();
-        let most = (rows / 4).min(MOST_PRODUCTS / rows.max(1)).max(1);
+        let most = (residuals.len() / 4).min(MOST_PRODUCTS / residuals.len().max(1)).max(1);
         let seen = residuals.iter().filter(|r| **r != 0.0).count().max(1) as f64;
         let power = at(0).max(f64::MIN_POSITIVE);
         let (mut sums, mut time) = (vec![power], 1.0_f64);
@@ -44,7 +46,8 @@ impl Noise {
 
     /// Covariance of two sums of the noise with these factors.
     fn covariance(&self, a: &[f64], b: &[f64]) -> f64 {
-        let at = |lag: usize, a: &[f64], b: &[f64]| a.iter().zip(&b[lag.min(b.len())..]).map(|(a, b)| a * b).sum::<f64>();
+        let at =
+            |lag: usize, a: &[f64], b: &[f64]| a.iter().zip(&b[lag.min(b.len())..]).map(|(a, b)| a * b).sum::<f64>();
         let of = |(lag, gamma): (usize, &f64)| {
             let both = if lag == 0 { at(0, a, b) } else { at(lag, a, b) + at(lag, b, a) };
             gamma * both
@@ -64,7 +67,7 @@ pub(crate) struct Known {
 }
 
 /// Of a fit, whose origin is moved to where the records tell the lag best.
-pub(crate) fn of(rows: &Rows, fit: &mut Fit, noise: &Noise, is_free: bool) -> Option<Known> {
+pub(crate) fn of(rows: &Rows, fit: &mut Fit, is_free: bool) -> Option<Known> {
     let told = rows.values.iter().flatten().map(|row| (row[0], row[3] * row[3]));
     let (weight, first) = told.clone().fold((0.0, 0.0), |(w, ws), (s, x)| (w + x, ws + x * s));
     let origin_s = first / weight;
@@ -89,22 +92,29 @@ pub(crate) fn of(rows: &Rows, fit: &mut Fit, noise: &Noise, is_free: bool) -> Op
     let factors = |k: usize, columns: &[[f64; 4]], inverse: &Mat<f64>| -> Vec<f64> {
         columns.iter().map(|z| (0..inverse.nrows()).map(|i| inverse[(k, i)] * z[i]).sum()).collect()
     };
+    // A lag of each window about the line: what they leave is noise alone, whatever the clocks do from one to the next.
+    let mut residuals = rows.residuals(fit);
+    let there: Vec<usize> = (0..rows.values.len()).filter(|k| rows.values[*k].is_some()).collect();
+    let mut of_window = |part: &[usize]| {
+        let (from, to) = (*part.first()?, *part.last()? + 1);
+        let (own, left) = (&columns[from..to], &mut residuals[from..to]);
+        let power: f64 = own.iter().map(|z| z[2] * z[2]).sum();
+        let c: Vec<f64> = own.iter().map(|z| z[2] / power).collect();
+        let off = c.iter().zip(&*left).map(|(c, r)| c * r).sum::<f64>();
+        left.iter_mut().zip(own).for_each(|(r, z)| *r -= z[2] * off);
+        Some((rows.values[part[part.len() / 2]].as_ref()?[0], off, c)).filter(|_| power > 0.0)
+    };
+    let windows: Vec<(f64, f64, Vec<f64>)> =
+        there.chunks(there.len().div_ceil(WINDOWS).max(1)).filter_map(&mut of_window).collect();
+    let mut noise = Noise::of(&residuals);
+    // Each of them took the part of one independent value from the noise.
+    let taken = windows.len() as f64 * noise.time / there.len() as f64;
+    noise.gamma.iter_mut().for_each(|gamma| *gamma /= 1.0 - taken.min(0.5));
+    let with_variance = |(s, off, c): &(f64, f64, Vec<f64>)| [*s, *off, noise.covariance(c, c)];
+    let windows: Vec<[f64; 3]> = windows.iter().map(with_variance).filter(|[.., variance]| *variance > 0.0).collect();
     let standard = |c: &[f64]| noise.covariance(c, c).max(0.0).sqrt();
     let lag = standard(&factors(2, &columns, &inverse));
     let drift = if is_free { standard(&factors(3, &columns, &inverse)) } else { 0.0 };
-    // A lag for each window, about the line: its stamp, itself and its variance.
-    let there: Vec<usize> = (0..rows.values.len()).filter(|k| rows.values[*k].is_some()).collect();
-    let of_window = |part: &[usize]| {
-        let residual = |k: usize| rows.values[k].as_ref().map_or(0.0, |row| fit.residual(row));
-        let own = &columns[*part.first()?..=*part.last()?];
-        let mut gram = Mat::<f64>::zeros(3, 3);
-        own.iter().for_each(|z| (0..3).for_each(|i| (0..3).for_each(|j| gram[(i, j)] += z[i] * z[j])));
-        let c = factors(2, own, &solved(&gram, &Mat::identity(3, 3))?);
-        let off = c.iter().zip(*part.first()?..).map(|(c, k)| c * residual(k)).sum::<f64>();
-        let middle = rows.values[part[part.len() / 2]].as_ref()?[0];
-        Some([middle, off, noise.covariance(&c, &c)]).filter(|[.., variance]| *variance > 0.0)
-    };
-    let windows: Vec<[f64; 3]> = there.chunks(there.len().div_ceil(WINDOWS).max(1)).filter_map(of_window).collect();
     let about_line = line(&windows, &|_| 0.0, is_free);
     let dof = windows.len() as f64 - 1.0 - f64::from(u8::from(is_free));
     let Some((chi2, _)) = about_line.filter(|_| dof >= 1.0) else {
@@ -123,7 +133,7 @@ pub(crate) fn of(rows: &Rows, fit: &mut Fit, noise: &Noise, is_free: bool) -> Op
     Some(Known {
         standard: [lag, drift].map(|s| s * birge.sqrt()),
         // Chance alone leaves nothing.
-        left_s: if chi2 > dof + 3.0 * (2.0 * dof).sqrt() { left_s } else { 0.0 },
+        left_s: if chi2 > dof + CHANCE * (2.0 * dof).sqrt() { left_s } else { 0.0 },
         arm_s,
         jump: jump.map(|[_, s, jump]| [s - fit.lag_s - fit.drift * (s - fit.origin_s), jump]),
     })

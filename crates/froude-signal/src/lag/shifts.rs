@@ -8,7 +8,7 @@ pub(crate) const FEWEST: usize = 20;
 /// Part of the shorter record that any shift compares, unless a lag is declared.
 const LEAST_OVERLAP: f64 = 0.5;
 /// Peaks that are refined, and the part of the highest that they reach.
-const PEAKS: (usize, f64) = (12, 0.3);
+const PEAKS: (usize, f64) = (8, 0.3);
 
 /// A shift with its correlation.
 #[derive(Debug, Clone, Copy, PartialEq)]
