@@ -14,7 +14,7 @@ use froude_records::estimate::{Estimate, OWN};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::run::{BodyState, Declared, ImportedRun, Role, RunLog, import_run};
-use froude_records::sidecar_file::{sidecar_of, sidecar_path};
+use froude_records::sidecar_file::{joined_files, sidecar_of, sidecar_path};
 use froude_records::units::Dimension;
 use froude_rig::carriage::LogsRig;
 
@@ -216,6 +216,7 @@ pub fn force_per_volt_n_v(log: &Path, sidecar: Option<&Path>) -> Result<f64, Met
 fn files_of_table(path: &Path, sidecar: Option<&Path>) -> Vec<ReadFile> {
     let mut files = vec![ReadFile::new(path.to_owned(), "table")];
     let sidecar = sidecar.map_or_else(|| sidecar_path(path).ok().flatten(), |given| Some(given.to_owned()));
+    files.extend(joined_files(path, sidecar.as_deref()).into_iter().map(|file| ReadFile::new(file, "joined")));
     files.extend(sidecar.map(|sidecar| ReadFile::new(sidecar, "sidecar")));
     files
 }

@@ -5,7 +5,7 @@
 //!
 //! **Units.** SI; a positive lag is a load behind the motion. **Source.** Student (1908); first order of Taylor's series, for lags that are short beside the motion.
 
-use froude_fit::distribution::t_two_sided;
+use froude_fit::distribution::{coverage_factor, t_two_sided};
 use froude_records::campaign::{Campaign, SourceKind};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::{p_equation, significant};
@@ -63,7 +63,7 @@ pub(crate) fn findings(campaign: &Campaign, model: &ModelFit, data: &Dataset) ->
             let fitted = model.law.predict(data, law).ok()?;
             of_load(campaign, model, data, load, slope(times, &runs, &fitted[r * data.rows..(r + 1) * data.rows]))
         };
-        let Lag { mut lag_s, standard_s, dof } = at(model.law_coefficients(), data)?;
+        let Lag { mut lag_s, mut standard_s, dof } = at(model.law_coefficients(), data)?;
         let p = t_two_sided(lag_s / standard_s, dof);
         if p >= level {
             return None;
@@ -77,15 +77,17 @@ pub(crate) fn findings(campaign: &Campaign, model: &ModelFit, data: &Dataset) ->
                 ..Settings::new(&model.law.name, SourceKind::Tank, &campaign.identify)
             };
             let law = regress(&model.law, &shifted, settings).ok()?;
-            lag_s += at(law.law_coefficients(), &shifted)?.lag_s;
+            let rest = at(law.law_coefficients(), &shifted)?;
+            (lag_s, standard_s) = (lag_s + rest.lag_s, rest.standard_s);
         }
         lag_s.is_finite().then(|| {
             let text = format!(
-                "{}, {load}: the load {} the motion by {} s ({}): drag and added mass are biased by this. A filter of one channel or two clocks do it: shift the load by that time in the \
+                "{}, {load}: the load {} the motion by {} ± {} s (95 %, {}): drag and added mass are biased by this. A filter of one channel or two clocks do it: shift the load by that time in the \
                  table",
                 model.law.name,
                 if lag_s > 0.0 { "lags" } else { "leads" },
                 significant(lag_s.abs(), 2),
+                significant(coverage_factor(0.95, dof) * standard_s, 2),
                 p_equation(p)
             );
             Finding::new(Severity::Warning, "lag", text)
@@ -167,9 +169,9 @@ mod tests {
     #[test]
     fn a_load_that_lags_or_leads_is_reported_with_its_time() {
         let [late] = said(0.3, 1).try_into().unwrap();
-        assert!(late.contains("the load lags the motion by 0.30 s"), "{late}");
+        assert!(late.contains("the load lags the motion by 0.30 ± 0.0"), "{late}");
         let [early] = said(-0.1, 2).try_into().unwrap();
-        assert!(early.contains("the load leads the motion by 0.10 s"), "{early}");
+        assert!(early.contains("the load leads the motion by 0.10 ± 0.0"), "{early}");
     }
 
     /// 0.4 % of sound tables, plus three standard deviations of the count.

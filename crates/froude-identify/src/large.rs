@@ -198,7 +198,7 @@ fn few(
 ) -> Result<(Table, Observations), IdentifyError> {
     let nothing = || IdentifyError::NothingKept { source_name: source.name.clone(), n_read: facts.n_read };
     let table = table_of(facts.like.as_ref().ok_or_else(nothing)?, facts.rows().chain(seconds.rows()));
-    let mut findings: Vec<Finding> = facts.like.as_ref().and_then(Table::foreign).into_iter().collect();
+    let mut findings: Vec<Finding> = facts.like.as_ref().map(Table::findings).unwrap_or_default();
     let all = observed(&table, campaign, source, &mut findings)?;
     let keep = kept_rows(&all, source)?;
     let drawn = Drawn {

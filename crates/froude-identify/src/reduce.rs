@@ -55,7 +55,11 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, Iden
 /// The files of a table.
 pub(crate) fn files_of(table: &Table) -> Vec<ReadFile> {
     let sidecar = table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar"));
-    std::iter::once(ReadFile::new(table.path.clone(), "table")).chain(sidecar).collect()
+    let joined = table.joined.iter().flat_map(|joined| {
+        let sidecar = joined.sidecar.clone().map(|path| ReadFile::new(path, "joined"));
+        std::iter::once(ReadFile::new(joined.path.clone(), "joined")).chain(sidecar)
+    });
+    std::iter::once(ReadFile::new(table.path.clone(), "table")).chain(sidecar).chain(joined).collect()
 }
 
 /// Reduces a table in memory, made of `files`: of a file, or of the windows of raw runs.
@@ -69,7 +73,7 @@ pub fn reduce_table(
     table: &Table,
     mut files: Vec<ReadFile>,
 ) -> Result<Observations, IdentifyError> {
-    let mut findings: Vec<Finding> = table.foreign().into_iter().collect();
+    let mut findings = table.findings();
     let data = observed(table, campaign, source, &mut findings)?;
     let n_read = data.rows;
     let mut keep = kept_rows(&data, source)?;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use froude_records::manifest::MANIFEST;
 use froude_records::run::{CAMPAIGN_COPY, RunMeta, RunReader, TOW, read_run_meta};
-use froude_records::sidecar_file::{is_list, sidecar_path};
+use froude_records::sidecar_file::{is_part, sidecar_path};
 use froude_records::text::counted;
 
 use crate::method::MethodError;
@@ -87,7 +87,7 @@ pub fn logs_in(folder: &Path) -> Result<Vec<PathBuf>, MethodError> {
     };
     // Notes and workbooks lie among logs: what is no plain table counts where a sidecar says what it is.
     let is_log = |path: &PathBuf| {
-        (has_ending(path, &["csv", "parquet"]) && !is_list(path))
+        (has_ending(path, &["csv", "parquet"]) && !is_part(path))
             || (has_ending(path, &OTHER_ENDINGS) && matches!(sidecar_path(path), Ok(Some(_))))
     };
     let mut paths: Vec<PathBuf> = listed(folder)?.into_iter().filter(is_log).collect();

@@ -303,6 +303,7 @@ pub(crate) fn assemble(
             .collect(),
         blank: Vec::new(),
         understood: None,
+        joined: Vec::new(),
     };
     let notes: Vec<String> = header.iter().zip(wants).filter_map(|(header, want)| want.note(header)).collect();
     table.understood = (!notes.is_empty()).then(|| notes.join(", "));

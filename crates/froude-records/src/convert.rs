@@ -61,7 +61,7 @@ pub fn convert(input: &Path, sidecar: Option<&Path>, out: &Path) -> Result<Outco
         ),
     };
     let said = format!("{}: {columns}, {}{left_out}", rows[0], counted(table.n_rows, "row", "rows"));
-    let findings = Some(table.foreign().into_iter().collect());
+    let findings = Some(table.findings());
     Ok(Outcome { blocks: vec![files.into(), Block::text("", vec![said])], findings, ..Outcome::default() })
 }
 

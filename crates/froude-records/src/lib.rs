@@ -43,6 +43,7 @@ pub mod given_option;
 pub mod guard;
 pub mod hash;
 mod heading;
+pub mod join_keys;
 pub mod json;
 pub mod keep;
 pub mod kind;

@@ -38,14 +38,16 @@ pub(crate) mod channel;
 pub mod clock_jumps;
 pub mod clocks;
 pub(crate) mod declarations;
-mod declared;
+pub(crate) mod declared;
 mod declared_text;
 mod doubt;
 mod file;
 pub mod frames;
 mod import;
+pub(crate) mod join;
 mod layout;
 mod log;
+pub(crate) mod log_times;
 pub mod marks;
 pub(crate) mod meta;
 mod reader;
@@ -61,12 +63,10 @@ pub use crate::run::doubt::{Doubt, DoubtKind};
 pub use channel::{BOARD, Frame, LOG, Meaning};
 pub use declarations::{Declarations, Stated, Told};
 pub use declared::{Declared, declared, declared_value};
-pub use import::{
-    EVEN, ImportedRun, LogTimes, Missing, TimeSteps, channel_name, gap, import_run, is_servo_log, run_of, run_of_table,
-    steps_finding, time_column,
-};
+pub use import::{ImportedRun, channel_name, import_run, is_servo_log, run_of, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
+pub use log_times::{EVEN, LogTimes, Missing, TimeSteps, gap, steps_finding, time_column};
 pub use meta::{
     Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Direction, Mounted, Role, RunMeta, RunStatus, TOW,
 };

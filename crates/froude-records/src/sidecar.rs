@@ -7,6 +7,7 @@ use indexmap::IndexMap;
 use crate::error::{Place, RecordError};
 use crate::file_words::FileWords;
 use crate::heading::Heading;
+use crate::join_keys::{Join, joins};
 use crate::known_columns::{is_text_column, known_dimension};
 use crate::measured::Measured;
 use crate::nearest::suggestion;
@@ -52,6 +53,8 @@ pub struct Sidecar {
     pub standards: IndexMap<String, f64>,
     /// `[columns]` in the order written: header in the table → what it is.
     pub columns: IndexMap<String, Mapping>,
+    /// Logs with clocks of their own that belong to this one, each with its columns where these are written here.
+    pub joins: Vec<(Join, Option<Self>)>,
 }
 
 /// What a log states of its run, in the words of a run that Froude recorded.
@@ -133,7 +136,19 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     root.schema("sidecar")?;
     root.only(
         &[
-            &["schema", "files", "list", "file", "method", "role", "mounted", "conditions", "constants", "columns"],
+            &[
+                "schema",
+                "files",
+                "list",
+                "file",
+                "method",
+                "role",
+                "mounted",
+                "conditions",
+                "constants",
+                "columns",
+                "log",
+            ],
             &declarations::KEYS[..],
             &clock_jumps::KEYS[..],
         ]
@@ -167,11 +182,7 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     let file = FileWords::read(&root)?;
     // Where only the file is described, its headers are what they say.
     if file == FileWords::default() || root.get("columns").is_some() {
-        let section = root.as_section("columns", root.need("columns", advice)?)?;
-        for (header, _, value) in section.entries() {
-            columns
-                .insert(header.to_owned(), mapping(&section.as_section(header, value)?, &run.declared.frame_names())?);
-        }
+        columns = mappings(&root.as_section("columns", root.need("columns", advice)?)?, &run.declared.frame_names())?;
     }
     of_a_run(&root, &run, &columns)?;
     if let Some(cell) = &run.declared.cell {
@@ -184,7 +195,9 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
         list.is_some() && files.is_none(),
         "lists tables; name them with files = \"run_*.csv\", for example",
     )?;
-    Ok(Sidecar { path: path.to_owned(), files, list, file, run, constants, standards, columns })
+    let joined = |(join, section): (Join, Section<'_>)| Ok((join, inline(path, &section)?));
+    let joins = joins(&root)?.into_iter().map(joined).collect::<Result<_, RecordError>>()?;
+    Ok(Sidecar { path: path.to_owned(), files, list, file, run, constants, standards, columns, joins })
 }
 
 /// The method whose budget takes the standard uncertainty of a constant.
@@ -241,6 +254,26 @@ fn bridges(root: &Section<'_>, cell: &Cell, columns: &IndexMap<String, Mapping>)
         }
         None => Ok(()),
     }
+}
+
+/// The columns of a log that is joined, where they are written beside it.
+fn inline(path: &Path, join: &Section<'_>) -> Result<Option<Sidecar>, RecordError> {
+    let Some(columns) = join.section("columns")? else { return Ok(None) };
+    Ok(Some(Sidecar {
+        path: path.to_owned(),
+        files: None,
+        list: None,
+        file: FileWords::default(),
+        run: RunFacts::default(),
+        constants: IndexMap::new(),
+        columns: mappings(&columns, &[])?,
+        joins: Vec::new(),
+    }))
+}
+
+fn mappings(columns: &Section<'_>, frames: &[&str]) -> Result<IndexMap<String, Mapping>, RecordError> {
+    let of = |(header, _, value)| Ok((String::from(header), mapping(&columns.as_section(header, value)?, frames)?));
+    columns.entries().map(of).collect()
 }
 
 fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordError> {

@@ -16,6 +16,7 @@ use wildmatch::WildMatch;
 
 use crate::csv_table::read_csv;
 use crate::error::{Place, RecordError};
+use crate::join_keys::Join;
 use crate::measured::Measured;
 use crate::nearest::suggestion;
 use crate::read;
@@ -81,16 +82,83 @@ fn names_files(path: &Path) -> bool {
     is_sidecar(path) && String::from_utf8_lossy(&text).lines().any(is_key)
 }
 
-/// Whether a table is the list of a sidecar in its folder, and no log itself.
+/// Whether a table is the list of a sidecar in its folder, or a log that one joins to another: no run itself.
 #[must_use]
-pub fn is_list(table: &Path) -> bool {
+pub fn is_part(table: &Path) -> bool {
     let Some(folder) = table.parent() else { return false };
+    let is_joined = |sidecar: &Sidecar| {
+        let path = |(join, _): &(Join, _)| beside(sidecar, &join.file).to_string_lossy().into_owned();
+        sidecar.joins.iter().any(|join| WildMatch::new(&path(join)).matches(&table.to_string_lossy()))
+    };
     let names = |file: PathBuf| {
         file.extension().is_some_and(|e| e == "toml")
             && is_sidecar(&file)
-            && read_sidecar(&file).ok().and_then(|sidecar| sidecar.list).is_some_and(|list| list == table)
+            && read_sidecar(&file).is_ok_and(|own| own.list.as_deref() == Some(table) || is_joined(&own))
     };
     std::fs::read_dir(folder).into_iter().flatten().flatten().take(MOST_FILES).any(|entry| names(entry.path()))
+}
+
+/// A file that a sidecar names, from its own folder on.
+fn beside(sidecar: &Sidecar, file: &str) -> PathBuf {
+    sidecar.path.parent().unwrap_or(Path::new("")).join(file)
+}
+
+/// The logs that are joined to a table, each with its own sidecar, where it has one.
+///
+/// # Errors
+///
+/// A `*` that stands for nothing; a sidecar that cannot be read, that joins others itself, or that is the table's own.
+pub fn joined(sidecar: &Sidecar, table: &Path) -> Result<Vec<(PathBuf, Option<Sidecar>)>, RecordError> {
+    sidecar.joins.iter().map(|(join, inline)| one_joined(sidecar, join, inline.as_ref(), table)).collect()
+}
+
+/// The logs that are joined to a table, and the sidecars that these have of their own; none where that cannot be read.
+#[must_use]
+pub fn joined_files(table: &Path, given: Option<&Path>) -> Vec<PathBuf> {
+    let Ok(Some(sidecar)) = sidecar_of(table, given) else { return Vec::new() };
+    let files = |(path, own): (PathBuf, Option<Sidecar>)| {
+        let own = own.map(|own| own.path).filter(|own| *own != sidecar.path);
+        std::iter::once(path).chain(own).collect::<Vec<_>>()
+    };
+    joined(&sidecar, table).unwrap_or_default().into_iter().flat_map(files).collect()
+}
+
+fn one_joined(
+    sidecar: &Sidecar,
+    join: &Join,
+    inline: Option<&Sidecar>,
+    table: &Path,
+) -> Result<(PathBuf, Option<Sidecar>), RecordError> {
+    let refuse = |problem: String| Err(RecordError::value(join.place.clone(), "file", problem));
+    let name = table.file_name().unwrap_or_default().to_string_lossy();
+    let star = sidecar.files.as_deref().and_then(|files| files.split_once('*'));
+    let star = star.and_then(|(before, after)| name.strip_prefix(before)?.strip_suffix(after));
+    let file = match (join.file.contains('*'), star) {
+        (false, _) => join.file.clone(),
+        (true, Some(star)) => join.file.replace('*', star),
+        (true, None) => {
+            let what = "has a *, which stands for what the one * of `files` stands for; write files = \"motion_*.csv\", or name the file";
+            return refuse(format!("is {:?}: it {what}", join.file));
+        }
+    };
+    let path = beside(sidecar, &file);
+    if path.as_path() == table {
+        return refuse(format!("is {file:?}, the log that it is joined to; name the other log"));
+    }
+    if !path.is_file() {
+        return refuse(format!("is {file:?}, and there is no file {}; correct the name", path.display()));
+    }
+    let own = inline.map_or_else(|| sidecar_of(&path, None), |own| Ok(Some(own.clone())))?;
+    match &own {
+        Some(own) if inline.is_none() && own.path == sidecar.path => refuse(format!(
+            "is {file:?}, which `files` of this sidecar fits too; make `files` narrower, and write a sidecar for {file}, or [log.join.columns] here"
+        )),
+        Some(own) if !own.joins.is_empty() => refuse(format!(
+            "is {file:?}, whose sidecar {} joins another log itself; write all [[log.join]] in one of them",
+            own.path.display()
+        )),
+        _ => Ok((path, own)),
+    }
 }
 
 /// A sidecar with what its list says of a table.
@@ -186,7 +254,7 @@ mod tests {
         assert_eq!(table.number("time", crate::units::Dimension::TIME).unwrap(), [0.0, 0.01]);
         assert_eq!(table.number("f_x", crate::units::Dimension::FORCE).unwrap(), [-1.0, -2.0]);
         assert!(of("other.csv").unwrap().is_none());
-        assert!(is_list(&folder.path().join("runs.csv")) && !is_list(&folder.path().join("run_1.csv")));
+        assert!(is_part(&folder.path().join("runs.csv")) && !is_part(&folder.path().join("run_1.csv")));
         write(
             "runs.csv",
             "file,speed [m/s],role,note\nrun_1.csv,0.5,test,me\nrun_2.csv,1,still,you\nrun_9.csv,1,still,you\n",

@@ -2,11 +2,14 @@
 
 use std::path::PathBuf;
 
+use froude_signal::lag::Lag;
+
 use crate::error::{Place, RecordError};
 use crate::finding::{Finding, Severity};
 use crate::nearest::suggestion;
 use crate::plausible;
 use crate::raw_column::TEXT_FOR_NUMBERS;
+use crate::run::step::Step;
 use crate::texts::Texts;
 use crate::units::{Dimension, Unit};
 
@@ -29,6 +32,25 @@ pub struct Table {
     pub blank: Vec<(String, usize)>,
     /// How the file was understood, where it is not written as Froude writes tables.
     pub understood: Option<String>,
+    /// Logs with clocks of their own whose columns were joined to it.
+    pub joined: Vec<Joined>,
+}
+
+/// A log that was joined to a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joined {
+    /// Its file.
+    pub path: PathBuf,
+    /// Its sidecar, where it has one of its own.
+    pub sidecar: Option<PathBuf>,
+    /// The columns that were taken from it.
+    pub columns: Vec<String>,
+    /// Lag and drift of its clock.
+    pub lag: Lag,
+    /// What was done, with its numbers.
+    pub step: Step,
+    /// What a reader should know of it.
+    pub findings: Vec<Finding>,
 }
 
 /// One column.
@@ -81,6 +103,7 @@ impl Table {
             left_out: Vec::new(),
             blank: Vec::new(),
             understood: None,
+            joined: Vec::new(),
         }
     }
 
@@ -93,13 +116,14 @@ impl Table {
         Self { understood, ..self }
     }
 
-    /// How the file was understood, as a finding; none of a table in Froude's own form.
+    /// How the file was understood, where it is not in Froude's own form, and what was joined to it.
     #[must_use]
-    pub fn foreign(&self) -> Option<Finding> {
+    pub fn findings(&self) -> Vec<Finding> {
         let name = self.path.file_name().unwrap_or_default().to_string_lossy();
         let told =
             |words: &String| Finding::new(Severity::Note, "foreign-table", format!("{name} was read as: {words}"));
-        self.understood.as_ref().map(told)
+        let joined = self.joined.iter().flat_map(|joined| joined.findings.clone());
+        self.understood.as_ref().map(told).into_iter().chain(joined).collect()
     }
 
     /// Numbers of a column in SI, when it has the dimension asked for.

@@ -7,7 +7,9 @@ use froude_foreign::refused::refusal_for;
 
 use crate::csv_table::Blanks;
 use crate::error::RecordError;
-use crate::sidecar_file::sidecar_of;
+use crate::run::join::join;
+use crate::sidecar::Sidecar;
+use crate::sidecar_file::{joined, sidecar_of};
 use crate::table::Table;
 use crate::write::Prepared;
 use crate::{container_table, csv_table, parquet_table, parquet_write, read, sheet_table};
@@ -32,9 +34,21 @@ pub fn read_table_with_blanks(path: &Path, sidecar: Option<&Path>) -> Result<Tab
     Ok(Table { blank, ..table })
 }
 
-fn read(path: &Path, sidecar: Option<&Path>, blank: Option<&mut Blanks>) -> Result<Table, RecordError> {
+fn read(path: &Path, sidecar: Option<&Path>, mut blank: Option<&mut Blanks>) -> Result<Table, RecordError> {
     let mapping = sidecar_of(path, sidecar)?;
-    let mapping = mapping.as_ref();
+    let mut table = by_format(path, mapping.as_ref(), blank.as_deref_mut())?;
+    let Some(mapping) = mapping else { return Ok(table) };
+    for ((other, own), (declared, _)) in joined(&mapping, path)?.into_iter().zip(&mapping.joins) {
+        let log = by_format(&other, own.as_ref(), None)?;
+        let rows = join(&mut table, mapping.run.declared.jumps, &log, own.as_ref(), declared)?;
+        if let Some(blank) = &mut blank {
+            blank.retain_mut(|(_, row)| rows.binary_search(row).map(|kept| *row = kept).is_ok());
+        }
+    }
+    Ok(table)
+}
+
+fn by_format(path: &Path, mapping: Option<&Sidecar>, blank: Option<&mut Blanks>) -> Result<Table, RecordError> {
     match Format::of(path)? {
         Format::Text => csv_table::read_text(path, mapping, blank),
         Format::Parquet => match blank {

@@ -19,6 +19,8 @@
 //! | [`harmonic`]        | mean, harmonics and their frequency, with uncertainty             | broken periods count    |
 //! | [`resample`]        | values between samples, at the times of another clock             | not-a-knot              |
 //! | [`clock`]           | offset, skew and gain of one channel against another              | –                       |
+//! | [`smooth`]          | a record and its derivatives under a Gaussian window              | cut                     |
+//! | [`lag`]             | lag and drift between two records with clocks of their own        | cut                     |
 //! | [`spectrum`]        | Welch spectra                                                     | –                       |
 //!
 //! **Units.** A rate is in Hz, a time in s, the values are whatever they were (SI in [`two_mass`]).
@@ -39,8 +41,10 @@ pub mod differences;
 mod error;
 pub mod exponential;
 pub mod harmonic;
+pub mod lag;
 mod pages;
 pub mod resample;
+pub mod smooth;
 pub mod spectrum;
 pub mod stream;
 pub mod two_mass;

@@ -44,7 +44,7 @@ pub fn condition(run: &mut TankLog, method: &str) -> Result<(), MethodError> {
         );
         Some(Step::new("read", name, words).with("factor", told.factor, "1").with("sign", told.sign, "1"))
     });
-    run.done = read.collect();
+    run.done.extend(read.collect::<Vec<_>>());
     times::from_the_first_sample(run);
     run.findings.extend(stretches::astray(&run.log, &run.declared.marks));
     resolution::check(run);

@@ -40,7 +40,7 @@ pub struct Averaged {
 }
 
 impl From<ImportedRun> for TankLog {
-    fn from(ImportedRun { log, steps, findings, told, declared }: ImportedRun) -> Self {
-        Self { log, steps, findings, told, declared, ..Self::default() }
+    fn from(ImportedRun { log, steps, findings, told, declared, done }: ImportedRun) -> Self {
+        Self { log, steps, findings, told, declared, done, ..Self::default() }
     }
 }

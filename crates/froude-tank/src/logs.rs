@@ -18,7 +18,7 @@ use froude_records::nearest::suggestion;
 use froude_records::run::clocks::is_own;
 use froude_records::run::step::Step;
 use froude_records::run::{Channel, Role, RunReader, RunStatus, read_run_meta};
-use froude_records::sidecar_file::sidecar_path;
+use froude_records::sidecar_file::{joined_files, sidecar_path};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
@@ -130,12 +130,13 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
     Ok(out)
 }
 
-/// A log with its steps, and its sidecar where there is one.
+/// A log with its steps, its sidecar where there is one, and the logs that are joined to it.
 pub(crate) fn files_of(path: PathBuf, role: &str, log: &TankLog) -> impl Iterator<Item = ReadFile> {
     let own = Some(path.with_extension("toml")).filter(|sidecar| sidecar.exists());
     let sidecar = own.or_else(|| sidecar_path(&path).ok().flatten());
+    let joined = joined_files(&path, None).into_iter().map(|file| ReadFile::new(file, "joined"));
     let log = ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role) };
-    std::iter::once(log).chain(sidecar.map(|sidecar| ReadFile::new(sidecar, "sidecar")))
+    std::iter::once(log).chain(sidecar.map(|sidecar| ReadFile::new(sidecar, "sidecar"))).chain(joined)
 }
 
 /// A sentence about a log, with its file.
@@ -145,7 +146,7 @@ fn of_file(path: &Path, sentence: &str) -> String {
 }
 
 /// Notes of a log that a reader should see: what was done to its stamps.
-const OF_STAMPS: [&str; 2] = ["uneven-time-steps", "clock-unwrapped"];
+const OF_STAMPS: [&str; 3] = ["uneven-time-steps", "clock-unwrapped", "logs-joined"];
 
 /// Findings of logs, without repeats: findings of one code that differ only in numbers are reported for the first log, with the number of other logs.
 fn once(of_logs: Vec<(PathBuf, Finding)>) -> Vec<Finding> {
@@ -355,9 +356,9 @@ pub(crate) fn stamps_standard_s(log: &TankLog, channels: [&str; 2]) -> f64 {
     a.hypot(b)
 }
 
-/// The clock and the delay by which the stamps of a channel were moved.
+/// The clock, the delay and the join by which the stamps of a channel were moved.
 pub(crate) fn lateness<'a>(log: &'a TankLog, channel: &str) -> Vec<&'a str> {
-    let is_it = |step: &&Step| step.channel == channel && ["clock", "delay"].contains(&step.step.as_str());
+    let is_it = |step: &&Step| step.channel == channel && ["clock", "delay", "join"].contains(&step.step.as_str());
     log.done.iter().filter(is_it).map(|step| step.words.as_str()).collect()
 }
 

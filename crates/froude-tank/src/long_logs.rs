@@ -142,6 +142,7 @@ impl Means {
             left_out: part.left_out.clone(),
             understood: part.understood.clone(),
             blank: Vec::new(),
+            joined: part.joined.clone(),
         });
         self.blocks.resize(table.columns.len(), BlockMean::of(self.block_rows));
         let of = |column: &&Column| matches!(column.data, ColumnData::Number { .. });

@@ -212,7 +212,7 @@ fn logs(paths: &[PathBuf]) -> Inspection {
                     ),
                 ));
                 methods.push(log.meta.method);
-                findings.extend(own.into_iter().filter(|finding| finding.severity > Severity::Note));
+                findings.extend(own.into_iter().filter(|f| f.severity > Severity::Note || f.code == "logs-joined"));
             }
             Err(error) => findings.push(Finding::new(Severity::Error, "run-unreadable", error.to_string())),
         }

@@ -28,6 +28,7 @@ mod hull;
 mod inference;
 #[cfg(target_os = "linux")]
 mod interrupted;
+mod join;
 mod joint;
 mod limits;
 mod logs;

@@ -61,6 +61,7 @@ pub(super) fn table_of<'a>(like: &Table, rows: impl IntoIterator<Item = &'a Rc<R
         left_out: like.left_out.clone(),
         understood: like.understood.clone(),
         blank: Vec::new(),
+        joined: like.joined.clone(),
     }
 }
 

@@ -16,36 +16,27 @@
 //! written there (`y/position` is along the chain, `position` has no frame until somebody says it). Times are those of the stamps, or, where the stamps are
 //! the rounded ones of even times, these ([`crate::run::stamps`]); what goes back is refused or treated as declared ([`crate::run::clock_jumps`]). Nothing is resampled.
 
-use std::ops::Range;
 use std::path::Path;
 
 use indexmap::IndexMap;
 
 use crate::error::{Place, RecordError};
-use crate::finding::{Finding, Severity};
+use crate::finding::Finding;
 use crate::measured::Measured;
-use crate::number::{percent, plain};
 use crate::raw_column::TWICE;
 use crate::run::channel::{LOG, Meaning};
-use crate::run::clock_jumps::{ClockJumps, in_order, twice};
 use crate::run::declarations::{Declarations, Told};
 use crate::run::layout::AXIS;
-use crate::run::log::{Channel, Gap, GapCause, RunLog};
+use crate::run::log::{Channel, RunLog};
+use crate::run::log_times::{LogTimes, TimeSteps};
+use crate::run::marks::Mark;
 use crate::run::meta::{Role, RunMeta, RunStatus};
-use crate::run::stamps::median;
-use crate::run::stamps::{LACKS, even_times, gaps, resolution, timer_step, usual_step_s};
+use crate::run::step::Step;
 use crate::sidecar::{Mapping, Sidecar};
-use crate::sidecar_file::sidecar_of;
-use crate::table::{ColumnData, Table};
+use crate::sidecar_file::{joined, sidecar_of};
+use crate::table::{ColumnData, Joined, Table};
 use crate::table_file::read_table;
-use crate::text::counted;
-use crate::units::{Dimension, Unit};
-
-/// Steps that differ less than this from their median, relative to it, are even but for the clock's resolution.
-pub const EVEN: f64 = 0.01;
-
-/// Part of a step by which stamps of many digits may be off even times.
-const FINE: f64 = 1e-6;
+use crate::units::Unit;
 
 /// A log that was imported, with what was found in it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -60,17 +51,8 @@ pub struct ImportedRun {
     pub told: IndexMap<String, Told>,
     /// What it declares of the data beside them.
     pub declared: Declarations,
-}
-
-/// Steps between ticks, s.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct TimeSteps {
-    /// The median: gaps do not move it.
-    pub median_s: f64,
-    /// The shortest.
-    pub shortest_s: f64,
-    /// The longest.
-    pub longest_s: f64,
+    /// What was done to it while it was read.
+    pub done: Vec<Step>,
 }
 
 /// Channels that make a log one of a servo.
@@ -83,7 +65,10 @@ const OF_SERVO: [&str; 3] = ["time", "position", "command"];
 /// A sidecar that cannot be read.
 pub fn is_servo_log(table: &Path, sidecar: Option<&Path>) -> Result<bool, RecordError> {
     let Some(sidecar) = sidecar_of(table, sidecar)? else { return Ok(false) };
-    let has = |name: &str| sidecar.columns.values().any(|column| column.name.trim_start_matches("y/") == name);
+    let others = joined(&sidecar, table)?;
+    let all = || std::iter::once(&sidecar).chain(others.iter().filter_map(|(_, own)| own.as_ref()));
+    let is = |own: &Sidecar, name: &str| own.columns.values().any(|c| c.name.trim_start_matches("y/") == name);
+    let has = |name: &str| all().any(|own| is(own, name));
     Ok(OF_SERVO.into_iter().all(has))
 }
 
@@ -112,9 +97,11 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
 ///
 /// # Errors
 ///
-/// Two columns that are one channel.
+/// Two columns that are one channel; sidecars of joined logs that contradict each other.
 pub fn run_of(table: &Table, sidecar: Option<&Sidecar>, times: LogTimes) -> Result<ImportedRun, RecordError> {
-    let LogTimes { rows, time_s, steps, lost, findings } = times;
+    let LogTimes { rows, time_s, steps, lost, mut findings } = times;
+    let others = sidecar.map(|sidecar| joined(sidecar, &table.path)).transpose()?.unwrap_or_default();
+    let of_join = |name: &String| table.joined.iter().position(|joined| joined.columns.contains(name));
     let mut channels = IndexMap::new();
     let mut told = IndexMap::new();
     for column in &table.columns {
@@ -123,11 +110,14 @@ pub fn run_of(table: &Table, sidecar: Option<&Sidecar>, times: LogTimes) -> Resu
             continue;
         }
         let mut meaning = Meaning::of(&column.name, &Unit::si(*dimension).text, LOG);
-        let entry = sidecar.and_then(|s| s.columns.iter().find(|(_, entry)| entry.name == column.name));
+        let join = of_join(&column.name);
+        let own = join.map_or(sidecar, |k| others.get(k).and_then(|(_, own)| own.as_ref()));
+        let entry = own.and_then(|s| s.columns.iter().find(|(_, entry)| entry.name == column.name));
         if let Some((header, entry)) = entry {
             entry.words.set(&mut meaning);
-            let scale_errors = sidecar.map(|s| s.scale_errors(entry, table)).unwrap_or_default();
-            told.insert(channel_name(&column.name), Told { scale_errors, ..entry.told(header) });
+            let scale_errors = own.map(|s| s.scale_errors(entry, table)).unwrap_or_default();
+            let time_standard_s = join.and_then(|k| table.joined.get(k)).map_or(0.0, |joined| joined.lag.standard_s());
+            told.insert(channel_name(&column.name), Told { scale_errors, time_standard_s, ..entry.told(header) });
         }
         if channels.insert(channel_name(&column.name), Channel { meaning, values: si[rows.clone()].to_vec() }).is_some()
         {
@@ -138,7 +128,7 @@ pub fn run_of(table: &Table, sidecar: Option<&Sidecar>, times: LogTimes) -> Resu
         let unit = quantity.unit.dimension.to_string();
         (name.clone(), Measured::of(quantity.value_si, unit))
     });
-    let meta = RunMeta {
+    let mut meta = RunMeta {
         id: table.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
         method: sidecar.and_then(|s| s.run.method.clone()).unwrap_or_default(),
         role: sidecar.and_then(|s| s.run.role).unwrap_or(Role::Excitation),
@@ -150,9 +140,82 @@ pub fn run_of(table: &Table, sidecar: Option<&Sidecar>, times: LogTimes) -> Resu
         log_rate_hz: 1.0 / steps.median_s,
         ..RunMeta::default()
     };
+    let mut declared = sidecar.map(|s| s.run.declared.clone()).unwrap_or_default();
+    for ((_, own), joined) in others.iter().zip(&table.joined) {
+        if let Some(own) = own {
+            merge(&mut meta, &mut declared, own, joined)?;
+        }
+    }
+    findings.extend(table.joined.iter().flat_map(|joined| joined.findings.clone()));
+    let each = |joined: &Joined| {
+        let step = |name: &String| Step { channel: channel_name(name), ..joined.step.clone() };
+        joined.columns.iter().map(step).collect::<Vec<_>>()
+    };
+    let done = table.joined.iter().flat_map(each).collect();
     let log = RunLog { path: table.path.clone(), time_s, channels, lost, meta, ..RunLog::default() };
-    let declared = sidecar.map(|s| s.run.declared.clone()).unwrap_or_default();
-    Ok(ImportedRun { log, steps, findings, told, declared })
+    Ok(ImportedRun { log, steps, findings, told, declared, done })
+}
+
+/// Adds what the sidecar of a joined log declares to what that of the log does.
+fn merge(
+    meta: &mut RunMeta,
+    declared: &mut Declarations,
+    own: &Sidecar,
+    Joined { lag, .. }: &Joined,
+) -> Result<(), RecordError> {
+    let refuse = |key: &str, problem: String| {
+        let place = Place::whole(&own.path);
+        let what = format!(
+            "{problem} in the sidecar of the log that it is joined to; leave it out of one, or make them agree"
+        );
+        Err(RecordError::value(place, key, what))
+    };
+    let theirs = &own.run.declared;
+    if own.run.method.as_ref().is_some_and(|method| !meta.method.is_empty() && *method != meta.method) {
+        return refuse("method", format!("is another than {:?}", meta.method));
+    }
+    if own.run.role.is_some_and(|role| role != meta.role) {
+        return refuse("role", format!("is another than {:?}", meta.role.name()));
+    }
+    if !own.run.configuration.is_empty() && own.run.configuration != meta.configuration {
+        return refuse("configuration", format!("is another than {:?}", meta.configuration));
+    }
+    let constants =
+        own.constants.iter().map(|(name, q)| (name.clone(), Measured::of(q.value_si, q.unit.dimension.to_string())));
+    let constants: IndexMap<String, Measured> = constants.collect();
+    for (key, theirs, all) in
+        [("conditions", &own.run.conditions, &mut meta.conditions), ("constants", &constants, &mut meta.constants)]
+    {
+        for (name, value) in theirs {
+            if all.get(name).is_some_and(|known| known != value) {
+                return refuse(key, format!("gives {name} another value than"));
+            }
+            all.insert(name.clone(), value.clone());
+        }
+    }
+    if !theirs.clocks.is_empty() || !theirs.segments.is_empty() {
+        let key = if theirs.clocks.is_empty() { "segments" } else { "clocks" };
+        return Err(RecordError::value(
+            Place::whole(&own.path),
+            key,
+            "of a log that is joined to another are not read: a joined log has one clock, and segments are those of the log that it is joined to; write them there",
+        ));
+    }
+    for (name, frame) in &theirs.frames {
+        if declared.frames.get(name).is_some_and(|known| known != frame) {
+            return refuse("frames", format!("declares {name:?} otherwise than"));
+        }
+        declared.frames.insert(name.clone(), frame.clone());
+    }
+    if let Some(cell) = &theirs.cell {
+        if declared.cell.as_ref().is_some_and(|known| known != cell) {
+            return refuse("cell", "is another than".to_owned());
+        }
+        declared.cell = Some(cell.clone());
+    }
+    let on_log = |mark: &Mark| Mark { from_s: lag.time_s(mark.from_s), to_s: lag.time_s(mark.to_s), ..mark.clone() };
+    declared.marks.extend(theirs.marks.iter().map(on_log));
+    Ok(())
 }
 
 impl Mapping {
@@ -176,233 +239,4 @@ impl Mapping {
 #[must_use]
 pub fn channel_name(name: &str) -> String {
     if AXIS.iter().any(|(of_axis, ..)| *of_axis == name) { format!("y/{name}") } else { name.to_owned() }
-}
-
-/// The times of a table, s.
-///
-/// # Errors
-///
-/// No such column, or one of another dimension.
-pub fn time_column(table: &Table) -> Result<&[f64], RecordError> {
-    if !table.columns.iter().any(|column| column.name == "time") {
-        let advice = "a log needs its times: head the column `time [s]`, or map it with { name = \"time\", unit = \"s\" } in the sidecar";
-        return Err(RecordError::unknown_column(Place::whole(&table.path), "time", advice));
-    }
-    table.number("time", Dimension::TIME)
-}
-
-impl TimeSteps {
-    /// The steps between increasing times.
-    #[must_use]
-    pub fn of(time_s: &[f64]) -> Self {
-        let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
-        let median_s = median(&mut steps).unwrap_or(f64::NAN);
-        let (shortest_s, longest_s) =
-            steps.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), step| (low.min(*step), high.max(*step)));
-        Self { median_s, shortest_s, longest_s }
-    }
-}
-
-/// Ticks that are missing between two times.
-#[must_use]
-pub fn gap(from_s: f64, to_s: f64, step_s: f64) -> Gap {
-    let ticks = (((to_s - from_s) / step_s).round() as u64).saturating_sub(1);
-    Gap {
-        from_s: Some(from_s),
-        to_s: Some(to_s),
-        ticks: Some(ticks),
-        cause: GapCause::Link,
-        text: format!(
-            "{} missing between {from_s} s and {to_s} s of the log",
-            counted(ticks as usize, "tick is", "ticks are")
-        ),
-    }
-}
-
-/// The times of a log as they are used.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct LogTimes {
-    /// Rows of the table that are used.
-    pub rows: Range<usize>,
-    /// Their times, s, increasing.
-    pub time_s: Vec<f64>,
-    /// The steps between them.
-    pub steps: TimeSteps,
-    /// Gaps.
-    pub lost: Vec<Gap>,
-    /// What was found, and done.
-    pub findings: Vec<Finding>,
-}
-
-impl LogTimes {
-    /// The times of a table, by what is declared of its clock.
-    ///
-    /// # Errors
-    ///
-    /// No times, fewer than two; a clock that goes back where nothing is declared; equal times that are no rounding.
-    pub fn of(table: &Table, jumps: ClockJumps) -> Result<Self, RecordError> {
-        let stamps = time_column(table)?;
-        if stamps.len() < 2 {
-            let problem = "has one value; a log needs two ticks at least".to_owned();
-            return Err(RecordError::value(table.place_of_row(0), "time", problem));
-        }
-        let order = in_order(table, stamps, jumps)?;
-        let unit_s = unit_of_times_s(table);
-        let written: Vec<f64> = stamps.iter().map(|t| t / unit_s).collect();
-        let digits = resolution(&written);
-        let timer = digits.and_then(|digits| timer_step(&written, digits));
-        let recorded = TimeSteps::of(&order.time_s);
-        let of = |resolution_s: f64| even_times(&order.time_s, resolution_s).map(|even| (even, resolution_s));
-        let fine = digits.map_or(FINE * recorded.median_s, |digits| digits * unit_s);
-        let found = of(fine).or_else(|| of(timer? * unit_s));
-        let resolution_s =
-            found.as_ref().map(|(_, r)| *r).or(digits.map(|digits| digits * unit_s)).filter(|_| digits.is_some());
-        let even = found.map(|(even, _)| even);
-        let is_rounded = even.as_ref().is_some_and(|even| even.off_s > EVEN * even.step_s);
-        let step_s = even.as_ref().map(|even| even.step_s).or_else(|| usual_step_s(&order.time_s));
-        let time_s = match even.as_ref().filter(|_| is_rounded) {
-            Some(even) => even.times_s(),
-            None => order.time_s,
-        };
-        if let Some(row) = time_s.windows(2).position(|w| w[1] <= w[0]) {
-            return Err(twice(table.place_of_row(order.rows.start + row + 1), time_s[row]));
-        }
-        let step_s = step_s.unwrap_or(recorded.median_s);
-        let lost: Vec<Gap> = gaps(&time_s).into_iter().map(|[a, b]| gap(time_s[a], time_s[b], step_s)).collect();
-        let found = Found { recorded, resolution_s, rounded: is_rounded.then_some(step_s) };
-        let place = table.path.display().to_string();
-        let mut findings = vec![found.finding(&time_s, step_s, &lost, &place)];
-        findings.extend(order.done.map(|done| {
-            let code = if jumps.is_split { "clock-split" } else { "clock-unwrapped" };
-            let severity = if jumps.is_split { Severity::Warning } else { Severity::Note };
-            Finding { place: Some(place), ..Finding::new(severity, code, done) }
-        }));
-        Ok(Self { rows: order.rows, steps: TimeSteps::of(&time_s), time_s, lost, findings })
-    }
-}
-
-/// Whether the steps that lack no samples are even.
-fn are_even(time_s: &[f64], step_s: f64) -> bool {
-    let whole = time_s.windows(2).map(|w| w[1] - w[0]).filter(|step| *step <= LACKS * step_s);
-    whole.fold(0.0_f64, |off, step| off.max((step - step_s).abs())) <= EVEN * step_s
-}
-
-/// Seconds in one unit of the column of times.
-fn unit_of_times_s(table: &Table) -> f64 {
-    let unit = table.columns.iter().find(|column| column.name == "time").map(|column| &column.data);
-    match unit {
-        Some(ColumnData::Number { unit, .. }) if unit.factor > 0.0 => unit.factor,
-        _ => 1.0,
-    }
-}
-
-/// What the stamps of a log show.
-struct Found {
-    recorded: TimeSteps,
-    resolution_s: Option<f64>,
-    /// Step of the even times that are used in the place of the stamps, s.
-    rounded: Option<f64>,
-}
-
-impl Found {
-    fn finding(&self, time_s: &[f64], step_s: f64, gaps: &[Gap], place: &str) -> Finding {
-        let missing = Missing::of(time_s, step_s, gaps);
-        let words = match (self.rounded, self.resolution_s) {
-            (Some(step_s), Some(resolution_s)) => format!(
-                "the stamps are rounded to {} ms; they fit even times {} ms apart within half of that, and these even times are used instead",
-                plain(1e3 * resolution_s, 6),
-                plain(1e3 * step_s, 7)
-            ),
-            (_, Some(resolution_s)) => format!(
-                "the stamps fit no even times within half their resolution ({} ms) and are used as they are",
-                plain(1e3 * resolution_s, 6)
-            ),
-            _ => "the stamps fit no even times and are used as they are".to_owned(),
-        };
-        // Rounding that is undone costs nothing.
-        let severity = if self.rounded.is_some() { Severity::Note } else { Severity::Warning };
-        let even = (self.rounded.is_some() || !are_even(time_s, step_s)).then_some((severity, words));
-        steps_finding(self.recorded, even, &missing, gaps, place)
-    }
-}
-
-/// Samples that a log lacks beside its gaps.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Missing {
-    /// Ticks without a sample.
-    pub ticks: usize,
-    /// Most of them in a row.
-    pub in_a_row: usize,
-    /// Samples that are there.
-    pub samples: usize,
-}
-
-impl Missing {
-    fn of(time_s: &[f64], step_s: f64, gaps: &[Gap]) -> Self {
-        let mut out = Self { samples: time_s.len(), ..Self::default() };
-        for w in time_s.windows(2) {
-            let step = w[1] - w[0];
-            if step > LACKS * step_s && !gaps.iter().any(|gap| gap.from_s == Some(w[0])) {
-                out.add(((step / step_s).round() as usize).saturating_sub(1));
-            }
-        }
-        out
-    }
-
-    /// Takes a step in which so many ticks have no sample.
-    pub fn add(&mut self, ticks: usize) {
-        self.ticks += ticks;
-        self.in_a_row = self.in_a_row.max(ticks);
-    }
-
-    fn words(&self) -> Option<String> {
-        let part = self.ticks as f64 / (self.ticks + self.samples).max(1) as f64;
-        (self.ticks > 0).then(|| {
-            format!("{} of the samples ({}) are missing, at most {} in a row", percent(part), self.ticks, self.in_a_row)
-        })
-    }
-}
-
-/// What is said of the time steps of a log: `even` is what was done to stamps that are not even, and how grave that is.
-#[must_use]
-pub fn steps_finding(
-    recorded: TimeSteps,
-    even: Option<(Severity, String)>,
-    missing: &Missing,
-    gaps: &[Gap],
-    place: &str,
-) -> Finding {
-    let TimeSteps { median_s, shortest_s, longest_s } = recorded;
-    let numbers = format!(
-        "time steps have a median of {:.6} ms, from {:.6} ms to {:.6} ms",
-        1e3 * median_s,
-        1e3 * shortest_s,
-        1e3 * longest_s
-    );
-    let length = |gap: &&Gap| gap.to_s.unwrap_or(0.0) - gap.from_s.unwrap_or(0.0);
-    let longest = gaps.iter().max_by(|a, b| length(a).total_cmp(&length(b))).map(|gap| {
-        let ticks: u64 = gaps.iter().filter_map(|gap| gap.ticks).sum();
-        let (from_s, to_s) = (gap.from_s.unwrap_or(0.0), gap.to_s.unwrap_or(0.0));
-        format!(
-            "{} missing in {}, the longest of {} s from {} s on; no steady window, cycle or filter runs across them",
-            counted(ticks as usize, "tick is", "ticks are"),
-            counted(gaps.len(), "gap", "gaps"),
-            plain(to_s - from_s, 4),
-            plain(from_s, 6)
-        )
-    });
-    let (severity, code) = match (&longest, missing.ticks, &even) {
-        (Some(_), ..) => (Severity::Warning, "time-gaps"),
-        (None, 0, None) => (Severity::Note, "time-steps"),
-        (None, 0, Some((severity, _))) => (*severity, "uneven-time-steps"),
-        _ => (Severity::Warning, "uneven-time-steps"),
-    };
-    let said: Vec<String> = even.into_iter().map(|(_, words)| words).chain(missing.words()).chain(longest).collect();
-    let message = if said.is_empty() {
-        let off = (longest_s - median_s).max(median_s - shortest_s);
-        format!("{numbers}: uniform to {:.1e} of a step", off / median_s)
-    } else {
-        format!("{numbers}: {}", said.join("; "))
-    };
-    Finding { place: Some(place.to_owned()), ..Finding::new(severity, code, message) }
 }

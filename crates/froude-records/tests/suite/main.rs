@@ -10,6 +10,7 @@ mod crash;
 mod estimates;
 mod foreign_tables;
 mod imported_logs;
+mod joined_logs;
 mod laws;
 mod official_reader;
 mod parquet_tables;

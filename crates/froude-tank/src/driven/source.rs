@@ -11,6 +11,7 @@ use indexmap::IndexMap;
 use super::derived::{Derived, derived};
 use super::fit::{fit, motions, views};
 use super::fitted::Fitted;
+use super::lag;
 use super::method::MotorDriven;
 use super::read::{check, setups};
 use super::run::Run;
@@ -130,7 +131,12 @@ pub(crate) fn identified<M: MotorDriven>(
     findings.extend(each.flat_map(|(run, motion)| of_motion(run.id, motion, &spec.motion, cycles, harmonics)));
     findings.extend(fitted[0].setup.method.about_runs(&fitted[0]));
     findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
-    findings.extend(fitted.iter().flat_map(of_fit));
+    let of_fits: Vec<Finding> = fitted.iter().flat_map(of_fit).collect();
+    // A law that is wrong shifts the delay, too.
+    if !of_fits.iter().any(|f| f.code == "misfit-repeats" && f.message.starts_with(&fitted[chosen].fit.law)) {
+        findings.extend(lag::undeclared(&fitted[chosen]));
+    }
+    findings.extend(of_fits);
     let estimate = |(i, fitted): (usize, &Fitted<'_, M>)| {
         let mut estimate = record::estimate(fitted, (campaign, source), (i == chosen).then_some(fits.len()));
         if let Some(step) = long_logs::step(&logs, &fastest_hz) {
