@@ -8,8 +8,7 @@ use froude_carriage::runs::inspect::{driven, folder, run, without_log};
 pub use froude_identify::inspect::{BudgetFacts, ChannelFacts, ColumnFacts, Inspection, SourceFacts};
 use froude_identify::inspect::{campaign, estimates, table};
 use froude_records::campaign::Input;
-use froude_records::run::is_servo_log;
-use froude_records::sidecar_file::sidecar_path;
+use froude_records::{run::is_servo_log, sidecar_file::sidecar_path};
 use froude_rig::carriage::declared;
 
 use crate::{Error, method};
