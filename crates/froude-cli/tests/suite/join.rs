@@ -108,7 +108,7 @@ fn a_motion_that_repeats_asks_for_the_lag_and_takes_it() {
         std::fs::write(&path, kept.join("\n") + "\n").unwrap();
     }
     let text = refused(folder.path(), &["identify", "campaign.toml"]);
-    assert!(text.contains("001.toml, line") && text.contains("fit about as well"), "{text}");
+    assert!(text.contains("001.toml:") && text.contains("fit about as well"), "{text}");
     assert!(text.contains("State where the lag lies"), "{text}");
     replace_in(&runs.join("001.toml"), "same = [", "lag = { value = \"0.4 s\", standard = \"0.3 s\" }\nsame = [");
     // What is left is too short for the fit, and joined.
