@@ -227,7 +227,7 @@ pub fn find(first: &Record<'_>, second: &Record<'_>, known: &Known) -> Result<La
     let [from, to] = rows.ends_s;
     let alone = best.mean_square / (1.0 - best.correlation * best.correlation).max(f64::MIN_POSITIVE);
     if !loses(2.0 * (to - from) / pair.period_s, alone) {
-        return Err(LagError::NotAlike { correlation: best.correlation });
+        return Err(LagError::Undetermined);
     }
     let n = best.n as f64 / Noise::of(&rows.residuals(&best)).time;
     let apart = 0.25 * pair.period_s;
@@ -235,14 +235,14 @@ pub fn find(first: &Record<'_>, second: &Record<'_>, known: &Known) -> Result<La
     if let Some(rival) = rival {
         return Err(LagError::Ambiguous { lag_s: at_begin(&best), other_s: at_begin(rival) });
     }
-    let found = covariance::of(&rows, &mut best, is_free).ok_or(LagError::Undetermined)?;
+    let is_rounded = is_stepped(first.values) || is_stepped(second.values);
+    let rounding_s = if is_rounded { first.step_s.hypot(second.step_s) / 12.0_f64.sqrt() } else { 0.0 };
+    let found = covariance::of(&rows, &mut best, is_free, rounding_s).ok_or(LagError::Undetermined)?;
     let mut standard = found.standard;
-    let steps = [first, second].map(|record| record.step_s);
-    if is_stepped(first.values) || is_stepped(second.values) {
-        let rounding_s = (steps[0].hypot(steps[1])) / 12.0_f64.sqrt();
+    if is_rounded {
         standard = [standard[0].hypot(rounding_s), standard[1].hypot(rounding_s / found.arm_s)];
     }
-    if is_free && standard[1] * 0.5 * (to - from) > LEVER * standard[0].max(0.05 * steps[0]) {
+    if is_free && standard[1] * 0.5 * (to - from) > LEVER * standard[0].max(0.05 * first.step_s) {
         return Err(LagError::DriftOpen { lag_s: best.lag_s, origin_s: best.origin_s });
     }
     if let Some([time_s, jump_s]) = found.jump {

@@ -153,7 +153,10 @@ fn what_does_not_tell_lag_and_drift_is_refused() {
     assert!(found.is_ok_and(|lag| contains(&lag)[0]));
     let other = sines(&mut Pcg64Mcg::seed_from_u64(8));
     let found = twice(&motion, &|t| other(t, 0), &second, &free);
-    assert!(matches!(found, Err(LagError::NotAlike { .. } | LagError::Ambiguous { .. })), "{found:?}");
+    assert!(
+        matches!(found, Err(LagError::NotAlike { .. } | LagError::Ambiguous { .. } | LagError::Undetermined)),
+        "{found:?}"
+    );
     let found = twice(&motion, &|t| -all(t, 0), &second, &free);
     assert!(matches!(found, Err(LagError::Opposite { correlation }) if correlation > 0.9), "{found:?}");
     let found = twice(&motion, &motion, &|t| second(t) + if t > 22.0 { 0.15 } else { 0.0 }, &free);
@@ -194,14 +197,14 @@ fn the_clocks_of_the_ntnu_section_come_out() {
         let record = |values| Record { time_s: &time_s, values, step_s: 0.04, gaps_s: &[] };
         let known = Known { lag_s: Some([0.0, 0.4]), drift: None, derivative: 2 };
         let found = find(&record(camera.as_slice()), &record(acceleration.as_slice()), &known);
-        println!("{run}: {found:?}");
         match skew {
             // The lead of the camera grows as its clock's gain: as the accelerometers' clock loses.
             Some(skew) => {
                 let found = found.unwrap();
                 assert!((found.drift - skew).abs() < 1.5e-3 && found.standard[1] < 0.75e-3, "{run}: {found:?}");
             }
-            None => assert!(found.is_err(), "{run}: {found:?}"),
+            // Its lags leave a line by 34 ms, 15° of a period: refused, or known to no better than some of that.
+            None => assert!(found.is_err() || found.is_ok_and(|lag| 1.96 * lag.standard_s() > 20e-3), "{run}"),
         }
     }
 }

@@ -47,7 +47,7 @@ fn late(t: f64) -> f64 {
 fn two(join: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "motion.csv", "t,x", ticks(0.0, 40.0, 20.0), |t| t.sin(), |t| t);
-    write(folder.path(), "load.csv", "s,f", ticks(5.0, 45.0, 33.0), cubic, late);
+    write(folder.path(), "load.csv", "s,f", ticks(5.0, 45.0, 25.0), cubic, late);
     std::fs::write(folder.path().join("motion.toml"), format!("{OWN}{join}")).unwrap();
     std::fs::write(folder.path().join("load.toml"), OTHER).unwrap();
     folder
@@ -75,7 +75,7 @@ fn a_declared_lag_and_drift_read_the_other_log_at_the_rows_of_this_one() {
     assert!(said.message.contains("700 of 800 rows") || said.message.contains("699 of 800 rows"), "{}", said.message);
     assert!(
         said.message.contains(
-            "is late on that of motion.csv by 0.37 s ± 3.9 ms at its 0 s and gains 50.0 ± 20 ppm (95 %, as declared)"
+            "is late on that of motion.csv by 0.37 s ± 3.9 ms at its 0 s and gains 50 ± 20 ppm (95 %, as declared)"
         ),
         "{}",
         said.message
@@ -90,7 +90,7 @@ fn a_declared_lag_and_drift_read_the_other_log_at_the_rows_of_this_one() {
 #[test]
 fn a_gap_of_the_other_log_is_a_gap_of_both() {
     let folder = two(STATED);
-    let kept = ticks(5.0, 45.0, 33.0).filter(|t| !(20.0..23.0).contains(t) && (t - 30.0).abs() > 0.02);
+    let kept = ticks(5.0, 45.0, 25.0).filter(|t| !(20.0..23.0).contains(t) && (t - 30.0).abs() > 0.02);
     write(folder.path(), "load.csv", "s,f", kept, cubic, late);
     let run = import_run(&folder.path().join("motion.csv"), None).unwrap();
     assert!(run.log.time_s.iter().all(|t| !(20.01..22.97).contains(t)));
@@ -111,7 +111,7 @@ fn one_sidecar_joins_the_logs_of_a_folder_pair_by_pair() {
             folder.path(),
             &format!("load_{k}.csv"),
             "s,f",
-            ticks(5.0, 45.0, 33.0),
+            ticks(5.0, 45.0, 25.0),
             |t| f64::from(k) * cubic(t),
             late,
         );
@@ -168,9 +168,9 @@ fn what_cannot_be_joined_is_refused_with_what_to_write() {
         (join("lag = { value = \"0.37 s\", standard = \"2 ms\" }"), "has no `drift`; write same"),
         (
             join("lag = \"0.37 s\""),
-            "`lag`: has no standard uncertainty; write lag = { value = \"…\", standard = \"2 ms\" }",
+            "`lag` has no standard uncertainty; write lag = { value = \"…\", standard = \"2 ms\" }",
         ),
-        (join("same = \"position\""), "`same`: names 1 channel; write two"),
+        (join("same = \"position\""), "`same` names 1 channel; write two"),
         (join("same = [\"position\", \"heave\"]"), "names \"heave\", which"),
         (join("same = [\"position\", \"f_x\"]"), "do not tell how their clocks differ"),
         (STATED.replace("0.37 s", "900 s"), "have no time in common"),
@@ -188,6 +188,6 @@ fn what_cannot_be_joined_is_refused_with_what_to_write() {
     ] {
         let text = refused(&join);
         assert!(text.contains(words), "{words}\n{text}");
-        assert!(text.contains("motion.toml, line"), "{text}");
+        assert!(text.contains("motion.toml:"), "{text}");
     }
 }

@@ -66,8 +66,8 @@ pub(crate) struct Known {
     pub jump: Option<[f64; 2]>,
 }
 
-/// Of a fit, whose origin is moved to where the records tell the lag best.
-pub(crate) fn of(rows: &Rows, fit: &mut Fit, is_free: bool) -> Option<Known> {
+/// Of a fit, whose origin is moved to where the records tell the lag best; `rounding_s` is what the samples of a trigger leave open.
+pub(crate) fn of(rows: &Rows, fit: &mut Fit, is_free: bool, rounding_s: f64) -> Option<Known> {
     let told = rows.values.iter().flatten().map(|row| (row[0], row[3] * row[3]));
     let (weight, first) = told.clone().fold((0.0, 0.0), |(w, ws), (s, x)| (w + x, ws + x * s));
     let origin_s = first / weight;
@@ -110,7 +110,8 @@ pub(crate) fn of(rows: &Rows, fit: &mut Fit, is_free: bool) -> Option<Known> {
     // Each of them took the part of one independent value from the noise.
     let taken = windows.len() as f64 * noise.time / there.len() as f64;
     noise.gamma.iter_mut().for_each(|gamma| *gamma /= 1.0 - taken.min(0.5));
-    let with_variance = |(s, off, c): &(f64, f64, Vec<f64>)| [*s, *off, noise.covariance(c, c)];
+    let with_variance =
+        |(s, off, c): &(f64, f64, Vec<f64>)| [*s, *off, noise.covariance(c, c) + rounding_s * rounding_s];
     let windows: Vec<[f64; 3]> = windows.iter().map(with_variance).filter(|[.., variance]| *variance > 0.0).collect();
     let standard = |c: &[f64]| noise.covariance(c, c).max(0.0).sqrt();
     let lag = standard(&factors(2, &columns, &inverse));
