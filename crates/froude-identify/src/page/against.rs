@@ -9,7 +9,7 @@ use froude_records::csv_table::csv_bytes;
 use froude_records::estimate::EstimateFile;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::text::in_a_file_name;
-use froude_records::units::{Dimension, Unit};
+use froude_records::units::{Dimension, Unit, parse_unit};
 
 use super::validation::{is_measured, sections};
 use crate::IdentifyError;
@@ -88,10 +88,11 @@ fn table(flows: &[&ComparedFlow], of: Dimension, result: &SourceResult, name: &s
         name: name.to_owned(),
         data: ColumnData::Text(flows.iter().map(|flow| of(flow)).collect()),
     };
+    let degrees = || parse_unit("deg").unwrap_or_else(|_| Unit::si(Dimension::ANGLE));
     let number = |name: &str, dimension: Dimension, of: &dyn Fn(&ComparedFlow) -> f64| Column {
         name: name.to_owned(),
         data: ColumnData::Number {
-            unit: Unit::si(dimension),
+            unit: if name == "angle" { degrees() } else { Unit::si(dimension) },
             dimension,
             si: flows.iter().map(|flow| of(flow)).collect(),
         },
