@@ -10,7 +10,7 @@ use froude_mesh::panel::Facet;
 use froude_mesh::parts::part_troubles;
 use froude_mesh::plausible::too_large;
 use froude_mesh::refine::without_warp;
-use froude_mesh::repair::{WELD, merged};
+use froude_mesh::repair::{WELD, merged, turned_outward};
 use froude_mesh::solids::deck_trouble;
 use froude_mesh::union::united;
 use froude_mesh::vector::{norm, sub};
@@ -153,6 +153,10 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
         return Err(AddedMassError::input(&job.input, NO_LINKS));
     }
     let MeshFile { mut mesh, mut notes, format, .. } = read_mesh(job)?;
+    if let Some(turned) = turned_outward(&mesh) {
+        mesh = turned;
+        notes.push(format!("the surface was inside out: all of its {} panels were turned", mesh.panels.len()));
+    }
     let mut findings = Vec::new();
     let mut wrong = Vec::new();
     // Parts that move apart stay apart.

@@ -10,7 +10,7 @@ use indexmap::{IndexMap, IndexSet};
 use crate::check::{extent, first_unreadable, has_no_area};
 use crate::files::soup::counted;
 use crate::mesh::{Mesh, Panel};
-use crate::parts::{holders, volume};
+use crate::parts::{holders, parts, volume};
 use crate::solids::decks;
 use crate::topology::{by_edge, sides};
 use crate::vector::{Vec3, norm, sub};
@@ -34,6 +34,15 @@ pub fn repaired(mesh: &Mesh, weld_m: f64) -> (Mesh, Vec<String>) {
     }
     orient(&mut out, &mut reported);
     (out, reported)
+}
+
+/// The mesh with all panels turned, if each of its parts is closed and inside out: then there is no doubt about its outside.
+#[must_use]
+pub fn turned_outward(mesh: &Mesh) -> Option<Mesh> {
+    let parts = parts(mesh);
+    let is_inside_out = !parts.is_empty() && parts.iter().all(|part| part.is_closed && part.volume_m3 < 0.0);
+    let panels = || mesh.panels.iter().map(Panel::turned).collect();
+    is_inside_out.then(|| Mesh { vertices: mesh.vertices.clone(), panels: panels() })
 }
 
 fn corner(mesh: &Mesh, panel: usize) -> Vec3 {

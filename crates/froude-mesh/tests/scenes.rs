@@ -101,7 +101,7 @@ fn what_is_wrong_in_a_scene_has_its_place_and_what_is_not_read_its_name() {
     );
     says(
         &changed("url=\"#cube\"", "url=\"#cub\""),
-        "url=\"#cub\" where the # and id of an element of this file should be",
+        "url=\"#cub\" where the # and id of a <geometry> of this file should be",
     );
     says(&changed("<vcount>4 4", "<vcount>4 5"), "24 corners where as many as <vcount> says, should be");
     says(&changed("<vcount>4 4", "<vcount>2 6"), "a face with 2 corners where one with three or more should be");
@@ -117,7 +117,10 @@ fn what_is_wrong_in_a_scene_has_its_place_and_what_is_not_read_its_name() {
     );
     says(&changed("Z_UP", "W_UP"), "\"W_UP\" where X_UP, Y_UP or Z_UP should be");
     says(&changed("<p>", "<ph>").replace("</p>", "</ph>"), "<ph> is not read; divide faces with holes into triangles");
-    says(&changed("id=\"corners\"", "id=\"points\""), "the id \"points\" for a second time");
+    says(
+        &changed("<library_geometries>", "<library_geometries><geometry id=\"cube\"/>"),
+        "<geometry> with the id \"cube\" for a second time",
+    );
     says(&changed("</COLLADA>", ""), "the text is not XML");
     says("<svg/>", "<svg> where <COLLADA> should be");
     let itself = "<node id=\"a\"><instance_node url=\"#a\"/></node>";

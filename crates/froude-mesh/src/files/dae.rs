@@ -21,6 +21,9 @@ const MOST_PANELS: usize = 4_000_000;
 /// Nodes placed at most, with their children, and 16 bytes of a geometry each time that it is placed.
 const MOST_PLACED: usize = 20_000_000;
 
+/// Elements that others name by their id.
+const TARGETS: [&str; 6] = ["visual_scene", "node", "geometry", "vertices", "source", "float_array"];
+
 /// Vertices of a geometry as its node places them: rows of three numbers, and a fourth that is added.
 type Affine = [[f64; 4]; 3];
 
@@ -60,21 +63,19 @@ pub(super) fn read(cursor: &Cursor<'_>) -> Result<(Mesh, Vec<String>, f64), Read
         return Err(dae.unexpected(root, &format!("<{}>", root.tag_name().name()), "<COLLADA>"));
     }
     for node in root.descendants() {
-        if let Some(id) = node.attribute("id")
-            && dae.ids.insert(id, node).is_some()
+        let tag = node.tag_name().name();
+        if let Some(id) = node.attribute("id").filter(|_| TARGETS.contains(&tag))
+            && dae.ids.insert((tag, id), node).is_some()
         {
-            return Err(dae.unexpected(
-                node,
-                &format!("the id {id:?} for a second time"),
-                "an id that is not there yet",
-            ));
+            let found = format!("<{tag}> with the id {id:?} for a second time");
+            return Err(dae.unexpected(node, &found, "an id that is not there yet"));
         }
     }
     let mut notes = Vec::new();
     let (unit_m, up) = dae.asset(root, &mut notes)?;
     let scene = root.children().filter(|n| n.has_tag_name_of("scene")).find_map(|n| n.child("instance_visual_scene"));
     let scene = match scene {
-        Some(instance) => dae.target(instance, "url")?,
+        Some(instance) => dae.target(instance, "url", "visual_scene")?,
         None => {
             let mut all = root.descendants().filter(|n| n.has_tag_name_of("visual_scene"));
             match (all.next(), all.next()) {
@@ -109,8 +110,8 @@ pub(super) fn read(cursor: &Cursor<'_>) -> Result<(Mesh, Vec<String>, f64), Read
         for child in node.children().filter(Node::is_element) {
             match child.tag_name().name() {
                 "node" => open.push((child, place, depth + 1)),
-                "instance_node" => open.push((dae.target(child, "url")?, place, depth + 1)),
-                "instance_geometry" => dae.geometry(dae.target(child, "url")?, &place)?,
+                "instance_node" => open.push((dae.target(child, "url", "node")?, place, depth + 1)),
+                "instance_geometry" => dae.geometry(dae.target(child, "url", "geometry")?, &place)?,
                 kind @ "instance_controller" => {
                     return Err(dae.not_read(child, kind, "apply the skeleton or the morph, and export again"));
                 }
@@ -157,7 +158,8 @@ impl<'d, 'i> Named<'d, 'i> for Node<'d, 'i> {
 
 struct Dae<'d, 'i> {
     cursor: &'d Cursor<'i>,
-    ids: IndexMap<&'d str, Node<'d, 'i>>,
+    /// By tag and id.
+    ids: IndexMap<(&'d str, &'d str), Node<'d, 'i>>,
     mesh: Mesh,
     polygons: Polygons,
     left_out: usize,
@@ -192,11 +194,12 @@ impl<'d, 'i> Dae<'d, 'i> {
     }
 
     /// The element that an attribute names: `#id`.
-    fn target(&self, node: Node<'d, 'i>, attribute: &str) -> Result<Node<'d, 'i>, ReadError> {
+    fn target(&self, node: Node<'d, 'i>, attribute: &str, tag: &str) -> Result<Node<'d, 'i>, ReadError> {
         let text = node.attribute(attribute).unwrap_or_default();
-        let found = text.strip_prefix('#').and_then(|id| self.ids.get(id)).copied();
+        let found = text.strip_prefix('#').and_then(|id| self.ids.get(&(tag, id))).copied();
         found.ok_or_else(|| {
-            self.unexpected(node, &format!("{attribute}={text:?}"), "the # and id of an element of this file")
+            let expected = format!("the # and id of a <{tag}> of this file");
+            self.unexpected(node, &format!("{attribute}={text:?}"), &expected)
         })
     }
 
@@ -342,14 +345,14 @@ impl<'d, 'i> Dae<'d, 'i> {
                 offset.ok_or_else(|| self.unexpected(input, &format!("offset={text:?}"), "a number below 64"))?;
             stride = stride.max(offset + 1);
             if input.attribute("semantic") == Some("VERTEX") {
-                vertex = Some((self.target(input, "source")?, offset));
+                vertex = Some((self.target(input, "source", "vertices")?, offset));
             }
         }
         let none = || self.unexpected(primitive, "no input with the semantic VERTEX", "one");
         let (vertices, offset) = vertex.ok_or_else(none)?;
         let position = vertices.children().find(|n| n.attribute("semantic") == Some("POSITION"));
         let none = || self.unexpected(vertices, "no input with the semantic POSITION", "one");
-        Ok((self.target(position.ok_or_else(none)?, "source")?, offset, stride))
+        Ok((self.target(position.ok_or_else(none)?, "source", "source")?, offset, stride))
     }
 
     /// Adds the points of a source; how many.
@@ -370,7 +373,7 @@ impl<'d, 'i> Dae<'d, 'i> {
         let [Some(x), Some(y), Some(z)] = axes else {
             return Err(self.unexpected(accessor, &format!("the parameters {params:?}"), "X, Y and Z"));
         };
-        let array = self.target(accessor, "source")?;
+        let array = self.target(accessor, "source", "float_array")?;
         let values = self.numbers::<f64>(array, "a number")?;
         let needed = count.checked_mul(stride).and_then(|n| n.checked_add(offset));
         if needed.is_none_or(|n| n > values.len()) || [x, y, z].iter().any(|i| *i >= stride) {
