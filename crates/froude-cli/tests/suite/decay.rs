@@ -393,7 +393,10 @@ fn an_angle_alone_gives_period_damping_ratio_and_decrement() {
         holds(estimate, "zeta", 0.0539, 0.05);
         holds(estimate, "damped_period", 2.804, 0.01);
         holds(estimate, "log_decrement", 0.339_2, 0.05);
-        assert!(estimate["coefficients"].get("A44").is_none() && estimate["errors"].as_object().is_none_or(serde_json::Map::is_empty));
+        assert!(
+            estimate["coefficients"].get("A44").is_none()
+                && estimate["errors"].as_object().is_none_or(serde_json::Map::is_empty)
+        );
         assert_eq!(lost > 0, !findings_of(&out, "uneven-time-steps").is_empty(), "{}", out["findings"]);
         let result = std::fs::read_to_string(folder.path().join("decay-results/result.json")).unwrap();
         assert!(result.contains("\"decrements\""), "{result}");
@@ -416,7 +419,8 @@ fn releases_in_another_unit_than_their_header_says_are_asked_about() {
             && said.contains("`angle [rad]` or `angle [deg]` as its header"),
         "{said}"
     );
-    let stated = |line: &str| campaign(folder.path(), "\"decay\"", &format!("[source.decay]\naxis = \"roll\"\n{line}\n"));
+    let stated =
+        |line: &str| campaign(folder.path(), "\"decay\"", &format!("[source.decay]\naxis = \"roll\"\n{line}\n"));
     json(&["identify", text(&stated("amplitude = \"0.2 deg\"")), "--json"]);
     let said = refusal(&["identify", text(&stated("amplitude = \"10 deg\""))]);
     assert!(said.contains("amplitude = \"10.000 deg\" is declared, and the logs swing by 0.18"), "{said}");
@@ -462,7 +466,10 @@ fn inertia_and_stiffness_are_asked_for_where_a_result_needs_them() {
     holds(estimate, "moving_inertia", 1.0, 0.03);
     holds(estimate, "D_rx_I", 2.0 * 0.0539 * 2.244, 0.1);
     let said = refusal(&["identify", text(&of("inertia = \"0.4 kg m^2\""))]);
-    assert!(said.contains("has no `stiffness`") && said.contains("or leave out inertia, for results per moving inertia"), "{said}");
+    assert!(
+        said.contains("has no `stiffness`") && said.contains("or leave out inertia, for results per moving inertia"),
+        "{said}"
+    );
     let said = refusal(&["identify", text(&of("buoyancy = \"3 N\"\nradius = \"0.4 m\""))]);
     assert!(said.contains("has no `inertia`"), "{said}");
     let said = refusal(&["plan", text(&of("[[source.plan]]\nangle = \"10 deg\""))]);
