@@ -17,17 +17,18 @@
 use std::f64::consts::FRAC_PI_4;
 
 use froude_fit::distribution::coverage_factor;
+use froude_hydro::drag_curves::Curve;
 use froude_hydro::fluid::Water;
 use froude_hydro::similarity;
-use froude_records::block::{Section, TableBuilder};
+use froude_records::block::{ResultTable, Section, TableBuilder};
 use froude_records::campaign::Campaign;
-use froude_records::estimate::{Derived, Estimate, Measured};
+use froude_records::estimate::{Derived, Estimate, Measured, Range};
 use froude_records::number::plain;
 use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 use froude_records::units::{Dimension, parse_unit};
 
-use crate::answer::Answer;
 use crate::dataset::Dataset;
+use crate::method::Found;
 use crate::predict::{above_first, combined};
 use crate::validity;
 
@@ -40,6 +41,8 @@ const SLOWEST: f64 = 0.05;
 const ONE_NUMBER: f64 = 1e-9;
 /// How far published curves are drawn beyond the Reynolds numbers of the test.
 const BEYOND: f64 = 3.0;
+/// Least angle off the axis that still shows the frontal area, rad: 8°.
+const MOST_OBLIQUE: f64 = 0.14;
 /// Two values that are one, but for the text between them.
 const SAME: f64 = 1e-9;
 
@@ -60,30 +63,37 @@ struct Line {
     c_d: Vec<f64>,
     standard: Vec<Option<f64>>,
     interval_95: Vec<Option<[f64; 2]>>,
-    is_shown: bool,
 }
 
-/// States C_D in the records of answers, and returns what a page says of it.
-#[must_use]
-pub fn state(answers: &mut [Answer], campaign: &Campaign) -> Option<Section> {
+/// States C_D in the records that a method found, on its page, and, where the method has a summary of its own, there.
+pub fn state(found: &mut Found, campaign: &Campaign) {
     let mut lines = Vec::new();
     let mut points = Vec::new();
-    for answer in answers {
+    for answer in &mut found.results {
         let rows = answer.fitted().map(|source| source.data.clone());
         let name = answer.name().to_owned();
         let is_one = answer.estimates().len() == 1;
         let mut is_shown = false;
         for estimate in answer.estimates_mut() {
             let Some(line) = line(estimate, &name, rows.as_ref(), campaign) else { continue };
-            let line = Line { is_shown: is_one || estimate.recommended, ..line };
             put(estimate, &line);
-            is_shown |= line.is_shown;
-            lines.push(line);
+            if is_one || estimate.recommended {
+                is_shown = true;
+                lines.push(line);
+            }
         }
         points.extend(rows.filter(|_| is_shown).and_then(|rows| observed(&rows, &name, campaign)));
     }
-    lines.retain(|line| line.is_shown);
-    (!lines.is_empty()).then(|| section(&lines, points, campaign))
+    if lines.is_empty() {
+        return;
+    }
+    let mut blocks = vec![chart(&lines, points, campaign).into()];
+    let table = table(&lines, campaign).into();
+    match &mut found.summary {
+        Some(summary) => summary.blocks.push(table),
+        None => blocks.insert(0, table),
+    }
+    found.blocks.push(Section::new("Drag coefficient", blocks));
 }
 
 impl Reference {
@@ -113,7 +123,7 @@ impl Reference {
 
     /// Re at a speed.
     fn reynolds(&self, speed_m_s: f64) -> Option<f64> {
-        Some(similarity::reynolds(speed_m_s, self.length_m?, self.viscosity_m2_s?)).filter(|re| re.is_finite())
+        Some(similarity::reynolds(speed_m_s.abs(), self.length_m?, self.viscosity_m2_s?)).filter(|re| re.is_finite())
     }
 }
 
@@ -121,12 +131,13 @@ impl Reference {
 fn line(estimate: &Estimate, name: &str, rows: Option<&Dataset>, campaign: &Campaign) -> Option<Line> {
     let reference = Reference::of(estimate, rows, campaign)?;
     let (load, velocity) = axis(estimate)?;
-    let range = estimate.validity.get(velocity).or_else(|| estimate.validity.get("speed"))?;
-    let fastest = range.high.abs().max(range.low.abs());
-    if !(fastest > 0.0 && fastest.is_finite()) {
+    let range = ahead(estimate, velocity)?;
+    // Ahead where it went ahead at all: a law need not be the same astern.
+    let [fastest, nearest] = if range.high > 0.0 { [range.high, range.low.max(0.0)] } else { [range.low, range.high] };
+    if fastest == 0.0 || !fastest.is_finite() {
         return None;
     }
-    let slowest = if range.low > 0.0 { range.low.max(SLOWEST * fastest) } else { SLOWEST * fastest };
+    let slowest = if nearest.abs() > SLOWEST * fastest.abs() { nearest } else { SLOWEST * fastest };
     let speed_m_s: Vec<f64> =
         (0..POINTS).map(|k| slowest + (fastest - slowest) * k as f64 / (POINTS - 1) as f64).collect();
     let places = places(estimate, velocity, &speed_m_s, &reference)?;
@@ -134,7 +145,7 @@ fn line(estimate: &Estimate, name: &str, rows: Option<&Dataset>, campaign: &Camp
     let [[area, of_area], [density, of_density]] = [reference.area, reference.density];
     let (mut c_d, mut standard, mut interval_95) = (Vec::new(), Vec::new(), Vec::new());
     for (u, (force, uncertainty)) in speed_m_s.iter().zip(forces.get(1..)?) {
-        let scale = -2.0 / (density * u * u * area);
+        let scale = -2.0 / (density * u * u.abs() * area);
         let value = scale * force;
         let whole = uncertainty.map(|(of_force, dof)| {
             let exact = |part: f64| ((value * part).abs(), f64::INFINITY);
@@ -147,7 +158,7 @@ fn line(estimate: &Estimate, name: &str, rows: Option<&Dataset>, campaign: &Camp
     }
     // A law of the angle alone, or of a thruster at rest, gives no drag along the axis.
     let is_drag = c_d.iter().all(|x| x.is_finite()) && c_d.iter().any(|x| *x != 0.0);
-    is_drag.then(|| Line { name: name.to_owned(), reference, speed_m_s, c_d, standard, interval_95, is_shown: false })
+    is_drag.then(|| Line { name: name.to_owned(), reference, speed_m_s, c_d, standard, interval_95 })
 }
 
 /// The force that a law gives along one axis, and the velocity there: along x where it gives several.
@@ -161,6 +172,17 @@ fn axis(estimate: &Estimate) -> Option<(&'static str, &'static str)> {
     }
 }
 
+/// The speeds that the body moved at along an axis; `None` where it only drifted.
+fn ahead<'a>(estimate: &'a Estimate, velocity: &str) -> Option<&'a Range> {
+    let of = |name: &str| estimate.validity.get(name);
+    let is_oblique = of("angle_off_axis").is_some_and(|off| off.low > MOST_OBLIQUE);
+    if velocity == "v_x" {
+        return of(velocity).or_else(|| of("speed")).filter(|_| !is_oblique);
+    }
+    // The speed of a body that moves along x too is not that along another axis.
+    of(velocity).or_else(|| of("speed").filter(|_| of("angle").is_none() && of("v_x").is_none()))
+}
+
 /// Rest, then these speeds along an axis, for everything that the law reads; `None` where it reads what is no motion.
 fn places(estimate: &Estimate, velocity: &str, speed_m_s: &[f64], reference: &Reference) -> Option<Dataset> {
     let speed: Vec<f64> = std::iter::once(0.0).chain(speed_m_s.iter().copied()).collect();
@@ -168,11 +190,15 @@ fn places(estimate: &Estimate, velocity: &str, speed_m_s: &[f64], reference: &Re
     if ![velocity, "speed"].iter().any(|name| estimate.law.inputs.contains_key(*name)) {
         return None;
     }
+    // A speed of a table has a sign where one of its runs went astern.
+    let has_sign = estimate.validity.get("speed").is_some_and(|speed| speed.low < 0.0);
+    let towed = || speed.iter().map(|u| if has_sign { *u } else { u.abs() }).collect::<Vec<f64>>();
     let mut data = Dataset { rows: n, ..Dataset::default() };
     for (name, unit) in &estimate.law.inputs {
         let is_motion = name.starts_with("v_") || name.starts_with("w_");
         let values = match name.as_str() {
-            name if name == velocity || name == "speed" => speed.clone(),
+            name if name == velocity => speed.clone(),
+            "speed" => towed(),
             "density" => vec![reference.density[0]; n],
             "kinematic_viscosity" => vec![reference.viscosity_m2_s?; n],
             "angle" if velocity == "v_x" => vec![0.0; n],
@@ -182,9 +208,9 @@ fn places(estimate: &Estimate, velocity: &str, speed_m_s: &[f64], reference: &Re
         let dimension = parse_unit(unit).map_or(Dimension::ONE, |unit| unit.dimension);
         data.put(name, values, dimension);
     }
-    for name in [velocity, "speed"] {
+    for (name, values) in [(velocity, speed.clone()), ("speed", towed())] {
         if data.values(name).is_none() {
-            data.put(name, speed.clone(), Dimension::SPEED);
+            data.put(name, values, Dimension::SPEED);
         }
     }
     Some(data)
@@ -228,33 +254,49 @@ fn observed(rows: &Dataset, name: &str, campaign: &Campaign) -> Option<(String, 
     Some((name.to_owned(), x, y))
 }
 
-/// A table of the numbers, and the figure.
-fn section(lines: &[Line], points: Vec<(String, Vec<[f64; 2]>, Vec<f64>)>, campaign: &Campaign) -> Section {
-    let body = campaign.body.as_ref();
-    let curves = body.and_then(|body| body.shape).map_or(&[][..], |shape| shape.curves());
-    let last = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
-    let re = |line: &Line| line.reference.reynolds(last(&line.speed_m_s));
-    let slenderness = |line: &Line| {
-        // The diameter of a body of revolution is that of its area.
-        line.reference.length_m.map_or(1.0, |length_m| length_m / (line.reference.area[0] / FRAC_PI_4).sqrt())
-    };
-    let published = |line: &Line| re(line).and_then(|re| curves.first()?.at(re, slenderness(line)));
+/// The curves of the declared shape.
+fn published(campaign: &Campaign) -> &'static [Curve] {
+    campaign.body.as_ref().and_then(|body| body.shape).map_or(&[], |shape| shape.curves())
+}
+
+impl Line {
+    /// Fastest speed.
+    fn fastest(&self) -> f64 {
+        self.speed_m_s.last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// Length over diameter: the diameter of a body of revolution is that of its area.
+    fn slenderness(&self) -> f64 {
+        let diameter_m = (self.reference.area[0] / FRAC_PI_4).sqrt();
+        self.reference.length_m.map_or(1.0, |length_m| length_m / diameter_m)
+    }
+}
+
+/// The numbers at the fastest speed.
+fn table(lines: &[Line], campaign: &Campaign) -> ResultTable {
+    let curve = published(campaign).first();
+    let re = |line: &Line| line.reference.reynolds(line.fastest());
     let caption = "Drag coefficient of each law at the fastest speed observed; its interval holds if the law is true, and has the declared uncertainty of area and density in it.";
     let t = TableBuilder::new("drag_coefficient", caption, lines);
     let mut columns = vec![
         t.text("source", "source", |line| line.name.clone()),
-        t.number("c_d", "C_D [1]", |line| last(&line.c_d)).significant(4),
+        t.number("c_d", "C_D [1]", |line| line.c_d.last().copied()).significant(4),
         t.interval("interval_95", "95 % interval", |line| line.interval_95.last().copied().flatten()),
-        t.number("speed_m_s", "at speed [m/s]", |line| last(&line.speed_m_s)).significant(4),
+        t.number("speed_m_s", "at speed [m/s]", Line::fastest).significant(4),
         t.number("reynolds", "Re [1]", re).significant(3),
         t.number("area_m2", "area [m^2]", |line| line.reference.area[0]).significant(4),
         t.number("density_kg_m3", "density [kg/m^3]", |line| line.reference.density[0]).significant(5),
     ];
-    if let Some(curve) = curves.first() {
-        columns.push(t.number("published", &format!("{} [1]", curve.name), published).significant(3));
+    if let Some(curve) = curve {
+        let at = |line: &Line| re(line).and_then(|re| curve.at(re, line.slenderness()));
+        columns.push(t.number("published", &format!("{} [1]", curve.name), at).significant(3));
     }
-    let table = t.build(columns);
-    let has_reynolds = lines.iter().all(|line| re(line).is_some());
+    t.build(columns)
+}
+
+/// Rows, laws and published curves.
+fn chart(lines: &[Line], points: Vec<(String, Vec<[f64; 2]>, Vec<f64>)>, campaign: &Campaign) -> Chart {
+    let has_reynolds = lines.iter().all(|line| line.reference.reynolds(line.fastest()).is_some());
     let mut series: Vec<Series> = points
         .into_iter()
         .map(|(name, x, y)| {
@@ -271,7 +313,7 @@ fn section(lines: &[Line], points: Vec<(String, Vec<[f64; 2]>, Vec<f64>)>, campa
             x: line
                 .speed_m_s
                 .iter()
-                .map(|u| line.reference.reynolds(*u).filter(|_| has_reynolds).unwrap_or(*u))
+                .map(|u| line.reference.reynolds(*u).filter(|_| has_reynolds).unwrap_or(u.abs()))
                 .collect(),
             y: line.c_d.clone(),
             low: if has_band { ends(0) } else { Vec::new() },
@@ -280,8 +322,8 @@ fn section(lines: &[Line], points: Vec<(String, Vec<[f64; 2]>, Vec<f64>)>, campa
     }
     let span = series.iter().flat_map(|s| s.x.iter().copied().filter(|x| *x > 0.0));
     let [low, high] = span.fold([f64::INFINITY, 0.0_f64], |[low, high], x| [low.min(x), high.max(x)]);
-    let slender = lines.first().map_or(1.0, slenderness);
-    for curve in curves.iter().filter(|_| has_reynolds) {
+    let slender = lines.first().map_or(1.0, Line::slenderness);
+    for curve in published(campaign).iter().filter(|_| has_reynolds) {
         let ends = [curve.reynolds[0].max(low / BEYOND), curve.reynolds[1].min(high * BEYOND)];
         let at = |k: usize| ends[0] * (ends[1] / ends[0]).powf(k as f64 / (POINTS - 1) as f64);
         let drawn = (0..POINTS).map(at).filter_map(|re| Some((re, curve.at(re, slender)?)));
@@ -291,13 +333,12 @@ fn section(lines: &[Line], points: Vec<(String, Vec<[f64; 2]>, Vec<f64>)>, campa
         }
     }
     let caption = "Drag coefficient of rows and laws, with the 95 % band of each law; dashed what is published, in the range of its source.";
-    let chart = Chart {
+    Chart {
         name: "drag-coefficient".to_owned(),
         title: "Drag coefficient".to_owned(),
         caption: caption.to_owned(),
         x_label: if has_reynolds { "Re [1]" } else { "speed [m/s]" }.to_owned(),
         x_scale: if has_reynolds { Scale::Logarithmic } else { Scale::Linear },
         panels: vec![ChartPanel { y_label: "C_D [1]".to_owned(), series, ..ChartPanel::default() }],
-    };
-    Section::new("Drag coefficient", [table.into(), chart.into()])
+    }
 }

@@ -247,7 +247,7 @@ impl Gathered {
         }
         for (method, asked) in method::of(source, job.method)? {
             let mut found = method.identify(campaign, source, &asked, &step)?;
-            found.blocks.extend(froude_identify::drag_coefficient::state(&mut found.results, campaign));
+            froude_identify::drag_coefficient::state(&mut found, campaign);
             let fitted = campaign.sources.iter().filter(|source| !source.is_validation).count();
             self.add(method, found, files, source, fitted == 1)?;
         }

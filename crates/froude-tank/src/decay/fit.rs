@@ -2,6 +2,7 @@
 
 use crate::decay::axis::Motion;
 use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Uncertain, combine};
+use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
 use froude_records::finding::Finding;
 
@@ -132,6 +133,30 @@ pub struct Scatter {
     pub kind: String,
     /// Who shares the error: `run` or `sample`.
     pub shared: &'static str,
+}
+
+impl Scatter {
+    /// The same where no interval is narrower than by another scatter.
+    #[must_use]
+    pub(super) fn at_least(mut self, other: &Self) -> Self {
+        let half = |of: &Self, j: usize| coverage_factor(1.0 - OUTSIDE_95, of.dof[j]) * of.covariance[(j, j)].sqrt();
+        let wider: Vec<usize> = (0..3).filter(|&j| half(other, j) > half(&self, j)).collect();
+        // A correlation stays what it was.
+        let by = |j: usize, own: &Self| {
+            let ratio = (other.covariance[(j, j)] / own.covariance[(j, j)]).sqrt();
+            if wider.contains(&j) { ratio } else { 1.0 }
+        };
+        let factors: [f64; 3] = std::array::from_fn(|j| by(j, &self));
+        if wider.is_empty() || factors.iter().any(|factor| !factor.is_finite()) {
+            return self;
+        }
+        self.covariance = Mat::from_fn(3, 3, |i, j| factors[i] * factors[j] * self.covariance[(i, j)]);
+        for &j in &wider {
+            self.dof[j] = other.dof[j];
+        }
+        self.kind += ", no less than that of their samples";
+        self
+    }
 }
 
 /// Added mass and damping of one axis.

@@ -29,6 +29,8 @@ use crate::decay::reduced::{FEWEST_RUNS, Reduced};
 const SOUGHT: usize = 3;
 /// Of a release: position and speed at its first sample, rest position.
 const START: usize = 3;
+/// Runs whose scatter is known well enough by leaving out each.
+const ENOUGH_RUNS: usize = 5;
 /// A natural step of a parameter, as part of what it is compared with.
 const NATURAL: f64 = 0.01;
 
@@ -286,22 +288,33 @@ fn start(reduced: &Reduced<'_>, setup: &DecaySetup, model: &Releases<'_>) -> Vec
     out
 }
 
-/// Type A: over releases where there are enough, each left out in truth; else over the samples with their correlation.
+/// Type A: over releases where there are enough, each left out in truth; else over the samples with their correlation. Of three or four releases the scatter of damping is no less than the latter: releases that happen to agree say little of
+/// their scatter, and the noise of their samples is known far better.
 fn scatter(model: &Releases<'_>, parameters: &[Parameter], found: &Solution) -> Option<Scatter> {
     let n = model.runs.len();
-    if model.has_own {
-        let (covariance, dof) = jackknife(n, |g| without(model, parameters, found, g))?;
-        return Some(Scatter { covariance, dof: [dof; 3], kind: format!("jackknife over {n} runs"), shared: "run" });
+    if !model.has_own {
+        return of_samples(model, found);
     }
+    let (covariance, dof) = jackknife(n, |g| without(model, parameters, found, g))?;
+    let own = Scatter { covariance, dof: [dof; 3], kind: format!("jackknife over {n} runs"), shared: "run" };
+    Some(match of_samples(model, found).filter(|_| n < ENOUGH_RUNS) {
+        Some(samples) => own.at_least(&samples),
+        None => own,
+    })
+}
+
+/// What the samples alone make of the coefficients; not a number for A where each release has its own.
+fn of_samples(model: &Releases<'_>, found: &Solution) -> Option<Scatter> {
     let covariance = found.covariance(Noise::Serial { lag: None }).ok()?;
-    let mut matrix = Mat::zeros(SOUGHT, SOUGHT);
-    for i in 0..SOUGHT {
-        for j in 0..SOUGHT {
-            matrix[(i, j)] = covariance.covariance(i, j)?;
+    let mut matrix = Mat::from_fn(SOUGHT, SOUGHT, |_, _| f64::NAN);
+    let first = usize::from(model.has_own);
+    for i in first..SOUGHT {
+        for j in first..SOUGHT {
+            matrix[(i, j)] = covariance.covariance(i - first, j - first)?;
         }
     }
     let lag = covariance.lag.unwrap_or(0);
-    let kind = format!("samples of {}, correlated over {lag} of them", counted(n, "run", "runs"));
+    let kind = format!("samples of {}, correlated over {lag} of them", counted(model.runs.len(), "run", "runs"));
     Some(Scatter { covariance: matrix, dof: [covariance.dof; 3], kind, shared: "sample" })
 }
 
