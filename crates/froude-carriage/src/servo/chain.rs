@@ -207,7 +207,7 @@ impl Chain {
         let of = |stretch: Stretch| -> Result<Prepared, ServoError> {
             let rate_hz = stretch.log.rate_hz()?;
             let motion = self.motion(&stretch.log.position_m, rate_hz);
-            Ok(Prepared { motion, stretch, rate_hz })
+            Ok(Prepared { stretch, rate_hz, motion })
         };
         log.evenly()?.stretches.into_iter().map(of).collect()
     }
