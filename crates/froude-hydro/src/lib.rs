@@ -26,7 +26,6 @@
 //! | [`drag_curves`]     | C_D of sphere, cylinder, plate and spheroid over Re          | Brown & Lawler, Cheng, Hoerner |
 //! | [`tabulated`]       | circular cylinders as printed                                | DNV-RP-C205                    |
 //! | [`sloshing`]        | first modes of a tank                                        | Faltinsen & Timokha 2009       |
-//! | [`thruster`]        | thrust and torque over a command, with a dead band           | Fossen 2011                    |
 //!
 //! USR is Kelasidi, Elgenes and Kilvær, "Fluid parameter identification for
 //! underwater snake robots"; MCD is "A low cost, sensor-less drag force
@@ -50,7 +49,6 @@ pub mod sloshing;
 pub mod strip;
 pub mod swing;
 pub mod tabulated;
-pub mod thruster;
 
 pub use drag::{Axis, CoefficientInfo, CrossTerm, DragModel, Factor, MAX_COEFFICIENTS, Motion, Setting};
 pub use geometry::{Body, Link, Neck, Robot};
