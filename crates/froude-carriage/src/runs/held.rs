@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use froude_records::number::{percent, significant};
+use froude_records::number::{percent, plain, significant};
 use froude_records::run::median;
 use froude_records::run::stamps::{gaps, usual_step_s};
 
@@ -45,7 +45,7 @@ pub(super) fn held(
     listed_m_s: f64,
     declared: Option<[f64; 2]>,
 ) -> Result<Held, String> {
-    let listed = format!("the listed {} m/s", significant(listed_m_s, 4));
+    let listed = format!("the listed {} m/s", plain(listed_m_s, 4));
     let settings = SteadySettings::default();
     let length_s = |rows: &Range<usize>| time_s[rows.end - 1] - time_s[rows.start];
     let way_m = |rows: &Range<usize>| position_m[rows.end - 1] - position_m[rows.start];
@@ -55,9 +55,10 @@ pub(super) fn held(
         let time = &time_s[part.clone()];
         let local_m_s = local_speed(time, &position_m[part.clone()]);
         fastest_m_s = local_m_s.iter().fold(fastest_m_s, |fastest, v| fastest.max(v.abs()));
-        let rows = match declared {
+        let rows: Vec<Range<usize>> = match declared {
             Some([from_s, to_s]) => {
-                vec![time.partition_point(|t| *t < from_s)..time.partition_point(|t| *t <= to_s)]
+                let rows = time.partition_point(|t| *t < from_s)..time.partition_point(|t| *t <= to_s);
+                std::iter::once(rows).collect()
             }
             None => [1.0, -1.0].iter().filter_map(|sign| longest(&local_m_s, sign * listed_m_s)).collect(),
         };

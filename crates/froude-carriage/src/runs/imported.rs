@@ -343,7 +343,7 @@ fn run_of(tow: Tow, rig: &LogsRig) -> Result<RunLog, Unread> {
     log.lost.clear();
     let note = if segment.is_some() { "declared" } else { "by the position" }.to_owned();
     log.meta.declared.segments = vec![Segment { kind: SegmentKind::Steady, from_s, to_s, by: String::new(), note }];
-    log.meta.method = TOW.to_owned();
+    TOW.clone_into(&mut log.meta.method);
     log.meta.role = role;
     log.meta.mounted.body = if role == Role::Wet { BodyState::Wet } else { BodyState::Dry };
     log.meta.mounted.is_ballasted = rig.is_ballasted;

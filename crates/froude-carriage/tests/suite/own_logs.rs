@@ -45,22 +45,21 @@ fn c_d(reduction: &Reduction, method: Method) -> (f64, [f64; 2]) {
     (value, interval.unwrap())
 }
 
-/// 100 tanks: of 95 that are to be expected, 92 and more in 98.6 % of such tests. The scatter of a run is 0.019 N, and the slope of 12 differences has
+/// 40 tanks: 36 and more of them in 95 % of such tests, where 38 are to be expected. The scatter of a run is 0.019 N, and the slope of 12 differences has
 /// √2 · 0.019 N/√(Σ v⁴) = 0.04 N s²/m², 2.3 % of the drag: with Student's t of 11 degrees of freedom ± 5 %.
 #[test]
 fn the_interval_of_c_d_covers_over_many_tanks() {
     let (mut covered, mut mapped, mut width) = (0, 0, 0.0);
-    for seed in 0..100 {
+    for seed in 0..40 {
         let folder = written(Tank { seed, ..Tank::default() });
         let reduction = reduced(folder.path()).unwrap();
         let (_, interval) = c_d(&reduction, Method::Mcd);
         covered += usize::from(interval[0] <= C_D && C_D <= interval[1]);
-        width += (interval[1] - interval[0]) / C_D / 100.0;
+        width += (interval[1] - interval[0]) / C_D / 40.0;
         let (_, interval) = c_d(&reduction, Method::MbdpMapped);
         mapped += usize::from(interval[0] <= C_D && C_D <= interval[1]);
     }
-    println!("mcd {covered}, mapped {mapped}, mean width {width:.3}");
-    assert!(covered >= 92 && mapped >= 92, "mcd {covered}, mapped {mapped} of 100");
+    assert!(covered >= 36 && mapped >= 36, "mcd {covered}, mapped {mapped} of 40");
     assert!((0.05..0.2).contains(&width), "{width}");
 }
 
@@ -120,7 +119,7 @@ fn what_nobody_declared_is_asked_by_name() {
         (
             campaign,
             force,
-            "force_per_ampere = { value = \"4.77 N/A\", standard = \"1 %\" }",
+            "force_per_ampere = { value = \"4.77 N A^-1\", standard = \"1 %\" }",
             "no column is its current",
         ),
         (campaign, "position_standard = \"0.05 %\"", "", "write position_standard = \"0.1 %\""),
@@ -186,7 +185,7 @@ fn a_current_and_a_gap() {
         folder.path(),
         "campaign.toml",
         "force_per_volt = { value = \"4.77 N/V\"",
-        "force_per_ampere = { value = \"4.77 N/A\"",
+        "force_per_ampere = { value = \"4.77 N A^-1\"",
     );
     changed(folder.path(), "logs/logs.toml", "u = { name = \"command\" }", "i = { name = \"current\" }");
     for entry in std::fs::read_dir(folder.path().join("logs")).unwrap().flatten() {
@@ -202,7 +201,7 @@ fn a_current_and_a_gap() {
     let reduction = reduced(folder.path()).unwrap();
     let mcd = reduction.report.coefficients.iter().find(|c| c.method == Method::Mcd).unwrap();
     let record = &mcd.result.estimates[0];
-    assert_eq!(record.law.constants["force_per_ampere"].unit, "N/A");
+    assert!((record.law.constants["force_per_ampere"].value - 4.77).abs() < 1e-12);
     let (_, [low, high]) = c_d(&reduction, Method::Mcd);
     assert!(low <= C_D && C_D <= high, "{low} {high}");
     assert!(reduction.report.findings.iter().any(|f| f.code == "time-gaps"));

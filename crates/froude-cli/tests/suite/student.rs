@@ -6,7 +6,7 @@ use std::path::Path;
 use froude::rig::decay::{DecayRig, DecaySensor, Release};
 use serde_json::Value;
 
-use crate::bench::{Bench, id, printed, text};
+use crate::bench::{Bench, id, text};
 use crate::student_tank::{C_D, Tank};
 use crate::tank::{froude, replace_in, said};
 
@@ -35,7 +35,7 @@ fn the_24_logs_of_a_students_tank_become_c_d_of_a_sphere_in_four_commands() {
     done(lab, &["new", "carriage-logs", "--out", "."]);
     let inspected = done(lab, &["inspect", "logs"]);
     assert!(
-        inspected.contains("tow, role dry, speed 0.1 m/s") && inspected.contains("froude carriage drag logs"),
+        inspected.contains("tow, role dry, speed 0.1000 m/s") && inspected.contains("froude carriage drag logs"),
         "{inspected}"
     );
     let printed = done(lab, &["carriage", "drag", "logs"]);
@@ -99,12 +99,8 @@ fn tows_of_the_twin_give_the_same_drag_as_logs_of_another_program() {
     let [a, b] = [&own, &found]
         .map(|e| e["coefficients"].as_object().unwrap().values().next().unwrap()["value"].as_f64().unwrap());
     assert!((a / b - 1.0).abs() < 0.01, "{a} of the recorded runs, {b} of the same as CSV");
-    // One of them as the log of a servo.
-    let servo = lab.join("axis.csv");
-    done(lab, &["convert", text(&bench.logs("dry")[0]), text(&servo)]);
-    let columns = "schema = 1\n[constants]\ndrive_gain = \"5 N/V\"\n[columns]\ntime = { name = \"time\" }\n\"y/position\" = { name = \"position\" }\n\"y/command\" = { name = \"command\" }\n";
-    std::fs::write(lab.join("axis.toml"), columns).unwrap();
-    assert!(printed(&["carriage", "identify", text(&servo)]).contains("F_c"));
+    // And as the logs of a servo.
+    assert!(done(lab, &["carriage", "identify", "logs"]).contains("F_c"));
 }
 
 /// 8 kg of added mass in a tank of a student: three releases of the twin as CSV, and the campaign as it is begun.
