@@ -266,6 +266,7 @@ fn inline(path: &Path, join: &Section<'_>) -> Result<Option<Sidecar>, RecordErro
         file: FileWords::default(),
         run: RunFacts::default(),
         constants: IndexMap::new(),
+        standards: IndexMap::new(),
         columns: mappings(&columns, &[])?,
         joins: Vec::new(),
     }))

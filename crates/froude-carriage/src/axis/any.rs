@@ -184,7 +184,7 @@ fn read(source: &Source, axis: &Axis) -> Result<Read, MethodError> {
         // Of several logs with even steps nothing need be said.
         let mut findings = imported.findings;
         findings.retain(|finding| finding.code != "time-steps");
-        findings.extend(table.foreign());
+        findings.extend(table.findings());
         let name = path.display();
         findings.extend(
             even.done.map(|done| Finding::new(Severity::Warning, "uneven-time-steps", format!("{name}: {done}"))),

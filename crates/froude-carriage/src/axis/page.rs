@@ -237,7 +237,7 @@ mod tests {
                     .zip(&time_s)
                     .map(|(v, t)| 3.0 * v + v.signum() + 0.01 * (7.0 * t).cos())
                     .collect(),
-                names: vec![("F_v".to_owned(), "N s/m"), ("F_c".to_owned(), "N")],
+                names: vec![("F_v".to_owned(), "N s/m".into()), ("F_c".to_owned(), "N".into())],
                 columns: vec![speed.clone(), speed.iter().map(|v| v.signum()).collect()],
                 time_s,
             }

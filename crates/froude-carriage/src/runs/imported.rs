@@ -88,7 +88,7 @@ struct Tow {
     speed_m_s: f64,
     imported: ImportedRun,
     /// How its table was read.
-    foreign: Option<Finding>,
+    foreign: Vec<Finding>,
 }
 
 /// Reads such logs in these roles; their campaign is `campaign`, or the `campaign.toml` in their folder or in the one above.
@@ -245,7 +245,7 @@ fn told(path: &Path) -> Result<Tow, MethodError> {
     if let Some(what) = not_applied(&imported) {
         return lacks(&format!("{what} is not applied to logs of a carriage; take it out, or apply it to the log"));
     }
-    Ok(Tow { sidecar, role, speed_m_s, foreign: table.foreign(), imported })
+    Ok(Tow { sidecar, role, speed_m_s, foreign: table.findings(), imported })
 }
 
 /// What is declared of the data and would be passed over.

@@ -345,7 +345,7 @@ mod tests {
     use super::*;
     use crate::drag::RunKind;
     use crate::scenario::Scenario;
-    use crate::servo::Friction;
+    use crate::servo::{Friction, ServoLog};
 
     /// Friction 2 % and force per volt 0.5 % from run to run, 0.05 N rms that wanders with 0.3 s within one.
     fn runs(seed: u64, pairs: u32) -> (Vec<Rows>, Chain, Scenario) {

@@ -226,7 +226,6 @@ impl Rig {
             pair,
             is_ballasted: true,
             hung_weight_n: None,
-            held: None,
         };
         let still = (STILL_S * 4000.0) as u64;
         self.log(&mut out, still);
