@@ -284,8 +284,8 @@ fn table(lines: &[Line], campaign: &Campaign) -> ResultTable {
         t.interval("interval_95", "95 % interval", |line| line.interval_95.last().copied().flatten()),
         t.number("speed_m_s", "at speed [m/s]", Line::fastest).significant(4),
         t.number("reynolds", "Re [1]", re).significant(3),
-        t.number("area_m2", "area [m^2]", |line| line.reference.area[0]).significant(4),
-        t.number("density_kg_m3", "density [kg/m^3]", |line| line.reference.density[0]).significant(5),
+        t.number("area_m2", "area [m²]", |line| line.reference.area[0]).significant(4),
+        t.number("density_kg_m3", "density [kg/m³]", |line| line.reference.density[0]).significant(5),
     ];
     if let Some(curve) = curve {
         let at = |line: &Line| re(line).and_then(|re| curve.at(re, line.slenderness()));

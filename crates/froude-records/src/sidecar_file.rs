@@ -171,8 +171,11 @@ fn listed(mut sidecar: Sidecar, list: &Path, table: &Path) -> Result<Sidecar, Re
         Some(own) if !own.as_os_str().is_empty() => folder.join(file) == table,
         _ => Path::new(file).file_name() == table.file_name(),
     };
-    if let Some((row, missing)) = files.iter().enumerate().find(|(_, file)| !folder.join(file).is_file()) {
-        let problem = format!("names {missing}, which is not in {}", shown(folder));
+    // A list may lie beside its tables, or above them.
+    let beside = table.parent().unwrap_or(Path::new(""));
+    let is_there = |file: &str| folder.join(file).is_file() || beside.join(file).is_file();
+    if let Some((row, missing)) = files.iter().enumerate().find(|(_, file)| !is_there(file)) {
+        let problem = format!("names {missing}, which is not in {}", shown(beside));
         return Err(RecordError::value(rows.place_of_row(row), "file", problem));
     }
     let mut fitting = (0..rows.n_rows).filter(|row| files.get(*row).is_some_and(|file| is_table(file)));

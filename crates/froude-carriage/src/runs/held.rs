@@ -182,7 +182,8 @@ mod tests {
         let none = why(0.03, None);
         assert!(none.starts_with("no stretch within 10 % of the listed 0.03 m/s; its largest speed is 0.3"), "{none}");
         assert!(
-            why(0.03, Some([3.0, 5.0])).contains("a mean speed of 0.3 m/s; expected 1.00 s or more at the listed 0.03")
+            why(0.03, Some([3.0, 5.0]))
+                .contains("a mean speed of 0.300 m/s; expected 1.00 s or more at the listed 0.03")
         );
         let (time, position) = profile(0.3, 1.2);
         let short = held(&time, &position, 0.3, None).err().unwrap();

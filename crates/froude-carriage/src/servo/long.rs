@@ -621,6 +621,8 @@ mod tests {
     fn any_log_gives_the_same_result_in_chunks_as_in_memory() {
         let mut chain = Chain::of_log(6.0, 1000.0, Friction::asymmetric());
         chain.hac_lag_s = Some(0.77);
+        // A delay that the motion does not determine is settled after the fit.
+        chain.delay.is_estimated = false;
         for cut in [997, 60_000] {
             compare(&record(), &chain, cut);
         }

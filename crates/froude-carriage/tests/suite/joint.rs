@@ -35,7 +35,7 @@ fn log(twin: Twin, rng: &mut Pcg64Mcg) -> ServoLog {
         let mut rng = Pcg64Mcg::seed_from_u64(rng.random());
         move || -> f64 { StandardNormal.sample(&mut rng) }
     };
-    let phase: [f64; 6] = std::array::from_fn(|_| rng.random_range(0.0..6.28));
+    let phase: [f64; 6] = std::array::from_fn(|_| rng.random_range(0.0..std::f64::consts::TAU));
     let parts = [(0.9, 1.1), (0.7, 2.3), (0.6, 3.7), (0.5, 5.9), (0.4, 8.3), (0.3, 12.1)];
     let current = |t: f64| parts.iter().zip(phase).map(|((a, w), p)| a * (w * t + p).sin()).sum::<f64>();
     let [j, f_v, f_c, m_g_l] = TRUTHS.map(|(_, truth)| truth);

@@ -180,7 +180,7 @@ fn noise(seed: u32) -> impl FnMut() -> f64 {
 /// A joint in a simulation of its own (Euler at 4 kHz): friction differs by up to 10 % from log to log.
 fn joint_log(seed: u32) -> String {
     let mut noise = noise(seed);
-    let phase: Vec<f64> = (0..6).map(|_| 3.14 * noise()).collect();
+    let phase: Vec<f64> = (0..6).map(|_| std::f64::consts::PI * noise()).collect();
     let (f_v, f_c) = (0.010 * (1.0 + 0.1 * noise()), 0.020 * (1.0 + 0.1 * noise()));
     let parts = [(0.22, 1.1), (0.18, 2.3), (0.15, 3.7), (0.12, 5.9), (0.1, 8.3), (0.08, 12.1)];
     let (mut x, mut v) = (0.0_f64, 0.0_f64);

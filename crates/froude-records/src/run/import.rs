@@ -117,7 +117,7 @@ pub fn run_of(table: &Table, sidecar: Option<&Sidecar>, times: LogTimes) -> Resu
             entry.words.set(&mut meaning);
             let scale_errors = own.map(|s| s.scale_errors(entry, table)).unwrap_or_default();
             let time_standard_s = join.and_then(|k| table.joined.get(k)).map_or(0.0, |joined| joined.lag.standard_s());
-            told.insert(channel_name(&column.name), Told { scale_errors, time_standard_s, ..entry.told(header) });
+            told.insert(channel_name(&column.name), Told { time_standard_s, scale_errors, ..entry.told(header) });
         }
         if channels.insert(channel_name(&column.name), Channel { meaning, values: si[rows.clone()].to_vec() }).is_some()
         {

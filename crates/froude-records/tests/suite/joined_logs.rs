@@ -46,7 +46,7 @@ fn late(t: f64) -> f64 {
 
 fn two(join: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), "motion.csv", "t,x", ticks(0.0, 40.0, 20.0), |t| t.sin(), |t| t);
+    write(folder.path(), "motion.csv", "t,x", ticks(0.0, 40.0, 20.0), f64::sin, |t| t);
     write(folder.path(), "load.csv", "s,f", ticks(5.0, 45.0, 25.0), cubic, late);
     std::fs::write(folder.path().join("motion.toml"), format!("{OWN}{join}")).unwrap();
     std::fs::write(folder.path().join("load.toml"), OTHER).unwrap();

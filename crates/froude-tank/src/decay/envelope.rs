@@ -59,7 +59,7 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
             from_s: run.time_s[first],
             start: [swings.passages[0].position, swings.passages[0].slope],
             rest,
-            turns: swings.from_rest(rest),
+            turns: swings.about(rest),
             period_s,
             added,
             noise: swings.noise,

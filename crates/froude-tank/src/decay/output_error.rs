@@ -163,7 +163,7 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
             from_s: run.time_s[first],
             start: [q, v],
             rest,
-            turns: swings.from_rest(rest),
+            turns: swings.about(rest),
             period_s,
             added: if model.has_own { found.values[model.places(i)[0]] } else { by_period },
             noise: swings.noise,

@@ -220,7 +220,7 @@ fn release(log: &TankLog, axis: Motion) -> Result<DecayRun<'_>, MethodError> {
     // Any name will do where only one column can be meant: a pure number may be anything, a length is the position.
     let only = alike.first().copied().filter(|_| alike.len() == 1 && !axis.is_rotation());
     let named: Vec<&str> =
-        axis.column_names().iter().copied().filter(|name| channels.get(*name).filter(is_meant).is_some()).collect();
+        axis.column_names().iter().copied().filter(|name| channels.get(*name).as_ref().is_some_and(is_meant)).collect();
     if let [first, second, ..] = named[..] {
         let what = format!(
             "{first} and {second} can both be the position of a release: leave one out of the log, or name it otherwise in a sidecar, {second} = {{ name = \"other\", unit = \"deg\" }}"

@@ -169,7 +169,7 @@ impl Swings {
     }
 
     /// Time, s, and distance from rest of each turning point.
-    pub fn from_rest(&self, rest: f64) -> Vec<[f64; 2]> {
+    pub fn about(&self, rest: f64) -> Vec<[f64; 2]> {
         let of = |(k, turn): (usize, &Spot)| [turn.time_s, self.side_of(k) * (turn.position - rest)];
         self.turns.iter().enumerate().map(of).collect()
     }

@@ -99,8 +99,6 @@ fn outcome(
     let words = error.replace(&format!("{}/", folder.display()), "");
     let first = words.lines().next().unwrap_or_default();
     // An answer that a person gives is named; a file that cannot be read is rejected.
-    Ok(match words.contains(&entry.says) {
-        true => format!("{}: {first}", entry.expect),
-        false => format!("refused otherwise: {first}"),
-    })
+    let how = if words.contains(&entry.says) { entry.expect.as_str() } else { "refused otherwise" };
+    Ok(format!("{how}: {first}"))
 }
