@@ -52,7 +52,7 @@ fn sines(rng: &mut Pcg64Mcg) -> impl Fn(f64, i32) -> f64 + use<> {
     let parts: Vec<[f64; 3]> = (0..5)
         .map(|k| {
             let omega = 1.1 * 1.37_f64.powi(k) * rng.random_range(0.9..1.1);
-            [0.1 / omega, omega, rng.random_range(0.0..6.28)]
+            [0.1 / omega, omega, rng.random_range(0.0..std::f64::consts::TAU)]
         })
         .collect();
     move |t, d| {
@@ -110,7 +110,7 @@ fn position_and_acceleration(rng: &mut Pcg64Mcg) -> Result<Lag, LagError> {
 
 /// A forced oscillation that begins and ends in both logs, of which the lag is declared to half a second.
 fn oscillation(rng: &mut Pcg64Mcg) -> Result<Lag, LagError> {
-    let phase = rng.random_range(0.0..6.28_f64);
+    let phase = rng.random_range(0.0..std::f64::consts::TAU);
     let motion = move |t: f64| {
         let ramp = ((t - 4.0) / 2.0).clamp(0.0, 1.0);
         0.2 * ramp * (3.9 * t + phase).sin()
