@@ -20,7 +20,7 @@ use froude_records::units::Dimension;
 use froude_rig::carriage::DrivenCampaign;
 
 use crate::drag::run as drag;
-use crate::drag::steady::Window;
+use crate::drag::run::Window;
 
 mod held;
 mod imported;

@@ -59,7 +59,7 @@ fn answered(cli: Cli) -> Result<(), Failure> {
     let mut settled = None;
     while let Err(error) = &done
         && let Some(question) = asked_by(error).filter(|question| settled.as_ref() != Some(*question)).cloned()
-        && let Some(answer) = out::ask(&question)?
+        && let Some(answer) = out::ask(&question).map_err(Failure::system)?
         && let Ok(again) = Cli::try_parse()
     {
         settle(&question, answer)?;

@@ -14,7 +14,6 @@ use froude::records::text::visible;
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 use crate::args::Cli;
-use crate::failure::Failure;
 
 /// What is done does not end with whoever reads about it.
 static GOES_ON_UNREAD: AtomicBool = AtomicBool::new(false);
@@ -67,7 +66,7 @@ pub fn usage(error: &clap::Error) -> ExitCode {
 }
 
 /// Asks the person at the terminal which of several readings is meant; `None` where nobody is there, or they do not choose one.
-pub fn ask(question: &Question) -> Result<Option<usize>, Failure> {
+pub fn ask(question: &Question) -> std::io::Result<Option<usize>> {
     if !std::io::stdin().is_terminal() || !std::io::stderr().is_terminal() {
         return Ok(None);
     }
@@ -77,7 +76,7 @@ pub fn ask(question: &Question) -> Result<Option<usize>, Failure> {
     }
     error_line(format_args!("Which is it? Its number goes into {}; Enter alone ends.", question.sidecar.display()));
     let mut line = String::new();
-    std::io::stdin().read_line(&mut line).map_err(Failure::system)?;
+    std::io::stdin().read_line(&mut line)?;
     Ok(line.trim().parse::<usize>().ok().and_then(|k| k.checked_sub(1)).filter(|k| *k < question.answers.len()))
 }
 

@@ -150,7 +150,7 @@ pub fn zero_change(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<f64> {
         .filter_map(|run| {
             let force = run.force_n?;
             let [before, after] = still_windows(run, setup.steady);
-            let of = |w: super::steady::Window| w.of(force).iter().sum::<f64>() / w.len() as f64;
+            let of = |w: super::run::Window| w.of(force).iter().sum::<f64>() / w.len() as f64;
             Some(of(after?) - of(before?))
         })
         .collect();

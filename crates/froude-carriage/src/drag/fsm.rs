@@ -6,8 +6,8 @@
 
 use froude_fit::series::mean;
 
-use super::run::DragRun;
-use super::steady::{Rejected, SteadySettings, Window, settled_window, still_windows};
+use super::run::{DragRun, Window};
+use super::steady::{Rejected, SteadySettings, settled_window, still_windows};
 use crate::drag::point::Point;
 
 /// The steady point of a run with a force column.

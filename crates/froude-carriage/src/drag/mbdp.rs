@@ -10,9 +10,9 @@
 use froude_fit::series::mean;
 
 use super::friction::Friction;
-use super::run::DragRun;
+use super::run::{DragRun, Window};
 use super::steady::reach;
-use super::steady::{Rejected, SteadySettings, Window, driving_part, window};
+use super::steady::{Rejected, SteadySettings, driving_part, window};
 use crate::drag::point::Point;
 
 /// A map may be used this far beyond its ends, m.

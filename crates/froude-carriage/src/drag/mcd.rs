@@ -6,9 +6,9 @@
 
 use froude_fit::series::mean;
 
-use super::run::DragRun;
+use super::run::{DragRun, Window};
 use super::steady::reach;
-use super::steady::{Rejected, SteadySettings, Window, driving_part, settled_part, window};
+use super::steady::{Rejected, SteadySettings, driving_part, settled_part, window};
 use crate::drag::point::Point;
 
 /// Shortest stretch of positions in common, as part of the wet window.

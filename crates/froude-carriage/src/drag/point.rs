@@ -2,8 +2,7 @@
 
 use froude_fit::series::Mean;
 
-use super::run::DragRun;
-use super::steady::Window;
+use super::run::{DragRun, Window};
 use super::steady::{mean_speed, reach};
 
 /// A steady force.

@@ -2,7 +2,34 @@
 
 pub use froude_records::run::BodyState;
 
-use super::steady::Window;
+/// A stretch of samples, `first..end`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Window {
+    /// First sample.
+    pub first: usize,
+    /// One past the last.
+    pub end: usize,
+}
+
+impl Window {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(self) -> usize {
+        self.end - self.first
+    }
+
+    /// Whether it holds no sample.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        self.end <= self.first
+    }
+
+    /// Its samples of a column.
+    #[must_use]
+    pub fn of(self, column: &[f64]) -> &[f64] {
+        &column[self.first..self.end]
+    }
+}
 
 /// What a run is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -5,7 +5,7 @@
 
 use froude_fit::series::{Line, blocked, mean};
 
-use super::run::DragRun;
+use super::run::{DragRun, Window};
 
 /// How steady windows are chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,35 +66,6 @@ fn too_short(run: &DragRun<'_>, found_s: f64, dropped_s: f64, needed_s: f64) -> 
          needed; tow slower or further",
         run.id
     ))
-}
-
-/// A stretch of samples, `first..end`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Window {
-    /// First sample.
-    pub first: usize,
-    /// One past the last.
-    pub end: usize,
-}
-
-impl Window {
-    /// Number of samples.
-    #[must_use]
-    pub fn len(self) -> usize {
-        self.end - self.first
-    }
-
-    /// Whether it holds no sample.
-    #[must_use]
-    pub fn is_empty(self) -> bool {
-        self.end <= self.first
-    }
-
-    /// Its samples of a column.
-    #[must_use]
-    pub fn of(self, column: &[f64]) -> &[f64] {
-        &column[self.first..self.end]
-    }
 }
 
 /// Stretches in which `is_in` holds.
