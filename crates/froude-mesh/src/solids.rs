@@ -143,7 +143,7 @@ fn brackets(sides: &[Side]) -> Option<Vec<[Side; 2]>> {
 #[must_use]
 pub fn deck_trouble(mesh: &Mesh) -> Option<Trouble> {
     let decks = decks(mesh);
-    let at = Facet::of(mesh, mesh.panels[*decks.first()?]).centroid;
+    let at = Facet::of(mesh, mesh.panels[*decks.first()?]).centroid.map(|x| (1e9 * x).round() / 1e9);
     let panels = counted(decks.len(), "panel lies", "panels lie");
     let words = format!(
         "{panels} inside the hull, which is closed without them, as a deck or a bulkhead is, the first at {at:?} m: no water reaches them; take them out"

@@ -179,7 +179,7 @@ fn a_wild_sample_is_refused_until_a_mark_leaves_it_out() {
         let mut cells: Vec<&str> = line.split(',').collect();
         if i == 700 {
             time = cells[0].to_owned();
-            cells[force] = "1000000";
+            cells[force] = "1234567";
         }
         cells.join(",") + "\n"
     });
@@ -187,7 +187,7 @@ fn a_wild_sample_is_refused_until_a_mark_leaves_it_out() {
     std::fs::write(&log, spoilt).unwrap();
     let error = refused(folder.path(), IDENTIFY);
     assert!(
-        error.contains("001.csv") && error.contains("force is 1.000 × 10⁶ N at 6.99 s") && error.contains("[[marks]]"),
+        error.contains("001.csv") && error.contains("force is 1.235 × 10⁶ N at 6.99 s") && error.contains("[[marks]]"),
         "{error}"
     );
     let sidecar = folder.path().join("runs/001.toml");

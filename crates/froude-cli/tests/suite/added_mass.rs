@@ -1026,7 +1026,8 @@ fn refuses_mesh(mesh: &Mesh, wrong: &str) {
 
 /// No repair unites bodies that cross, or knows which of two nested ones the water touches.
 fn advice(wrong: &str) -> &'static str {
-    if wrong.contains("cross or touch") || wrong.contains("lies inside") || wrong.contains("lie inside") {
+    let is_nested = wrong.contains("lies inside") || wrong.contains("lie inside");
+    if wrong.contains("cross or touch") || (is_nested && !wrong.contains("inside the hull")) {
         return "";
     }
     "\n  froude added-mass m.obj --repair repaired.obj writes a mesh with the unambiguous faults corrected"

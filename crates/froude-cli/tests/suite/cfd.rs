@@ -467,7 +467,7 @@ fn a_closed_mesh_is_meshed_once_computed_and_its_faults_are_told() {
         (ellipsoid_mm(1.0), "", "write unit = \"mm\""),
         (ellipsoid_mm(1.3), "unit = \"mm\"\n", "domain = \"full\""),
         (ellipsoid_mm(1.0).replacen("   vertex", "   vertex 1", 1), "unit = \"mm\"\n", "hull.stl"),
-        (ellipsoid_mm(1.0), "unit = \"kg\"\n", "unit of length"),
+        (ellipsoid_mm(1.0), "unit = \"kg\"\n", "write the unit of the mesh"),
     ] {
         std::fs::write(at("hull.stl"), file).unwrap();
         with(&format!("body = \"hull.stl\"\n{body}{cubes}"), plan);
