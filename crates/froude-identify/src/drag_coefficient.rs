@@ -238,7 +238,8 @@ fn put(estimate: &mut Estimate, line: &Line) {
         interval_95: line.interval_95.last().copied().flatten(),
         ..Derived::of(formula, Some(c_d), "1")
     };
-    estimate.derived.insert(NAME.to_owned(), number);
+    // A method that states its own knows more of its errors.
+    estimate.derived.entry(NAME.to_owned()).or_insert(number);
     estimate.refers_to.entry("area".to_owned()).or_insert_with(|| Measured::of(area, "m^2"));
     estimate.refers_to.entry("density".to_owned()).or_insert_with(|| Measured::of(density, "kg/m^3"));
 }

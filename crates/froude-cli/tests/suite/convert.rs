@@ -32,7 +32,7 @@ fn a_log_goes_through_every_format_and_comes_back() {
     let inspected = String::from_utf8(froude(&["inspect", text(&at("d.mcap"))]).stdout).unwrap();
     assert!(inspected.contains("/table") && inspected.contains("f_x"), "{inspected}");
     // Messages have no units: a sidecar states them.
-    let columns = "time = { name = \"time\" }\nf_x = { name = \"f_x\", unit = \"N\" }\ncommand = { name = \"command\", unit = \"V\" }\n";
+    let columns = "time = { name = \"time\", unit = \"s\" }\nf_x = { name = \"f_x\", unit = \"N\" }\ncommand = { name = \"command\", unit = \"V\" }\n";
     std::fs::write(at("columns.toml"), format!("schema = 1\n[columns]\n{columns}")).unwrap();
     let (mcap, back, sidecar) = (at("d.mcap"), at("e.csv"), at("columns.toml"));
     let output = froude(&["convert", text(&mcap), text(&back), "--sidecar", text(&sidecar)]);

@@ -113,7 +113,7 @@ fn a_folder_of_releases_is_inspected() {
     let said = refusal(&["carriage", "drag", text(&runs)]);
     assert!(
         said.contains("logs there are of other programs (a table of steady runs is what froude identify FILE reads")
-            && said.contains("decay_envelope"),
+            && said.contains("method = \"decay\""),
         "{said}"
     );
 }
@@ -413,9 +413,9 @@ fn releases_in_another_unit_than_their_header_says_are_asked_about() {
     let campaign_of_roll = filmed(folder.path(), 20.0, 0, 3, 1.0);
     let said = refusal(&["identify", text(&campaign_of_roll)]);
     assert!(
-        said.contains("run_0.csv: the largest swing is 0.18")
+        said.contains("run_0.csv: the largest swing is 0.19")
             && said.contains("in rad the same numbers are 10.")
-            && said.contains("write amplitude = \"0.18")
+            && said.contains("write amplitude = \"0.19")
             && said.contains("`angle [rad]` or `angle [deg]` as its header"),
         "{said}"
     );

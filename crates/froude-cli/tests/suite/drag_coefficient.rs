@@ -68,7 +68,7 @@ fn the_load_at_rest_is_no_drag() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = tows(folder.path(), "density = \"998 kg/m^3\"", BODY, -0.3);
     let own = std::fs::read_to_string(&campaign).unwrap().replace("[\"quadratic\"]", "[\"zeroed\"]");
-    let law = "[[identify.model]]\nname = \"zeroed\"\nf_x = \"Z - D*v_x*abs(v_x)\"\n";
+    let law = "[[identify.model]]\nname = \"zeroed\"\nf_x = \"F_0 - D*v_x*abs(v_x)\"\n";
     std::fs::write(&campaign, format!("{own}{law}")).unwrap();
     let (value, [low, high]) = c_d(&json(&["identify", text(&campaign), "--json"]));
     assert!((value / 0.45 - 1.0).abs() < 0.02 && low < 0.45 && 0.45 < high, "{value} [{low}, {high}]");

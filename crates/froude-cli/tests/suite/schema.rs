@@ -69,7 +69,7 @@ fn mistakes_are_refused_by_both() {
         ("runs   = \"runs\"\n", ""),
         ("runs   = \"runs\"\n", "runs   = \"runs\"\ntable  = \"t.csv\"\n"),
         ("density = \"1025 kg/m^3\"", "density = 1025"),
-        ("density = \"1025 kg/m^3\"", "density = { value = \"1025 kg/m^3\" }"),
+        ("density = \"1025 kg/m^3\"", "density = { vlaue = \"1025 kg/m^3\" }"),
         ("name   = \"turning rig\"", "name   = { it = \"turning rig\" }"),
         ("method = \"rotation\"", "method = \"rotatoin\""),
         ("method = \"rotation\"", "method = \"sway\""),
