@@ -171,13 +171,6 @@ fn listed(mut sidecar: Sidecar, list: &Path, table: &Path) -> Result<Sidecar, Re
         Some(own) if !own.as_os_str().is_empty() => folder.join(file) == table,
         _ => Path::new(file).file_name() == table.file_name(),
     };
-    // A list may lie beside its tables, or above them.
-    let beside = table.parent().unwrap_or(Path::new(""));
-    let is_there = |file: &str| folder.join(file).is_file() || beside.join(file).is_file();
-    if let Some((row, missing)) = files.iter().enumerate().find(|(_, file)| !is_there(file)) {
-        let problem = format!("names {missing}, which is not in {}", shown(beside));
-        return Err(RecordError::value(rows.place_of_row(row), "file", problem));
-    }
     let mut fitting = (0..rows.n_rows).filter(|row| files.get(*row).is_some_and(|file| is_table(file)));
     let found = fitting.next();
     if let Some(again) = fitting.next() {
@@ -220,10 +213,6 @@ fn listed(mut sidecar: Sidecar, list: &Path, table: &Path) -> Result<Sidecar, Re
     Ok(sidecar)
 }
 
-fn shown(folder: &Path) -> String {
-    if folder.as_os_str().is_empty() { "this folder".to_owned() } else { folder.display().to_string() }
-}
-
 /// The role of a row of a list, by its column `column`.
 fn role(list: &Table, row: usize, column: &str, word: &str) -> Result<Role, RecordError> {
     Role::ALL.into_iter().find(|role| role.name() == word).ok_or_else(|| {
@@ -258,14 +247,6 @@ mod tests {
         assert_eq!(table.number("f_x", crate::units::Dimension::FORCE).unwrap(), [-1.0, -2.0]);
         assert!(of("other.csv").unwrap().is_none());
         assert!(is_part(&folder.path().join("runs.csv")) && !is_part(&folder.path().join("run_1.csv")));
-        write(
-            "runs.csv",
-            "file,speed [m/s],role,note\nrun_1.csv,0.5,test,me\nrun_2.csv,1,still,you\nrun_9.csv,1,still,you\n",
-        );
-        assert!(
-            of("run_1.csv").unwrap_err().to_string().contains("runs.csv:4: `file` names run_9.csv, which is not in ")
-        );
-        write("runs.csv", "file,speed [m/s],role,note\nrun_1.csv,0.5,test,me\nrun_2.csv,1,still,you\n");
         write("run_3.csv", "t (ms),F (N)\n0,3\n10,4\n");
         assert!(of("run_3.csv").unwrap_err().to_string().contains("has no row for run_3.csv"));
         write("more.toml", "schema = 1\nfiles = \"run_3*\"\n[columns]\n\"t (ms)\" = { name = \"time\" }\n");
