@@ -69,7 +69,7 @@ fn a_declared_lag_and_drift_read_the_other_log_at_the_rows_of_this_one() {
     // 2 ms and 10 ppm over 5 to 40 s about 0: 10 ppm · √(35²/12 + 22.5²) s = 0.25 ms.
     let standard_s = run.told["f_x"].time_standard_s;
     assert!((standard_s - 2e-3_f64.hypot(0.2466e-3)).abs() < 1e-6, "{standard_s}");
-    assert_eq!((run.told["position"].time_standard_s, run.told["f_x"].undeclared.len()), (0.0, 0));
+    assert_eq!((run.told["y/position"].time_standard_s, run.told["f_x"].undeclared.len()), (0.0, 0));
     let said = run.findings.iter().find(|f| f.code == "logs-joined").unwrap();
     assert_eq!(said.severity, Severity::Note);
     assert!(said.message.contains("700 of 800 rows") || said.message.contains("699 of 800 rows"), "{}", said.message);
