@@ -175,7 +175,7 @@ pub(crate) enum Odd {
 
 /// What a cell says of its row: `Mean`, `Std. dev.:`, `25%`, `Faktor`.
 pub(crate) fn odd(cell: &str) -> Option<Odd> {
-    if cell.parse::<f64>().is_ok() || cell.starts_with(['=', '@', '+', '-']) {
+    if cell.parse::<f64>().is_ok() || cell.starts_with(['=', '@', '+', '-', '\'']) {
         return None;
     }
     let lower = cell.trim().to_lowercase();

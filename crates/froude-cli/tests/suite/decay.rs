@@ -423,7 +423,7 @@ fn releases_in_another_unit_than_their_header_says_are_asked_about() {
         |line: &str| campaign(folder.path(), "\"decay\"", &format!("[source.decay]\naxis = \"roll\"\n{line}\n"));
     json(&["identify", text(&stated("amplitude = \"0.2 deg\"")), "--json"]);
     let said = refusal(&["identify", text(&stated("amplitude = \"10 deg\""))]);
-    assert!(said.contains("amplitude = \"10.000 deg\" is declared, and the logs swing by 0.18"), "{said}");
+    assert!(said.contains("amplitude = \"10.000 deg\" is declared, and the logs swing by 0.19"), "{said}");
     let said = refusal(&["identify", text(&stated("amplitude = \"0.2 deg\"\nperiod = \"28 s\""))]);
     assert!(said.contains("period = \"28.0000 s\" is declared, and the logs swing with 2.80"), "{said}");
     // Degrees under `[rad]`, millimetres under `[m]`, numbers of frames under `[s]`.
