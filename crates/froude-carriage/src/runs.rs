@@ -419,7 +419,7 @@ pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&
 ///
 /// # Errors
 ///
-/// As [`column`].
+/// As [`column()`].
 pub fn drive(log: &RunLog) -> Result<&[f64], MethodError> {
     let [command, current] = ["command", "current"].map(|name| format!("{}/{name}", log.meta.carriage.axis.name()));
     if !log.channels.contains_key(&command) && log.channels.contains_key(&current) {

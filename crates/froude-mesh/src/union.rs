@@ -3,9 +3,9 @@
 //! The union is that of `boolmesh`, a port of Manifold. A sentence states what was united. The volumes must add up: with the union's and
 //! the intersection's, V(A ∪ B) + V(A ∩ B) = V(A) + V(B) within [`VOLUME_PART`]; a union that fails this is refused.
 //!
-//! What the seam leaves in slivers is cleaned ([`crate::seam`]).
+//! What the seam leaves in slivers is cleaned (`seam.rs`).
 //!
-//! `boolmesh` is not ours and may panic or never end on degenerate solids: it runs on a thread of its own, and after [`LONGEST`] the
+//! `boolmesh` is not ours and may panic or never end on degenerate solids: it runs on a thread of its own, and after two minutes the
 //! solids are refused. That thread cannot be ended and runs on until the program does.
 
 use std::panic::catch_unwind;
