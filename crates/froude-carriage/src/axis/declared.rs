@@ -163,7 +163,8 @@ impl Axis {
             return Err(values.wrong("encoder", "is of a gear, which is not declared; write gear = 50, for example"));
         }
         if values.is_stated("stribeck_speed") && !is_of("stribeck") {
-            return Err(values.wrong("stribeck_speed", "is of friction = \"stribeck\", which is not asked for"));
+            return Err(values
+                .wrong("stribeck_speed", "belongs to friction = \"stribeck\"; choose that law, or delete the key"));
         }
         if is_of("load_dependent") && values.texts("loads").is_empty() && self.load_table.is_none() {
             return Err(values.wrong(

@@ -38,7 +38,7 @@ pub(super) struct Held {
 ///
 /// # Errors
 ///
-/// Why there is none, in words.
+/// Says why no stretch of the log is steady.
 pub(super) fn held(
     time_s: &[f64],
     position_m: &[f64],

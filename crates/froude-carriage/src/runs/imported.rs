@@ -1,7 +1,7 @@
-//! Logs of other programs as tows: the position along the rail and the motor's command or current, with a list that says which run each log is.
+//! Tows from logs of other programs: the position along the rail and the motor's command or current, with a list that describes each run.
 //!
-//! No log of another program says what speed was asked for. A run is steady where its position, differenced over 0.2 s, moves at one speed
-//! ([`held`]); the mean speed there stands for the reference. Which way a run goes is what its position does.
+//! Such logs have no reference speed. A run is steady while the speed, from differences of the position over 0.2 s, stays constant
+//! ([`held`]); the mean speed of that stretch replaces the reference. The direction of a run is that of its position.
 
 use std::path::{Path, PathBuf};
 
@@ -40,7 +40,7 @@ const ROLES: [Role; 3] = [Role::Wet, Role::Dry, Role::Friction];
 ///
 /// # Errors
 ///
-/// A sidecar that cannot be read; logs that lie among such and are none; runs of Froude's beside them.
+/// A sidecar cannot be read, a log in the folder has no such sidecar, or the folder also holds runs that Froude recorded.
 pub(super) fn logs(paths: &[PathBuf]) -> Result<Vec<PathBuf>, MethodError> {
     let (mut tows, mut others, mut unstated) = (Vec::new(), Vec::new(), None);
     for path in paths {
@@ -95,7 +95,7 @@ struct Tow {
 ///
 /// # Errors
 ///
-/// No campaign that says what force a volt or an ampere stands for; what a log needs and does not have; a list that contradicts the motion.
+/// No campaign states the force per volt or per ampere, a log lacks something that the methods need, or the list contradicts the motion.
 pub(super) fn read(
     paths: &[PathBuf],
     all: &[PathBuf],

@@ -88,15 +88,15 @@ pub const KEYS: &[Key] = &[
     optional(
         "amplitude",
         Kind::By("axis", &by_axis(Kind::Quantity(Dimension::LENGTH), Kind::Quantity(Dimension::ANGLE))),
-        "asked for where it is unusual",
-        "largest swing as seen, within a factor of two: a check of the unit of the position",
+        "required if the swings are unusually large or small",
+        "largest swing that was observed, to a factor of two: it confirms the unit of the position",
     )
     .within(Range::Positive),
     optional(
         "period",
         Kind::Quantity(Dimension::TIME),
-        "asked for where the times are whole numbers",
-        "period as seen, within a factor of two: a check of the unit of the time",
+        "required if all times are whole numbers",
+        "period that was observed, to a factor of two: it confirms the unit of the time",
     )
     .within(Range::Positive),
 ];
