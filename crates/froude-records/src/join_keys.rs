@@ -30,9 +30,9 @@ pub struct Join {
     pub file: String,
     /// The channels of this log and of that one that show the same.
     pub same: Option<[String; 2]>,
-    /// By how much its stamps are late, s.
+    /// How much its stamps exceed the time of the first log, s.
     pub lag_s: Option<Declared>,
-    /// By how much its clock gains.
+    /// How fast that grows.
     pub drift: Option<Declared>,
     /// Its stamp at which the lag holds, s.
     pub origin_s: Option<f64>,

@@ -1,4 +1,4 @@
-//! Lag and drift of one clock behind another, from something that two records with stamps of their own both saw.
+//! Lag and drift between two clocks, from a motion that two separately clocked records both show.
 //!
 //! A stamp s of the second clock is of the first clock's time t(s) = s − lag − drift (s − origin). Both records are seen under one Gaussian window ([`smooth`]); where the second saw
 //! the velocity or the acceleration of what the first saw, the first is differentiated by the same window, so that neither is delayed. The correlation over all shifts gives
@@ -35,17 +35,21 @@ const SURE: f64 = 20.0;
 const CLEARLY: f64 = 1.1;
 /// Windows that give a lag each.
 const WINDOWS: usize = 12;
-/// What is left of the lags of windows is below this part of a period: a tenth of a radian and more moves inertia into damping (as [`crate::clock::MOST_LEFT_RAD`]).
-const MOST_LEFT: f64 = 1.0 / 36.0;
+/// What is left of the lags of windows is below this part of a period: more moves inertia into damping.
+const MOST_LEFT: f64 = crate::clock::MOST_LEFT_RAD / std::f64::consts::TAU;
 /// A step in the lags of windows that improves their χ² by so much, and leaves less than such a part of it, is a jump of a clock.
 const JUMP: (f64, f64) = (30.0, 0.3);
 /// A drift rests on one moment where it moves the ends of the overlap by so many standard uncertainties of the lag.
 const LEVER: f64 = 10.0;
-/// Part of the range that one step changes of a record that jumps: a trigger.
-const STEPPED: f64 = 0.3;
+/// Part of the range that one step changes of a record that jumps, and one in how many of its steps does so at most: a trigger.
+const STEPPED: (f64, usize) = (0.3, 20);
+/// A window is no wider than this part of the shorter record.
+const SHORTEST_WINDOWS: f64 = 60.0;
 /// Most values that are compared.
 const MOST_VALUES: f64 = 2e5;
-/// A drift beyond this is of no two clocks.
+/// A declared drift is contradicted by one that lies so many standard uncertainties away.
+const CONTRADICTED: f64 = 3.0;
+/// No pair of clocks drifts by more.
 pub const MOST_DRIFT: f64 = 0.1;
 /// Steps of Gauss and Newton, and part of a step of the records at which they end.
 const STEPS: (usize, f64) = (25, 1e-5);
@@ -74,10 +78,10 @@ pub struct Known {
     pub derivative: i32,
 }
 
-/// How the second clock runs behind the first.
+/// How the stamps of the second clock differ from the time of the first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lag {
-    /// By how much a stamp of the second clock is late at [`Lag::origin_s`], s.
+    /// How much the second clock's stamp exceeds the first clock's time at [`Lag::origin_s`], s.
     pub lag_s: f64,
     /// By how much it gains, s/s.
     pub drift: f64,
@@ -144,7 +148,7 @@ pub enum LagError {
     Undetermined,
     /// It tells a lag, and no drift.
     #[error(
-        "what the records show lies at one moment, near {origin_s:.3} s of the second clock: that tells the lag there ({lag_s:.4} s) and no drift"
+        "the only event is near {origin_s:.3} s of the second clock: it fixes the lag there ({lag_s:.4} s) but not the drift"
     )]
     DriftOpen {
         /// The lag there, s.
@@ -166,6 +170,18 @@ pub enum LagError {
         /// Where.
         time_s: f64,
     },
+    /// The records show another drift than the declared one.
+    #[error("the records show a drift of {:.1} ± {:.1} ppm, and {:.1} ± {:.1} ppm is declared (standard uncertainties)", 1e6 * found, 1e6 * standard, 1e6 * declared, 1e6 * of_declared)]
+    DriftContradicted {
+        /// As the lags of windows show it.
+        found: f64,
+        /// Its standard uncertainty.
+        standard: f64,
+        /// As declared.
+        declared: f64,
+        /// Its standard uncertainty.
+        of_declared: f64,
+    },
     /// The clocks wander.
     #[error(
         "the lags of {WINDOWS} windows leave a straight line by {left_s:.4} s (rms), beyond a 36th of the motion's period of {period_s:.3} s: the clocks wander"
@@ -180,10 +196,28 @@ pub enum LagError {
 
 /// Lag and drift of the second record's clock behind the first's.
 ///
+/// A declared drift is combined with the one that the records show, where they show one, by the inverse squares of their standard uncertainties.
+///
 /// # Errors
 ///
 /// [`LagError`].
 pub fn find(first: &Record<'_>, second: &Record<'_>, known: &Known) -> Result<Lag, LagError> {
+    let Some([declared, of_declared]) = known.drift else { return at_drift(first, second, known) };
+    let Ok(lag) = at_drift(first, second, &Known { drift: None, ..*known }) else {
+        return at_drift(first, second, known);
+    };
+    let (drift, standard) = (lag.drift, lag.standard[1]);
+    if (drift - declared).abs() > CONTRADICTED * of_declared.hypot(standard) {
+        return Err(LagError::DriftContradicted { found: drift, standard, declared, of_declared });
+    }
+    // At its origin the lag goes with no drift.
+    let part = of_declared.powi(2) / (of_declared.powi(2) + standard.powi(2));
+    let drift = declared + part * (drift - declared);
+    Ok(Lag { drift, standard: [lag.standard[0], standard * part.sqrt()], ..lag })
+}
+
+/// The same with the drift as declared, where it is.
+fn at_drift(first: &Record<'_>, second: &Record<'_>, known: &Known) -> Result<Lag, LagError> {
     let begin_s = second.time_s.first().copied().unwrap_or(0.0);
     let declared = known.drift.map_or(0.0, |[drift, _]| drift);
     // A declared drift is taken off first.
@@ -268,10 +302,11 @@ pub fn find(first: &Record<'_>, second: &Record<'_>, known: &Known) -> Result<La
     })
 }
 
-/// Whether one step changes a record by a large part of its range.
+/// Whether a few steps change a record by a large part of its range: a motion that is sampled coarsely has many such steps.
 fn is_stepped(values: &[f64]) -> bool {
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
-    values.windows(2).any(|w| (w[1] - w[0]).abs() > STEPPED * (high - low))
+    let large = values.windows(2).filter(|w| (w[1] - w[0]).abs() > STEPPED.0 * (high - low)).count();
+    large > 0 && STEPPED.1 * large < values.len()
 }
 
 /// Two records under one window.
@@ -317,10 +352,13 @@ impl Pair {
             1.. => mean_period_s(&seen(first, step_s, 0)?),
             _ => mean_period_s(&seen(second, step_s, 0)?),
         };
-        let period_s = period_s.max(4.0 * step_s);
-        // Noise of a record that is differentiated is kept small by a window of a part of the motion's period.
-        let width_s = if derivative == 0 { step_s } else { step_s.max(period_s / 12.0) };
+        // Noise of a record that is differentiated is kept small by a window of a part of the motion's period, and of the record: a ramp of position has a long one.
+        let shortest_s = length(first).min(length(second));
+        let width_s =
+            if derivative == 0 { step_s } else { step_s.max((period_s / 12.0).min(shortest_s / SHORTEST_WINDOWS)) };
         let (x, y) = (seen(first, width_s, derivative)?, seen(second, width_s, -derivative)?);
+        // The period of the motion is that of what is compared.
+        let period_s = mean_period_s(&x).max(mean_period_s(&y)).max(4.0 * step_s);
         let spline = Spline::through(x.time_s.clone(), x.values.clone())?;
         Ok(Self { x, y, spline, period_s })
     }

@@ -65,7 +65,7 @@ pub(crate) fn join(
     if kept.len() < FEWEST {
         let ends = |t: &[f64]| format!("{} s to {} s", plain(t[0], 9), plain(t[t.len() - 1], 9));
         let problem = format!(
-            "{} and {} have no time in common ({}): by lag and drift, {} goes from {}, and {} from {} of the same clock; correct lag (stamp of {} less the time in {}), drift and origin",
+            "{} and {} overlap in only {}, and {FEWEST} are needed: by lag and drift, {} goes from {}, and {} from {} of the same clock; correct lag (stamp of {} less the time in {}), drift and origin",
             names[0],
             names[1],
             counted(kept.len(), "row", "rows"),
@@ -78,6 +78,8 @@ pub(crate) fn join(
         );
         return Err(RecordError::value(declared.place.clone(), "lag", problem));
     }
+    // A mean over q samples τ apart is f + (q² − 1) τ² f''/24: that is undone, since the joined channels alone would lose amplitude, (πfh)²/6 of it.
+    let spread_s2 = ((averaged * averaged - 1) as f64) * theirs.steps.median_s.powi(2) / 24.0;
     let mut columns = Vec::new();
     for column in &other.columns {
         let is_compared = declared.same.as_ref().is_some_and(|[_, there]| *there == column.name);
@@ -105,7 +107,8 @@ pub(crate) fn join(
             if values[k - 1] == values[k] {
                 return values[k];
             }
-            spanned(t).and_then(|p| splines[p].as_ref()?.at(t)).unwrap_or(values[k])
+            let read = spanned(t).and_then(|p| splines[p].as_ref()?.with_derivatives_at(t));
+            read.map_or(values[k], |[value, _, second]| value - spread_s2 * second)
         };
         let si = kept.iter().map(read).collect();
         let data = ColumnData::Number { unit: unit.clone(), dimension: *dimension, si };
@@ -211,7 +214,7 @@ fn found(
     let lag = find(&first, &second, &known).map_err(|error| {
         let advice = advice(&error, names, declared);
         let problem = format!(
-            "{here} of {} and {there} of {} do not tell how their clocks differ: {error}. {advice}",
+            "the clocks cannot be aligned from {here} of {} and {there} of {}: {error}. {advice}",
             names[0], names[1]
         );
         RecordError::value(declared.place.clone(), "same", problem)
@@ -274,6 +277,8 @@ fn advice(error: &LagError, names: &[String; 2], declared: &Join) -> String {
         LagError::AtTheEnd { .. } => "Correct lag, or give it a larger standard uncertainty: it is looked for within three of them".to_owned(),
         LagError::Jump { time_s, .. } => format!("A clock was set, or one log lost samples that its stamps do not show: cut both logs near {} s of {}", plain(*time_s, 6), names[0]),
         LagError::NotLinear { .. } => "Log both with one clock, or name a channel that both recorded better".to_owned(),
+        LagError::DriftContradicted { .. } => "Correct drift, or leave it out, so that it is found".to_owned(),
+        LagError::Record(_) => "Name another pair in `same`, or state lag and drift without it".to_owned(),
         LagError::Undetermined => "Name a pair that moves to and fro, or state lag and drift".to_owned(),
         _ if declared.lag_s.is_some() => "Correct lag, name another pair in `same`, or state lag and drift without it".to_owned(),
         _ => format!(
@@ -302,11 +307,11 @@ fn words(
         String::new()
     };
     format!(
-        "the clock of {} is late on that of {} by {} s ± {} ms at its {} s and gains {} ± {} ppm (95 %, {how}){left}; {} s are common to both ({} s and {} s long), {} of {} rows of {} are used; {} read there {means}by a cubic spline",
+        "stamps of {} read {} s ± {} ms more than the time in {} (at the stamp {} s), and gain {} ± {} ppm on it (95 %, {how}){left}; {} s are common to both ({} s and {} s long), {} of {} rows of {} are used; {} read there {means}by a cubic spline",
         names[1],
-        names[0],
         rounded(lag.lag_s, lag.standard[0]),
         significant(1e3 * COVERAGE * lag.standard[0], 2),
+        names[0],
         plain(lag.origin_s, 6),
         rounded(1e6 * lag.drift, 1e6 * lag.standard[1]),
         significant(1e6 * COVERAGE * lag.standard[1], 2),

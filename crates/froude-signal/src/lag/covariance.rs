@@ -116,8 +116,9 @@ pub(crate) fn of(rows: &Rows, fit: &mut Fit, is_free: bool, rounding_s: f64) -> 
     let standard = |c: &[f64]| noise.covariance(c, c).max(0.0).sqrt();
     let lag = standard(&factors(2, &columns, &inverse));
     let drift = if is_free { standard(&factors(3, &columns, &inverse)) } else { 0.0 };
-    let about_line = line(&windows, &|_| 0.0, is_free);
-    let dof = windows.len() as f64 - 1.0 - f64::from(u8::from(is_free));
+    // A declared drift holds within its uncertainty only: the windows are compared with a line either way.
+    let about_line = line(&windows, &|_| 0.0);
+    let dof = windows.len() as f64 - 2.0;
     let Some((chi2, _)) = about_line.filter(|_| dof >= 1.0) else {
         return Some(Known { standard: [lag, drift], left_s: 0.0, arm_s, jump: None });
     };
@@ -126,7 +127,7 @@ pub(crate) fn of(rows: &Rows, fit: &mut Fit, is_free: bool, rounding_s: f64) -> 
     let left_s = ((chi2 - dof).max(0.0) / weight).sqrt();
     let jumps = (2..windows.len().saturating_sub(1)).filter_map(|k| {
         let edge = 0.5 * (windows[k - 1][0] + windows[k][0]);
-        let (left, jump) = line(&windows, &|s| f64::from(u8::from(s > edge)), is_free)?;
+        let (left, jump) = line(&windows, &|s| f64::from(u8::from(s > edge)))?;
         Some([left, edge, jump])
     });
     let best = jumps.min_by(|a, b| a[0].total_cmp(&b[0]));
@@ -140,13 +141,12 @@ pub(crate) fn of(rows: &Rows, fit: &mut Fit, is_free: bool, rounding_s: f64) -> 
     })
 }
 
-/// χ² of the lags of windows about a constant, a line where the drift is free, and a step where `step` is not 0 everywhere; with the step's size.
-fn line(windows: &[[f64; 3]], step: &dyn Fn(f64) -> f64, is_free: bool) -> Option<(f64, f64)> {
+/// χ² of the lags of windows about a line, and a step where `step` is not 0 everywhere; with the step's size.
+fn line(windows: &[[f64; 3]], step: &dyn Fn(f64) -> f64) -> Option<(f64, f64)> {
     let middle = windows.iter().map(|w| w[0]).sum::<f64>() / windows.len().max(1) as f64;
     let has_step = windows.iter().any(|w| step(w[0]) != 0.0);
     let row = |s: f64| {
-        let mut row = vec![1.0];
-        row.extend(is_free.then_some(s - middle));
+        let mut row = vec![1.0, s - middle];
         row.extend(has_step.then(|| step(s)));
         row
     };
