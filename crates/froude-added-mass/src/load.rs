@@ -83,10 +83,7 @@ pub(super) fn read_unmerged(job: &Asked) -> Result<MeshFile, AddedMassError> {
         file.mesh = file.mesh.mapped(|v| v.map(|x| by * x));
     }
     if let Some(scale) = job.model_scale {
-        file.notes.push(format!(
-            "the body is a model of what was drawn, with {scale} of its lengths: the largest is {:.4} m",
-            extent(&file.mesh)
-        ));
+        file.notes.push(format!("scaled by {scale}: the body's largest dimension is {:.4} m", extent(&file.mesh)));
     }
     Ok(file)
 }

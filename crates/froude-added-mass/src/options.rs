@@ -211,7 +211,7 @@ fn panels(text: &str) -> Result<usize, String> {
 fn unit(text: &str) -> Result<(Option<f64>, Option<f64>), String> {
     let wrong = || {
         "write the unit of the mesh: mm, cm, m, in, ft, or a length, \"0.5 m\"; or the scale of a model, 1:50, of which the mesh has the full \
-         size (\"1:50 mm\": in millimetres)"
+         size (\"1:50 mm\": in millimetres), or 50:1 where it has the size of the model and the body the full one"
             .to_owned()
     };
     let length = |text: &str| {
@@ -220,7 +220,9 @@ fn unit(text: &str) -> Result<(Option<f64>, Option<f64>), String> {
         named.or_else(|| quantity(text, Dimension::LENGTH).ok()).filter(|m| *m > 0.0).ok_or_else(wrong)
     };
     let Some((model, rest)) = text.trim().split_once(':') else { return Ok((Some(length(text.trim())?), None)) };
-    let (full, name) = rest.trim().split_once(' ').unwrap_or((rest.trim(), ""));
+    let rest = rest.trim();
+    let end = rest.find(|c: char| !matches!(c, '0'..='9' | '.')).unwrap_or(rest.len());
+    let (full, name) = rest.split_at(end);
     let one = |text: &str| text.trim().parse::<f64>().ok().filter(|x| is_plausible(*x) && *x > 0.0).ok_or_else(wrong);
     let unit_m = if name.is_empty() { None } else { Some(length(name.trim())?) };
     Ok((unit_m, Some(one(model)? / one(full)?)))

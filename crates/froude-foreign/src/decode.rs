@@ -95,7 +95,7 @@ fn all<'b>(encoding: &'static Encoding, bytes: &'b [u8], is_guess: bool) -> Resu
     }
 }
 
-/// What no text has, and nearly every other file: other control characters are shown where they stand.
+/// A zero byte, which nearly every binary file has and no text; other control characters are reported where they stand.
 fn is_control(byte: u8) -> bool {
     byte == 0
 }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | a formula | the value that its program stored; without one, or where it reads another file, an error that names the cell |
 //! | a number as text | [`Cell::Text`] |
+//! | a number with a word behind it | [`Cell::Shown`] |
 //! | a number shown in percent | [`Cell::Percent`], the fraction |
 //! | a date, a time, a duration | [`Cell::Date`], a text |
 //! | merged cells | the content in their first cell, the regions in [`Sheet::merged`] |

@@ -15,7 +15,7 @@ use crate::raw_column::{
 };
 use crate::sidecar::{Mapping, Sidecar};
 use crate::table::{Column, ColumnData, Table};
-use crate::units::Unit;
+use crate::units::{Unit, parse_unit};
 
 /// What a column of a file becomes, decided by its header alone.
 pub(crate) enum Want<'s> {
@@ -267,12 +267,26 @@ pub(crate) fn number(cell: &str, header: &str, place: &dyn Fn() -> Place) -> Res
     match fast_float2::parse::<f64, _>(cell) {
         Ok(x) if x.is_finite() => Ok(x),
         Ok(_) => Err(RecordError::not_finite(place(), header, &clip())),
-        Err(_) => {
-            let found = clip();
-            let problem = format!(": `{found}` is not a number{}", decimal_comma(&found));
-            Err(RecordError::column(place(), header, problem))
-        }
+        Err(_) => Err(not_a_number(cell, header, place())),
     }
+}
+
+/// The error for a cell that is no number.
+pub(crate) fn not_a_number(cell: &str, header: &str, place: Place) -> RecordError {
+    let found: String = cell.chars().take(40).collect();
+    let behind = found.split_once(' ').filter(|(number, _)| number.parse::<f64>().is_ok()).map(|(_, behind)| behind);
+    let advice = match behind {
+        Some("shown in thousands") => {
+            "; the sheet leaves out the last three digits of what it holds: give its cells a plain number format, and name the unit of the \
+             whole numbers in the header"
+                .to_owned()
+        }
+        Some(unit) if parse_unit(unit).is_ok() => {
+            format!("; the unit `{unit}` belongs into the header, once for the whole column")
+        }
+        _ => decimal_comma(&found).to_owned(),
+    };
+    RecordError::column(place, header, format!(": `{found}` is not a number{advice}"))
 }
 
 /// Makes the table of what was read, and checks what concerns more than one cell; the sidecar is one that maps columns.

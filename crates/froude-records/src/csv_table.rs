@@ -14,11 +14,11 @@ use std::path::{Path, PathBuf};
 use froude_foreign::decode::{Decoded, decode};
 use froude_foreign::marks::{Marks, Shape, Undecided, Witness, shape};
 
-use crate::assemble::{Room, Want, assemble, number, plan};
-use crate::error::{Place, RecordError, decimal_comma};
+use crate::assemble::{Room, Want, assemble, not_a_number, number, plan};
+use crate::error::{Place, RecordError};
 use crate::file_words::FileWords;
 use crate::guard::{guarded, unguarded};
-use crate::label_rows::{Labels, Odd, advice, odd};
+use crate::label_rows::{Labels, OddRows, advice, is_sum_in_note, odd};
 use crate::memory;
 use crate::obstacles;
 use crate::raw_column::Raw;
@@ -189,10 +189,25 @@ impl<'a, 's> Head<'a, 's> {
         let (mut cells, mut lines) = (Vec::new(), Vec::new());
         let mut room = Room::new(path);
         let (mut left_out, mut labels) = (0, Labels::default());
+        let is_asked = self.file.leave_out.is_none() && self.wants.iter().any(Want::is_number);
+        let mut odd_rows = OddRows::default();
+        let mut odd_notes: Vec<OddRows> = self.wants.iter().map(|_| OddRows::default()).collect();
+        let refuse = |line: usize, word: &str| {
+            Err(RecordError::syntax(Place::in_table(path, line), advice(path, word, odd(word))))
+        };
         while let Some(line) = records.next(&mut cells)? {
-            if self.is_summary(&cells, line)? {
+            if self.is_left_out(&cells) {
                 left_out += 1;
                 continue;
+            }
+            let mut in_notes = || {
+                let mut texts = self.texts(&cells);
+                texts.find_map(|(at, word)| {
+                    odd_notes.get_mut(at)?.see(if is_sum_in_note(word) { word } else { "" }, line)
+                })
+            };
+            if is_asked && let Some((line, word)) = odd_rows.see(first(&cells), line).or_else(&mut in_notes) {
+                return refuse(line, &word);
             }
             // Cells without content beyond the last column.
             while cells.len() > self.header.len() && cells.last().is_some_and(|cell| cell.is_empty()) {
@@ -226,9 +241,15 @@ impl<'a, 's> Head<'a, 's> {
             }
             memory::push(&mut lines, line).map_err(|e| RecordError::memory(path, e))?;
         }
-        let is_asked = self.file.leave_out.is_none() && self.wants.iter().any(Want::is_number);
-        if let Some((line, word)) = labels.words().next().filter(|_| is_asked) {
-            return Err(RecordError::syntax(Place::in_table(path, *line), advice(path, word, odd(word))));
+        if let Some((line, word)) = labels
+            .words()
+            .next()
+            .cloned()
+            .or_else(|| odd_rows.end())
+            .or_else(|| odd_notes.into_iter().find_map(OddRows::end))
+            .filter(|_| is_asked)
+        {
+            return refuse(line, &word);
         }
         Ok(Rows { raws, lines, left_out })
     }
@@ -267,25 +288,16 @@ impl<'a, 's> Head<'a, 's> {
     }
 
     /// Whether a row is declared to be left out because it is no observation.
-    fn is_summary(&self, cells: &[Cow<'_, str>], line: usize) -> Result<bool, RecordError> {
-        let first = cells.iter().map(|cell| cell.trim()).find(|cell| !cell.is_empty()).unwrap_or_default();
-        let texts = cells.iter().zip(&self.wants).filter(|(_, want)| !want.is_number()).map(|(cell, _)| cell.trim());
-        let mut words = std::iter::once(first).chain(texts);
-        if self.file.leave_out.is_some() || !self.wants.iter().any(Want::is_number) {
-            return Ok(words.any(|word| self.file.leaves_out(word)));
-        }
-        // Away from the beginning only what is nothing else: a note may speak of a scale.
-        let is_odd = |word: &&str| match odd(word) {
-            Some(Odd::Sum) => *word == first || !word.contains(' '),
-            Some(Odd::Scale) => *word == first,
-            None => false,
-        };
-        match words.find(is_odd) {
-            Some(word) => {
-                Err(RecordError::syntax(Place::in_table(self.path, line), advice(self.path, word, odd(word))))
-            }
-            None => Ok(false),
-        }
+    fn is_left_out(&self, cells: &[Cow<'_, str>]) -> bool {
+        std::iter::once(first(cells))
+            .chain(self.texts(cells).map(|(_, cell)| cell))
+            .any(|word| self.file.leaves_out(word))
+    }
+
+    /// The cells of columns of text, each with its column.
+    fn texts<'c>(&self, cells: &'c [Cow<'_, str>]) -> impl Iterator<Item = (usize, &'c str)> {
+        let cells = cells.iter().zip(&self.wants).enumerate();
+        cells.filter(|(_, (_, want))| !want.is_number()).map(|(at, (cell, _))| (at, cell.trim()))
     }
 
     /// The table of some rows.
@@ -294,10 +306,9 @@ impl<'a, 's> Head<'a, 's> {
     }
 }
 
-/// The error for a cell that is no number under the marks of its file.
-fn not_a_number(cell: &str, header: &str, place: Place) -> RecordError {
-    let found: String = cell.chars().take(40).collect();
-    RecordError::column(place, header, format!(": `{found}` is not a number{}", decimal_comma(&found)))
+/// The first cell of a row with content.
+fn first<'c>(cells: &'c [Cow<'_, str>]) -> &'c str {
+    cells.iter().map(|cell| cell.trim()).find(|cell| !cell.is_empty()).unwrap_or_default()
 }
 
 /// A table as CSV, for a file that lies among others: numbers in the units of their columns, in full precision.

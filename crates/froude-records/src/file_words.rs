@@ -70,6 +70,9 @@ impl FileWords {
         file.refuse("names", stated.names_line == Some(0), "is 0; lines are counted from 1")?;
         let is_one = stated.decimal.is_some() && stated.decimal == stated.thousands;
         file.refuse("thousands", is_one, "is the decimal mark too; one of them is another")?;
+        let leave_out = file.get("leave_out").map(|_| file.texts("leave_out")).transpose()?;
+        let has_blank = leave_out.iter().flatten().any(|word| word.trim().is_empty());
+        file.refuse("leave_out", has_blank, "has an empty word; write what the row begins with")?;
         Ok(Self {
             encoding: text("encoding")?,
             stated,
@@ -77,7 +80,7 @@ impl FileWords {
             range: text("range")?,
             part: text("part")?,
             not_measured: file.get("not_measured").map(|_| file.texts("not_measured")).transpose()?,
-            leave_out: file.get("leave_out").map(|_| file.texts("leave_out")).transpose()?,
+            leave_out,
         })
     }
 
@@ -93,12 +96,13 @@ impl FileWords {
     /// Whether a row with a cell is declared to be left out.
     #[must_use]
     pub fn leaves_out(&self, cell: &str) -> bool {
-        self.leave_out.iter().flatten().any(|word| word.eq_ignore_ascii_case(cell))
+        !cell.is_empty() && self.leave_out.iter().flatten().any(|word| word.eq_ignore_ascii_case(cell))
     }
 }
 
 /// Round numbers that programs write where there is none.
-const SENTINELS: [f64; 37] = [
+const SENTINELS: [f64; 38] = [
+    9999.99,
     8_388_607.0,
     -8_388_608.0,
     -65535.0,
@@ -139,23 +143,10 @@ const SENTINELS: [f64; 37] = [
 ];
 
 /// Those that no measurement is by chance: fill values and flags of loggers, netCDF, Fortran and single precision.
-const CERTAIN: [f64; 15] = [
-    9.9e37,
-    -9.9e37,
-    9.91e37,
-    -999.25,
-    -999.9,
-    -999.99,
-    -9999.25,
-    -9999.9,
-    -9999.99,
-    9999.99,
-    -1e34,
-    9.969_21e36,
-    3.402_823e38,
-    -3.402_823e38,
-    -9.99e-29,
-];
+const CERTAIN: [f64; 8] = [9.9e37, -9.9e37, 9.91e37, -1e34, 9.969_21e36, 3.402_823e38, -3.402_823e38, -9.99e-29];
+
+/// Those that a measurement is now and then, but hardly farther out than all others.
+const FLAGS: [f64; 6] = [-999.25, -999.9, -999.99, -9999.25, -9999.9, -9999.99];
 
 /// Part of itself by which a number may differ from one of these, as it is printed.
 const PRINTED: f64 = 2e-6;
@@ -175,12 +166,19 @@ pub fn sentinel(values: &[f64]) -> Option<(usize, f64)> {
     if let Some((row, certain)) = first(&CERTAIN) {
         return Some((row, *certain));
     }
+    let farthest_but = |list: &[f64]| {
+        values.iter().filter(|value| !is_among(**value, list)).map(|value| value.abs()).fold(0.0, f64::max)
+    };
+    if let Some((row, flag)) = first(&FLAGS).filter(|(_, flag)| flag.abs() > farthest_but(&FLAGS)) {
+        return Some((row, *flag));
+    }
     let (row, found) = first(&SENTINELS)?;
-    let others = values.iter().filter(|value| !is_among(**value, &SENTINELS)).map(|value| value.abs());
-    let farthest = others.fold(0.0, f64::max);
+    let farthest = farthest_but(&SENTINELS);
     let is_twice = values.iter().filter(|value| *value == found).count() > 1;
     let is_far = found.abs() > FAR * farthest || (is_twice && *found < 0.0 && found.abs() > farthest);
-    (is_far && values.len() > 1).then_some((row, *found))
+    // 1, 10, 100, … go on to a million.
+    let is_decade = *found == 10.0 * farthest && values.iter().any(|value| 100.0 * value == *found);
+    (is_far && !is_decade && values.len() > 1).then_some((row, *found))
 }
 
 /// The name that a sidecar of this table has.
@@ -191,9 +189,15 @@ pub(crate) fn sidecar_name(path: &Path) -> String {
 
 /// What to do about a number that stands for no measurement.
 pub(crate) fn of_sentinel(value: f64) -> String {
+    let shown = sentinel_word(value);
     format!(
-        "{value} is far from all other numbers, and many programs write it where nothing was measured; if so, declare not_measured = [\"{value}\"], or not_measured = [] where it was"
+        "{shown} is far from all other numbers, and many programs write it where nothing was measured; if so, declare not_measured = [\"{shown}\"], or not_measured = [] where it was"
     )
+}
+
+/// A number as a sidecar states it.
+pub(crate) fn sentinel_word(value: f64) -> String {
+    if (1e-4..1e15).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
 /// Refuses a number that stands for no measurement, unless somebody said that all were measured.

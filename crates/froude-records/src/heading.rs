@@ -4,7 +4,7 @@ use froude_foreign::layout::{Head, bare};
 
 use crate::foreign_names::{meant, of_sname};
 use crate::known_columns::{is_text_column, known_dimension};
-use crate::units::{Dimension, parse_unit};
+use crate::units::{Dimension, Unit, parse_unit};
 
 /// What stands above a column.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -113,6 +113,13 @@ fn split(written: &str) -> Option<(&str, &str, &'static str)> {
         let unit = bare(unit);
         (!name.trim().is_empty() && is_unit(unit)).then_some((name.trim(), unit, *mark))
     })
+}
+
+/// The unit of a head, or the one that stands alone below it: `drag [N]`, `drag (N)`, `[N]`, `N`.
+pub(crate) fn unit_in(head: &str) -> Option<Unit> {
+    let own = split_header(head).ok().and_then(|(_, unit)| unit);
+    let unit = own.or_else(|| split(head).map(|(_, unit, _)| unit)).unwrap_or(bare(head));
+    parse_unit(unit).ok()
 }
 
 /// The headings of a table: each head with its unit, from its own text or from the row of units.

@@ -7,7 +7,7 @@ use froude_foreign::marks::shape;
 use crate::file_words::sidecar_name;
 
 /// What rows that sum up others begin with, in small letters and digits alone.
-const SUMS: [&str; 115] = [
+const SUMS: [&str; 113] = [
     "mean",
     "means",
     "meanvalue",
@@ -23,6 +23,12 @@ const SUMS: [&str; 115] = [
     "mitt",
     "gemittelt",
     "durchschnitt",
+    "durchschnittswert",
+    "standardfehler",
+    "standarderror",
+    "uncertainty",
+    "unsicherheit",
+    "messunsicherheit",
     "gesamt",
     "gesamtmittel",
     "gesamtsumme",
@@ -43,18 +49,11 @@ const SUMS: [&str; 115] = [
     "stabws",
     "standdev",
     "standarddeviation",
-    "sd",
     "rsd",
     "relstd",
     "sem",
-    "se",
     "var",
     "variance",
-    "cv",
-    "cov",
-    "ci",
-    "range",
-    "peak",
     "subtotal",
     "total",
     "sum",
@@ -75,7 +74,6 @@ const SUMS: [&str; 115] = [
     "ecarttype",
     "ecartype",
     "somme",
-    "media",
     "mediana",
     "varianza",
     "mín",
@@ -125,8 +123,11 @@ const SUMS: [&str; 115] = [
     "q3",
 ];
 
+/// Those that also name bodies, places and directions: asked about at the end of a table alone.
+const LAST_SUMS: [&str; 8] = ["se", "sd", "cv", "cov", "ci", "range", "peak", "media"];
+
 /// Words that say so among others: `Run mean`, `Mittel Lauf 1-4`.
-const SUM_WORDS: [&str; 18] = [
+const SUM_WORDS: [&str; 19] = [
     "mean",
     "average",
     "avg",
@@ -137,6 +138,7 @@ const SUM_WORDS: [&str; 18] = [
     "stabw",
     "mittel",
     "mittelwert",
+    "mittelwerte",
     "moyenne",
     "promedio",
     "gjennomsnitt",
@@ -175,18 +177,20 @@ pub(crate) enum Odd {
 
 /// What a cell says of its row: `Mean`, `Std. dev.:`, `25%`, `Faktor`.
 pub(crate) fn odd(cell: &str) -> Option<Odd> {
-    if cell.parse::<f64>().is_ok() || cell.starts_with(['=', '@', '+', '-', '\'']) {
+    if cell.parse::<f64>().is_ok() || cell.starts_with(['=', '@', '\'']) {
         return None;
     }
     let lower = cell.trim().to_lowercase();
-    let whole: String = lower.chars().filter(|c| c.is_alphanumeric() || matches!(c, '±' | '\u{304}')).collect();
+    let whole = bare(&lower);
     let words =
         || lower.split(|c: char| !c.is_alphanumeric()).map(|word| word.trim_end_matches(|c: char| c.is_ascii_digit()));
     let is_part = lower.ends_with('%') && lower.trim_end_matches('%').trim_end().parse::<f64>().is_ok();
     if words().any(|word| SCALES.contains(&word)) {
         Some(Odd::Scale)
     } else if is_part
+        || matches!(lower.trim(), "+/-" | "+-")
         || SUMS.contains(&whole.as_str())
+        || LAST_SUMS.contains(&whole.as_str())
         || words().any(|word| SUM_WORDS.contains(&word))
         || has_count(&lower)
     {
@@ -196,10 +200,61 @@ pub(crate) fn odd(cell: &str) -> Option<Odd> {
     }
 }
 
+/// Whether a note beside numbers says that its row sums up others: `Mean`, `mean of 1 to 3`; other sentences may speak of a maximum.
+pub(crate) fn is_sum_in_note(note: &str) -> bool {
+    let lower = note.to_lowercase();
+    let mut words = lower.split_whitespace();
+    let begins = words.next().is_some_and(|word| SUM_WORDS.contains(&word))
+        && words.next().is_some_and(|word| ["of", "over", "from", "von", "aus", "de"].contains(&word));
+    odd(note) == Some(Odd::Sum) && !LAST_SUMS.contains(&bare(&lower).as_str()) && (begins || !note.contains(' '))
+}
+
+/// Letters and digits of a label in small letters.
+fn bare(lower: &str) -> String {
+    lower.chars().filter(|c| c.is_alphanumeric() || matches!(c, '±' | '\u{304}')).collect()
+}
+
+/// Finds the rows whose label says that they sum up or scale others.
+#[derive(Debug, Default)]
+pub(crate) struct OddRows {
+    first: Option<String>,
+    are_many: bool,
+    n: usize,
+    held: Option<(usize, String)>,
+}
+
+impl OddRows {
+    /// Takes in the label of a row on a line; the row that is to be asked about.
+    ///
+    /// Where all labels are one word, it says what the table holds, and no row sums up others.
+    pub(crate) fn see(&mut self, label: &str, line: usize) -> Option<(usize, String)> {
+        self.n += 1;
+        let first = self.first.get_or_insert_with(|| label.to_owned());
+        let becomes_many = !self.are_many && first != label;
+        self.are_many |= becomes_many;
+        let is_last = |word: &str| LAST_SUMS.contains(&bare(&word.to_lowercase()).as_str());
+        let released = self.held.take_if(|(_, word)| becomes_many && !is_last(word));
+        if odd(label).is_none() {
+            self.held.take_if(|_| self.are_many);
+            return released;
+        }
+        if self.are_many && !is_last(label) {
+            return released.or_else(|| Some((line, label.to_owned())));
+        }
+        self.held.get_or_insert_with(|| (line, label.to_owned()));
+        released
+    }
+
+    /// The row that only the end of the table shows to be one.
+    pub(crate) fn end(self) -> Option<(usize, String)> {
+        self.held.filter(|_| self.are_many || self.n == 1)
+    }
+}
+
 /// `n=5`, `U(k=2)`, `95% CI`: a letter, or a part, and a number.
 fn has_count(lower: &str) -> bool {
     let start = lower.split(['=', '(']).next().unwrap_or_default().trim_end();
-    let is_interval = lower.contains("ci") && lower.contains('%');
+    let is_interval = lower.contains('%') && lower.split(|c: char| !c.is_alphanumeric()).any(|word| word == "ci");
     let rest =
         lower.get(start.len()..).unwrap_or_default().trim_matches(|c: char| matches!(c, '=' | '(' | ')' | 'k' | ' '));
     is_interval || (rest.parse::<f64>().is_ok() && matches!(start, "n" | "u" | "k"))
@@ -257,7 +312,7 @@ pub(crate) fn advice(path: &Path, word: &str, odd: Option<Odd>) -> String {
         Some(Odd::Scale) => {
             "where it scales or shifts the numbers of other rows, nothing applies it: apply it (by the unit of the column, if it is a power of ten), and leave the row out"
         }
-        None => "where it is no observation, as a sum, a tare or a scale is not, leave it out",
+        None => "if it is not an observation (a sum, a tare, a scale), leave it out",
     };
     format!(
         "the row begins with `{word}`: {why}; write in {}:\n  schema = 1\n  [file]\n  leave_out = [\"{word}\"]\nor leave_out = [] where it is one",
@@ -304,6 +359,13 @@ mod tests {
             "ø",
             "Średnia",
             "Min:",
+            "-Mean-",
+            "+/-",
+            "Durchschnittswert",
+            "Mittelwerte 1-2",
+            "standard error",
+            "Uncertainty",
+            "SD",
         ] {
             assert_eq!(odd(cell), Some(Odd::Sum), "{cell}");
         }
@@ -319,6 +381,27 @@ mod tests {
         for text in ["x", "xi", "f_x", "E", "Fx 1", "10 Hz", "eta", "scale"] {
             assert!(!is_scale(text), "{text}");
         }
+    }
+
+    #[test]
+    fn a_word_that_all_rows_begin_with_is_none_that_sums_them_up() {
+        let asked = |labels: &[&str]| {
+            let mut rows = OddRows::default();
+            let found: Vec<_> =
+                labels.iter().enumerate().filter_map(|(line, label)| rows.see(label, line)).map(|(at, _)| at).collect();
+            found.into_iter().chain(rows.end().map(|(at, _)| at)).collect::<Vec<_>>()
+        };
+        assert_eq!(asked(&["Mean", "Mean", "Mean"]), [0_usize; 0]);
+        assert_eq!(asked(&["Mean"]), [0]);
+        assert_eq!(asked(&["Mean", "Std"]), [0]);
+        assert_eq!(asked(&["Mean", "Mean", "a"]), [0]);
+        assert_eq!(asked(&["a", "b", "Mean", "c", "d", "Mean"]), [2, 5]);
+        assert_eq!(asked(&["N", "SE", "S", "SW"]), [0_usize; 0]);
+        assert_eq!(asked(&["SE", "N", "S"]), [0_usize; 0]);
+        assert_eq!(asked(&["a", "b", "SD"]), [2]);
+        assert_eq!(asked(&["SE", "SE", "Mean"]), [2, 0]);
+        assert!(["Mean", "mean of 1 to 3"].iter().all(|note| is_sum_in_note(note)));
+        assert!(!["average weather", "SE", "good"].iter().any(|note| is_sum_in_note(note)));
     }
 
     #[test]

@@ -9,11 +9,11 @@ use froude_foreign::split::{Row, rows};
 use crate::block::{Block, TableBuilder};
 use crate::csv_table::text;
 use crate::error::{Place, RecordError};
-use crate::file_words::{FileWords, sentinel};
+use crate::file_words::{FileWords, sentinel, sentinel_word};
 use crate::foreign_names::meant_without_unit;
 use crate::heading::Heading;
 use crate::known_columns::{is_text_column, usual_unit};
-use crate::label_rows::{Labels, Odd, odd};
+use crate::label_rows::{Labels, Odd, OddRows, odd};
 use crate::outcome::Outcome;
 use crate::reading::Reading;
 use crate::records::Skipped;
@@ -115,9 +115,14 @@ fn of_file(reading: &Reading, rows: &[Row<'_>]) -> String {
     let mut labels = Labels::default();
     let first =
         |row: &Row<'_>| row.cells.iter().find(|cell| !cell.is_empty()).map(ToString::to_string).unwrap_or_default();
+    let mut odd_rows = OddRows::default();
+    let mut found: Vec<(usize, String)> = Vec::new();
     for row in data() {
         labels.see(row.cells.first().map_or("", |cell| cell.trim()), row.line);
-        let word = first(row);
+        found.extend(odd_rows.see(&first(row), row.line));
+    }
+    found.extend(odd_rows.end());
+    for (_, word) in found {
         match odd(&word) {
             Some(Odd::Sum) if !sums.contains(&word) => sums.push(word),
             Some(Odd::Scale) if !scales.contains(&word) => scales.push(word),
@@ -125,13 +130,13 @@ fn of_file(reading: &Reading, rows: &[Row<'_>]) -> String {
         }
     }
     scales.extend(labels.words().map(|(_, word)| word.clone()).filter(|word| odd(word).is_none()));
-    let is_odd = |row: &Row<'_>| odd(&first(row)).is_some() || scales.contains(&first(row));
+    let is_odd = |row: &Row<'_>| [&sums, &scales].iter().any(|words| words.contains(&first(row)));
     for at in (0..reading.headings.len()).filter(|at| reading.is_number.get(*at) == Some(&true)) {
         let cells: Vec<_> = data().filter(|row| !is_odd(row)).filter_map(|row| row.cells.get(at)).collect();
         let words = cells.iter().filter(|cell| !cell.is_empty() && is_missing(cell)).map(ToString::to_string);
         let numbers: Vec<f64> =
             cells.iter().filter_map(|cell| reading.dialect.marks.plain(cell)?.parse().ok()).collect();
-        let far = sentinel(&numbers).map(|(_, value)| value.to_string());
+        let far = sentinel(&numbers).map(|(_, value)| sentinel_word(value));
         for word in words.chain(far) {
             if !missing.contains(&word) {
                 missing.push(word);

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use froude_foreign::decode::Decoded;
 use froude_foreign::layout::{Layout, Line, Seen, look};
-use froude_foreign::marks::{Marks, Undecided, Witness};
+use froude_foreign::marks::{Marks, Undecided, Witness, shape};
 
 use crate::error::{Place, Position, RecordError};
-use crate::file_words::FileWords;
+use crate::file_words::{FileWords, sidecar_name};
 use crate::guard::unguarded;
 use crate::heading::{Heading, headings, rename_sname, split_header};
 use crate::label_rows::{Odd, is_scale, odd};
@@ -180,6 +180,11 @@ fn of_encoding(decoded: &Decoded<'_>) -> Option<String> {
 const MADE_BY: [&str; 14] =
     ["avg", "smp", "max", "min", "std", "tot", "med", "mom", "wvc", "raw", "sample", "average", "total", "-"];
 
+/// The first cell with content.
+fn first(line: &Line) -> &str {
+    line.cells.iter().map(String::as_str).find(|cell| !cell.is_empty()).unwrap_or_default()
+}
+
 fn joined(line: &Line) -> String {
     line.cells.join("; ").trim_end_matches("; ").to_owned()
 }
@@ -188,13 +193,21 @@ fn joined(line: &Line) -> String {
 fn refuse_scales(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), RecordError> {
     let is_open = |line: &&Line| {
         let is_known = |cell: &String| cell.is_empty() || MADE_BY.contains(&cell.to_lowercase().as_str());
-        !line.cells.iter().all(is_known) && !line.cells.first().is_some_and(|first| file.leaves_out(first))
+        !line.cells.iter().all(is_known) && !file.leaves_out(first(line))
     };
-    if let Some(line) = layout.below.iter().find(is_open) {
-        let first = line.cells.first().cloned().unwrap_or_default();
+    // `Faktor; 1; 1000` above the names; a sentence is a title.
+    let is_scale_above = |line: &&Line| {
+        odd(first(line)) == Some(Odd::Scale)
+            && line.cells.iter().any(|cell| shape(cell).is_some())
+            && !file.leaves_out(first(line))
+    };
+    let below = layout.below.iter().find(is_open).map(|line| (line, "between the units and the numbers"));
+    let above = || layout.titles.iter().find(is_scale_above).map(|line| (line, "above the names"));
+    if let Some((line, place)) = below.or_else(above) {
         let problem = format!(
-            "`{}` stands between the units and the numbers: where it scales, shifts or turns them, nothing applies it. Apply it, by a unit or a sign in the sidecar, and pass over the line by:\n  schema = 1\n  [file]\n  leave_out = [\"{first}\"]",
-            joined(line)
+            "`{}` stands {place}: where it scales, shifts or turns them, nothing applies it. Apply it, by a unit or a sign in the sidecar, and pass over the line by:\n  schema = 1\n  [file]\n  leave_out = [\"{}\"]",
+            joined(line),
+            first(line)
         );
         return Err(RecordError::syntax(Place::in_table(path, line.number), problem));
     }
@@ -205,9 +218,11 @@ fn refuse_scales(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), R
         let of_name = (all_scale && is_power(&head.name)).then_some(&head.name);
         of_name.or_else(|| is_power(&head.above).then_some(&head.above))
     });
-    if let Some(scale) = scale {
+    if let (Some(scale), None) = (scale, file.stated.names_line) {
         let problem = format!(
-            "`{scale}` stands among the names and the units: where it scales the numbers, nothing applies it. State the lines of names and units in the sidecar, [file] names and units, and the scale by the unit of the column (`kN`)"
+            "`{scale}` stands among the names and the units: where it scales the numbers, nothing applies it. If it does, state the scale by the unit of the column (`kN`); then, or where it is a name, write the line of the names in {}:\n  schema = 1\n  [file]\n  names = {}",
+            sidecar_name(path),
+            layout.names_line
         );
         return Err(RecordError::syntax(Place::in_table(path, layout.names_line), problem));
     }

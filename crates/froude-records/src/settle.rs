@@ -26,7 +26,8 @@ fn existing(sidecar: &Path) -> Result<String, RecordError> {
 
 /// A sidecar with more lines in its `[file]`.
 fn with(text: &str, lines: &str) -> String {
-    let is_head = |line: &str| line.split('#').next().unwrap_or_default().trim() == "[file]";
+    let is_head =
+        |line: &str| line.split('#').next().unwrap_or_default().split_whitespace().collect::<String>() == "[file]";
     let mut out: Vec<&str> = text.split_inclusive('\n').collect();
     match out.iter().position(|line| is_head(line)) {
         Some(head) => out.insert(head + 1, lines),
@@ -58,11 +59,11 @@ mod tests {
         std::fs::write(&sidecar, "schema = 1\n\n[columns]\n\"a\" = { name = \"time\" }\n").unwrap();
         settle(&question, 0).unwrap();
         assert_eq!(written(), "schema = 1\n\n[columns]\n\"a\" = { name = \"time\" }\n[file]\ndecimal = \",\"\n");
-        std::fs::write(&sidecar, "schema = 1\n[file]  # how it is written\nseparator = \";\"\n[columns]\n").unwrap();
+        std::fs::write(&sidecar, "schema = 1\n[ file ]  # how it is written\nseparator = \";\"\n[columns]\n").unwrap();
         settle(&question, 0).unwrap();
         assert_eq!(
             written(),
-            "schema = 1\n[file]  # how it is written\ndecimal = \",\"\nseparator = \";\"\n[columns]\n"
+            "schema = 1\n[ file ]  # how it is written\ndecimal = \",\"\nseparator = \";\"\n[columns]\n"
         );
         assert!(settle(&question, 2).is_err());
         let error = RecordError::Asked { place: Place::whole(&sidecar), question: question.clone() };

@@ -11,13 +11,14 @@ use froude_foreign::split::{Row, Separator};
 use crate::csv_table::{Blanks, Head};
 use crate::error::{Place, RecordError};
 use crate::file_words::{FileWords, sidecar_name};
+use crate::heading::unit_in;
 use crate::obstacles;
 use crate::read;
 use crate::reading::Reading;
 use crate::records::{NextRow, Skipped};
 use crate::sidecar::Sidecar;
 use crate::table::Table;
-use crate::units::parse_unit;
+use crate::units::{Unit, parse_unit};
 
 /// The largest workbook that is read.
 const LARGEST_BYTES: u64 = froude_foreign::MAX_BYTES;
@@ -94,6 +95,14 @@ fn rows(sheet: &Sheet, file: &FileWords) -> (Vec<Row<'static>>, Result<Marks, Un
     }
     let marks = file.stated.marks(&evidence, false);
     let decimal = marks.as_ref().map_or('.', |marks| marks.decimal);
+    let of_number = |x: f64| x.to_string().replace('.', &decimal.to_string());
+    let units: Vec<Vec<Unit>> = (0..width).map(|j| units_above(sheet, j)).collect();
+    // A unit behind a number is left out where the head says the same, and a word that is no unit, `ok`, everywhere.
+    let is_known = |j: usize, word: &str| {
+        let is_own =
+            |unit: &Unit| units[j].iter().any(|own| (own.dimension, own.factor) == (unit.dimension, unit.factor));
+        parse_unit(word).map_or(true, |unit| is_own(&unit))
+    };
     let text = |i: usize, j: usize| -> Cow<'static, str> {
         // A head over several columns is that of each of them.
         let cell = match sheet.rows.get(i).and_then(|row| row.get(j)) {
@@ -106,7 +115,9 @@ fn rows(sheet: &Sheet, file: &FileWords) -> (Vec<Row<'static>>, Result<Marks, Un
         };
         Cow::Owned(match cell {
             Cell::Empty => String::new(),
-            Cell::Number(x) => x.to_string().replace('.', &decimal.to_string()),
+            Cell::Number(x) => of_number(*x),
+            Cell::Shown(x, word) if is_known(j, word) => of_number(*x),
+            Cell::Shown(x, word) => format!("{x} {word}"),
             // Whether it is 0.12 or 12 nobody says.
             Cell::Percent(x) => format!("{} %", x * 100.0),
             Cell::Text(text) | Cell::Date(text) | Cell::Error(text) => text.trim().to_owned(),
@@ -120,6 +131,15 @@ fn rows(sheet: &Sheet, file: &FileWords) -> (Vec<Row<'static>>, Result<Marks, Un
         is_comment: false,
     };
     ((0..sheet.rows.len()).map(of).filter(|row| !row.is_blank()).collect(), marks)
+}
+
+/// The units that the heads of a column name.
+fn units_above(sheet: &Sheet, j: usize) -> Vec<Unit> {
+    let text = |i: usize| match sheet.head(i, j) {
+        Cell::Text(text) => unit_in(text),
+        _ => None,
+    };
+    (0..sheet.rows.len().min(MOST_HEADS)).filter_map(text).collect()
 }
 
 /// Rows at the beginning of a sheet in which heads may span columns.

@@ -1308,7 +1308,7 @@ fn a_link_of_a_robot_as_collada_is_read_in_its_unit_and_united() {
 }
 
 const UNITS: &str = "write the unit of the mesh: mm, cm, m, in, ft, or a length, \"0.5 m\"; or the scale of a model, 1:50, of which the mesh has \
-                     the full size (\"1:50 mm\": in millimetres)";
+                     the full size (\"1:50 mm\": in millimetres), or 50:1 where it has the size of the model and the body the full one";
 
 /// Added mass grows with the third power of lengths.
 #[test]
@@ -1319,16 +1319,19 @@ fn a_unit_may_be_a_length_or_the_scale_of_a_model() {
     let surge =
         |unit: &str| matrix(&record(at, &[&["m.obj", "--polyhedron", "--unit", unit], &WATER[..]].concat()), 0)[0][0];
     let metre = surge("m");
-    for (unit, length) in
-        [("0.5 m", 0.5), ("1:50", 0.02), ("50:1", 50.0), ("1:50 cm", 2e-4), ("ft", 0.3048), ("1 : 4 0.5 m", 0.125)]
-    {
+    for (unit, length) in [
+        ("0.5 m", 0.5),
+        ("1:50", 0.02),
+        ("50:1", 50.0),
+        ("1:50 cm", 2e-4),
+        ("1:50mm", 2e-5),
+        ("ft", 0.3048),
+        ("1 : 4 0.5 m", 0.125),
+    ] {
         assert!((surge(unit) / metre / f64::powi(length, 3) - 1.0).abs() < 1e-6, "{unit}");
     }
     let text = unwrapped(&lines(at, &[&["m.obj", "--check", "--unit", "1:50"], &WATER[..]].concat()));
-    assert!(
-        text.contains("the body is a model of what was drawn, with 0.02 of its lengths: the largest is 0.0200 m"),
-        "{text}"
-    );
+    assert!(text.contains("scaled by 0.02: the body's largest dimension is 0.0200 m"), "{text}");
     for unit in ["furlongs", "-1 m", "1:0", "1:", "1:50 kg", "0 m"] {
         refuses(
             &[("m.obj", write_obj(&cube(1.0)).as_bytes())],

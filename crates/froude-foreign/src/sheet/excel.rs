@@ -25,6 +25,9 @@ pub(crate) fn iso(date: &ExcelDateTime) -> Option<Cell> {
     }))
 }
 
+/// Said of a number whose format leaves its last three digits out.
+const THOUSANDS: &str = "shown in thousands";
+
 /// What a number format shows behind the number that changes what it means: `%`, or a unit in quotes, `0.0" kN"`; or that it shows thousandths, `0,`.
 pub(crate) fn behind(format: &str) -> Option<String> {
     let (mut is_quoted, mut is_escaped, mut is_scaled) = (false, false, false);
@@ -64,7 +67,7 @@ pub(crate) fn behind(format: &str) -> Option<String> {
     if is_percent {
         Some("%".to_owned())
     } else if is_scaled {
-        Some("shown in thousands".to_owned())
+        Some(THOUSANDS.to_owned())
     } else {
         unit.contains(|c: char| c.is_alphabetic() || matches!(c, '%' | '‰' | '°')).then(|| unit.to_owned())
     }
@@ -75,7 +78,8 @@ pub(crate) fn shown(x: f64, behind: Option<&String>) -> Cell {
     match behind.map(String::as_str) {
         None => Cell::Number(x),
         Some("%") => Cell::Percent(x),
-        Some(unit) => Cell::Text(format!("{x} {unit}")),
+        Some(THOUSANDS) => Cell::Text(format!("{x} {THOUSANDS}")),
+        Some(word) => Cell::Shown(x, word.to_owned()),
     }
 }
 

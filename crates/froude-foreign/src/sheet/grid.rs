@@ -15,6 +15,8 @@ pub enum Cell {
     Number(f64),
     /// A number that the sheet shows in percent, as a fraction: 0.12 for a cell that reads `12 %`.
     Percent(f64),
+    /// A number behind which the sheet shows a word, as a unit: `1.5 kN`.
+    Shown(f64, String),
     /// A text; a number that is stored as text, too.
     Text(String),
     /// A date, a time of day or a duration as in ISO 8601: `2024-03-01`, `2024-03-01T12:30:00.250`, `12:30:00`, `PT90.5S`.

@@ -147,6 +147,13 @@ fn sums_and_numbers_that_were_not_measured_are_named_and_asked() {
         "schema = 1\n[file]\nleave_out = [\"#\"]\n",
     );
     assert!(is_the_table(&left.unwrap()));
+    // Such numbers among others of their size were measured.
+    for values in ["-998.7,-999.9,-1000.4", "1,10,100,1000,10000,100000,1000000", "9980,9999.99,10010"] {
+        let rows: String = values.split(',').map(|value| format!("0.5,{value}\n")).collect();
+        assert!(read(format!("speed [m/s],f_x [N]\n{rows}").as_bytes(), "").is_ok(), "{values}");
+    }
+    let huge = read(b"speed [m/s],f_x [N]\n0.5,-2\n1,3.4028235e38\n", "").unwrap_err();
+    assert!(huge.contains("not_measured = [\"3.4028235e38\"]"), "{huge}");
     // A counter that reaches 9999 is one.
     let count: String = (9990..10_010).map(|i| format!("{i},1\n")).collect();
     assert!(read(format!("time [ms],f_x [N]\n{count}").as_bytes(), "").is_ok());
@@ -165,14 +172,24 @@ fn what_may_scale_or_sum_up_others_is_never_taken_for_data() {
         let text = format!("{above}0.5;-2\n1.25;-12.5\n");
         assert!(read(text.as_bytes(), "").is_err(), "{text}");
     }
+    let factors = "Faktor;1;1000\nrun;speed [m/s];f_x [N]\n1;0.5;-2\n2;1.25;-12.5\n";
+    assert!(refused(factors, "").starts_with("t.csv:1: `Faktor; 1; 1000` stands above the names"));
+    assert!(is_the_table(&read(factors.as_bytes(), "schema = 1\n[file]\nleave_out = [\"Faktor\"]\n").unwrap()));
+    let names = "x10;x20\n0.5;-2\n1.25;-12.5\n";
+    assert!(refused(names, "").contains("write the line of the names in t.toml:\n  schema = 1\n  [file]\n  names = 1"));
+    assert!(refused(names, "schema = 1\n[file]\nnames = 1\n").contains("has no unit"));
+    let blank = below.replace("x1;x1000", ";x1000");
+    assert!(refused(&blank, "").starts_with("t.csv:3: "));
+    assert!(is_the_table(&read(blank.as_bytes(), "schema = 1\n[file]\nleave_out = [\"x1000\"]\n").unwrap()));
+    let empty = parse_sidecar(Path::new("t.toml"), "schema = 1\n[file]\nleave_out = [\"\"]\n").unwrap_err();
+    assert!(empty.to_string().contains("has an empty word; write what the row begins with"), "{empty}");
     let titled =
         read(b"Scale factor: 1000\nspeed [m/s];f_x [N]\n0.5;-2\n1.25;-12.5\n", "").unwrap().understood.unwrap();
     assert!(titled.contains("`Scale factor: 1000`, which nothing applies"), "{titled}");
     assert!(refused("speed;f_x\nm/s;N\nm/s;kN\n0.5;-2\n1.25;-3\n", "").contains("hold units"));
     // Rows, also where a sidecar leaves their labels out.
     let mapped = "schema = 1\n[columns]\n\"speed [m/s]\" = { name = \"speed\" }\n\"f_x [N]\" = { name = \"f_x\" }\n";
-    for (word, says) in
-        [("Max.", "sums up others"), ("Gain", "nothing applies it"), ("Tare", "as a sum, a tare or a scale")]
+    for (word, says) in [("Max.", "sums up others"), ("Gain", "nothing applies it"), ("Tare", "a sum, a tare, a scale")]
     {
         let text = format!("Point;speed [m/s];f_x [N]\n1;0.5;-2\n2;0.8;-5\n3;1.25;-12.5\n{word};0.8;-1.6\n");
         assert!(refused(&text, mapped).contains(says), "{word}");
@@ -405,4 +422,17 @@ fn a_workbook_is_read_as_the_same_table_of_text() {
     assert_eq!(table.understood.as_deref(), Some("units in row 2"));
     let drag = si(&table, "f_x");
     assert!(drag.iter().all(|f| *f < 0.0) && (drag[0] + 1.05).abs() < 0.1, "{}", drag[0]);
+}
+
+#[test]
+fn a_unit_that_a_number_format_shows_agrees_with_the_header() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.xlsx");
+    std::fs::write(&path, include_bytes!("../golden/shown.xlsx")).unwrap();
+    let table = read_table(&path, None).unwrap();
+    assert_eq!((si(&table, "speed"), si(&table, "f_x")), (vec![0.5, 1.25], vec![-2.0, -12.5]));
+    let mapped = "schema = 1\n[columns]\ndrag = { name = \"f_y\", unit = \"N\" }\n";
+    std::fs::write(folder.path().join("t.toml"), mapped).unwrap();
+    let said = read_table(&path, None).unwrap_err().to_string();
+    assert!(said.contains("`-2 kN` is not a number; the unit `kN` belongs into the header"), "{said}");
 }
