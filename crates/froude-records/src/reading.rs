@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use froude_foreign::decode::Decoded;
-use froude_foreign::layout::{Layout, Line, Seen, look};
+use froude_foreign::layout::{Head, Layout, Line, Seen, look};
 use froude_foreign::marks::{Marks, Undecided, Witness, shape};
 
 use crate::error::{Place, Position, RecordError};
@@ -80,6 +80,9 @@ impl Reading {
             return Err(RecordError::syntax(Place::in_table(path, layout.data_line.max(1)), problem));
         }
         let place = Place::in_table(path, layout.names_line);
+        if let Some(problem) = named_numbers(&layout.heads) {
+            return Err(RecordError::syntax(place, problem));
+        }
         let mut headings = headings(&layout.heads, &layout.is_number)
             .map_err(|problem| RecordError::syntax(place.clone(), problem))?;
         // Columns without a name and without a cell, as spreadsheets add them.
@@ -179,6 +182,23 @@ fn of_encoding(decoded: &Decoded<'_>) -> Option<String> {
 /// What loggers write below the units about how a number was made, in small letters.
 const MADE_BY: [&str; 14] =
     ["avg", "smp", "max", "min", "std", "tot", "med", "mom", "wvc", "raw", "sample", "average", "total", "-"];
+
+/// `speed:0.5` in the place of a name: a serial plotter's line, which names each number again.
+fn named_numbers(heads: &[Head]) -> Option<String> {
+    let is_named = |head: &Head| {
+        let parts = head.name.split(['\t', ' ', ',']).filter(|part| !part.is_empty());
+        parts.clone().count() > 0
+            && parts.clone().all(|part| {
+                part.split_once(':')
+                    .is_some_and(|(name, number)| name.starts_with(char::is_alphabetic) && shape(number).is_some())
+            })
+    };
+    let head = heads.first().filter(|_| heads.iter().all(is_named))?;
+    Some(format!(
+        "`{}` states a number with its name, as all cells do: write the names and units once, in a first line as `speed [m/s],f_x [N]`, and the numbers alone below",
+        head.name
+    ))
+}
 
 /// The first cell with content.
 fn first(line: &Line) -> &str {

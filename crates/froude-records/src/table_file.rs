@@ -106,7 +106,7 @@ impl Format {
                 let what = refusal_for(ending.unwrap_or_default(), &first).unwrap_or_else(|| {
                     let is_text = !first.is_empty() && !first.iter().any(|b| *b < b' ' && !b.is_ascii_whitespace());
                     let rename = if is_text { "; a table of text under another ending is renamed to .txt" } else { "" };
-                    format!("it is not known what it is; tables are read from text (.csv, .txt, .dat, .tsv, .out), .parquet, spreadsheets (.xlsx, .xls, .ods), .mat, .h5, .tdms, .ulg and .mcap files{rename}")
+                    format!("unknown file type; tables are read from text (.csv, .txt, .dat, .tsv, .out), .parquet, spreadsheets (.xlsx, .xls, .ods), .mat, .h5, .tdms, .ulg and .mcap files{rename}")
                 });
                 Err(RecordError::Refused(format!("{}: {what}", path.display())))
             }

@@ -164,7 +164,11 @@ fn a_urdf_with_a_sidecar_is_the_robot_file() {
         froude(&["swim", text(&urdf), "--amplitude", "1 deg", "--frequency", "1 Hz", "--phase", "1 deg"]).stderr,
     )
     .unwrap();
-    assert!(told.contains("says nothing of the water") && told.contains("mamba.toml"), "{told}");
+    assert!(
+        told.contains("says nothing of the water: write") && told.contains("mamba.toml:\n  schema = 1\n"),
+        "{told}"
+    );
+    assert!(told.contains("name = \"link3\"\n") && told.matches("half_length").count() == 2, "{told}");
 }
 
 /// Mass, centre of mass and inertia about z of a body, in the axes of a module.

@@ -211,8 +211,11 @@ pub fn question(name: &str, unit: &Unit) -> Option<String> {
         }
         Dimension::MASS if has_word(plain, &FORCES) => {
             let weight = as_weight(unit, Dimension::FORCE).map_or_else(|| "N".to_owned(), |weight| weight.text);
-            Some(format!("`{text}` is a mass, and the name one of a force; write `{weight}` where it is a weight"))
+            Some(format!(
+                "`{text}` is a mass, and the name one of a force; write `{weight}` where it is a weight, or call the column mass or payload"
+            ))
         }
+        Dimension::TIME if text == "Ms" => Some("`Ms` is megaseconds; write `ms` where it is milliseconds".to_owned()),
         Dimension::SPEED if text == "nm/h" => {
             Some("`nm/h` is nanometres an hour; write `kn` where it is nautical miles an hour".to_owned())
         }

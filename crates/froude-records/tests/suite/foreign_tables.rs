@@ -183,6 +183,10 @@ fn what_may_scale_or_sum_up_others_is_never_taken_for_data() {
     assert!(is_the_table(&read(blank.as_bytes(), "schema = 1\n[file]\nleave_out = [\"x1000\"]\n").unwrap()));
     let empty = parse_sidecar(Path::new("t.toml"), "schema = 1\n[file]\nleave_out = [\"\"]\n").unwrap_err();
     assert!(empty.to_string().contains("has an empty word; write what the row begins with"), "{empty}");
+    for between in [",", "\t", " "] {
+        let text = ["speed:0.5|force:-2\n", "speed:1|force:-8\n"].concat().replace('|', between);
+        assert!(refused(&text, "").contains("states a number with its name"), "{text}");
+    }
     let titled =
         read(b"Scale factor: 1000\nspeed [m/s];f_x [N]\n0.5;-2\n1.25;-12.5\n", "").unwrap().understood.unwrap();
     assert!(titled.contains("`Scale factor: 1000`, which nothing applies"), "{titled}");

@@ -191,11 +191,29 @@ pub fn read_robot(path: &Path) -> Result<RobotFile, RecordError> {
     let chain = parse_urdf(path, &text)?;
     let sidecar = sidecar_of_urdf(path);
     if !sidecar.is_file() {
-        let problem =
-            format!("says nothing of the water: write {}, a robot file without what the URDF has", sidecar.display());
+        let problem = format!("says nothing of the water: write {}:\n{}", sidecar.display(), lacking(&chain));
         return Err(RecordError::Syntax { place: Place::whole(path), problem });
     }
     parse(&sidecar, &read::text(&sidecar, LIMIT, "a robot")?, Some(&chain))
+}
+
+/// What a robot file states that a URDF does not, to be filled in.
+fn lacking(chain: &[UrdfLink]) -> String {
+    let ends = [0, chain.len().saturating_sub(1)];
+    let module = |(i, link): (usize, &UrdfLink)| {
+        let length = if ends.contains(&i) { "  half_length = \"… mm\"\n" } else { "" };
+        format!(
+            "  [[module]]\n  name = {:?}\n  major_semi_axis = \"… mm\"\n  minor_semi_axis = \"… mm\"\n{length}",
+            link.name
+        )
+    };
+    let modules: String = chain.iter().enumerate().map(module).collect();
+    format!(
+        "  schema = 1\n  [fluid]\n  density = \"1000 kg/m^3\"\n  [coefficients]\n  drag = {{ record = \"drag.json\" }}\n  \
+         added_mass = {{ sway = \"… kg\", yaw = \"… kg m^2\" }}\n{modules}",
+    )
+    .trim_end()
+    .to_owned()
 }
 
 /// Whether a robot is described by a URDF.
