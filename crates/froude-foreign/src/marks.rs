@@ -53,6 +53,13 @@ fn body(cell: &str) -> Option<&str> {
     (is_whole && body.bytes().any(|b| b.is_ascii_digit())).then_some(body)
 }
 
+/// Whether a cell has digits, a sign before them and at most one comma among them: what nearly all with a decimal comma have.
+fn is_simple(cell: &str) -> bool {
+    let digits = cell.strip_prefix(['+', '-']).unwrap_or(cell).as_bytes();
+    let commas = digits.iter().filter(|b| **b == b',').count();
+    commas <= 1 && digits.len() > commas && digits.iter().all(|b| b.is_ascii_digit() || *b == b',')
+}
+
 /// What a cell says about the marks; `None` where it is no number under any.
 #[must_use]
 pub fn shape(cell: &str) -> Option<Shape> {
@@ -98,6 +105,9 @@ impl Marks {
     #[must_use]
     pub fn plain<'c>(&self, cell: &'c str) -> Option<Cow<'c, str>> {
         let cell = cell.trim();
+        if self.decimal == ',' && is_simple(cell) {
+            return Some(Cow::Owned(cell.replacen(',', ".", 1)));
+        }
         let fits = match shape(cell)? {
             Shape::Whole => true,
             Shape::Either(mark) => mark == self.decimal || Some(mark) == self.thousands,

@@ -157,10 +157,18 @@ const FAR: f64 = 5.0;
 /// The first number of a column that stands for no measurement, by its value and its distance from all others.
 #[must_use]
 pub fn sentinel(values: &[f64]) -> Option<(usize, f64)> {
+    // All of them are huge, tiny, or have two decimals at most, unlike most that are measured.
+    let may_be = |value: f64| {
+        let size = value.abs();
+        let is_round = |x: f64| x > 1e12 || (x - x.round()).abs() < 1e-6;
+        (size >= 99.0 && is_round(100.0 * size)) || (size > 0.0 && size < 1e-20)
+    };
     let is_among = |value: f64, list: &[f64]| {
-        list.iter().any(|known| {
-            value == *known || ((value - known).abs() <= PRINTED * known.abs() && !(1e-20..1e20).contains(&known.abs()))
-        })
+        may_be(value)
+            && list.iter().any(|known| {
+                value == *known
+                    || ((value - known).abs() <= PRINTED * known.abs() && !(1e-20..1e20).contains(&known.abs()))
+            })
     };
     let first = |list: &[f64]| values.iter().enumerate().find(|(_, value)| is_among(**value, list));
     if let Some((row, certain)) = first(&CERTAIN) {

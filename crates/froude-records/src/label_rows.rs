@@ -177,7 +177,9 @@ pub(crate) enum Odd {
 
 /// What a cell says of its row: `Mean`, `Std. dev.:`, `25%`, `Faktor`.
 pub(crate) fn odd(cell: &str) -> Option<Odd> {
-    if cell.parse::<f64>().is_ok() || cell.starts_with(['=', '@', '\'']) {
+    let is_number = cell.bytes().any(|b| b.is_ascii_digit())
+        && cell.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'.' | b',' | b'+' | b'-' | b' '));
+    if is_number || cell.parse::<f64>().is_ok() || cell.starts_with(['=', '@', '\'']) {
         return None;
     }
     let lower = cell.trim().to_lowercase();
