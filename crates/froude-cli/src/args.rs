@@ -86,8 +86,8 @@ pub enum Verb {
         /// Sidecar of a table.
         #[arg(long)]
         sidecar: Option<PathBuf>,
-        /// Write a sidecar beside the table that proposes names, units and signs of its columns, to be checked and corrected.
-        #[arg(long, conflicts_with = "sidecar")]
+        /// Write a sidecar that proposes names, units and signs of the columns, to be checked and corrected.
+        #[arg(long)]
         write_sidecar: bool,
     },
     /// Convert a table or log in any readable format to CSV, Parquet or MCAP, with names and units.

@@ -98,8 +98,8 @@ fn run(cli: Cli) -> Result<(), Failure> {
             write_files(&found)?;
             print::answer(&found, form)?;
         }
-        Verb::Inspect { file, write_sidecar: true, .. } => {
-            print::answer(&froude::records::proposal::propose(&file)?, form)?;
+        Verb::Inspect { file, sidecar, write_sidecar: true } => {
+            print::answer(&froude::records::proposal::propose(&file, sidecar.as_deref())?, form)?;
         }
         Verb::Inspect { file, sidecar, .. } => {
             let found = mistaken::INSPECT.or(inspect::inspect(&file, sidecar.as_deref()), &[file])?;

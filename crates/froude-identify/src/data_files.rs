@@ -11,6 +11,21 @@ use crate::result::ReadFile;
 /// Role of a file that was not read: observations behind a record that numbers were taken from.
 pub const INHERITED: &str = "inherited";
 
+/// Step that says which part of a file was read, as a sheet of a workbook.
+pub const PART: &str = "part";
+
+/// Whether two files are the same data: of one fingerprint, and not of two different parts.
+#[must_use]
+pub fn is_same_data(a: &DataFile, b: &DataFile) -> bool {
+    let parts = |file: &DataFile| {
+        file.steps.iter().filter(|step| step.step == PART).map(|step| step.words.clone()).collect::<Vec<_>>()
+    };
+    let [of_a, of_b] = [parts(a), parts(b)];
+    // Of a file that was read twice, or as a whole, any part is the same.
+    let are_other = of_a.len() == 1 && of_b.len() == 1 && of_a != of_b;
+    a.sha256 == b.sha256 && !are_other
+}
+
 /// Files in the order of their first naming.
 pub struct DataFiles<'a> {
     /// How a path is written.
@@ -72,8 +87,9 @@ impl<'a> DataFiles<'a> {
 
     /// Lists a file behind a record that numbers were taken from, as that record names it; once.
     pub fn inherit(&mut self, file: &DataFile) {
-        if self.files.iter().all(|(_, known)| known.sha256 != file.sha256) {
-            let file = DataFile { role: Some(INHERITED.to_owned()), steps: Vec::new(), ..file.clone() };
+        if !self.files.iter().any(|(_, known)| is_same_data(known, file)) {
+            let steps = file.steps.iter().filter(|step| step.step == PART).cloned().collect();
+            let file = DataFile { role: Some(INHERITED.to_owned()), steps, ..file.clone() };
             self.files.push((PathBuf::new(), file));
         }
     }

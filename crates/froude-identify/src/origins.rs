@@ -2,7 +2,8 @@
 //!
 //! A prior, a known coefficient and a tare are evidence beside the observations only if they were not made of them. The data of each such record,
 //! and the data that it inherited in the same way, are listed in the new record as [`INHERITED`], so that a loop through several campaigns is found:
-//! a fitted file among them is counted twice, and the job is rejected. Files are the same if their SHA-256 is.
+//! a fitted file among them is counted twice, and the job is rejected. Files are the same if their SHA-256 is, unless two
+//! different parts of one were read (`sheet`, `range` or `part` of their sidecars).
 
 use std::path::Path;
 
@@ -13,7 +14,7 @@ use froude_records::json::read_estimates;
 use crate::IdentifyError;
 use crate::answer::Answer;
 use crate::compare::observations;
-use crate::data_files::{DataFiles, INHERITED};
+use crate::data_files::{DataFiles, INHERITED, is_same_data};
 
 /// A record that numbers are taken from.
 struct Taken<'a> {
@@ -80,11 +81,11 @@ pub fn inherit(campaign: &Campaign, fitted: &[Answer], files: &mut DataFiles<'_>
         let of_source = |e: &&Estimate| taken.source.is_none_or(|name| name == e.source);
         let keys = fitted.iter().flat_map(Answer::estimates).filter(of_source).flat_map(|e| &e.data);
         let observed = keys.filter_map(|key| files.get(key));
-        if let Some(twice) = observed.into_iter().find(|file| data.iter().any(|data| data.sha256 == file.sha256)) {
+        if let Some(twice) = observed.into_iter().find(|file| data.iter().any(|data| is_same_data(data, file))) {
             let (campaign, key, record) = (campaign.path.display(), taken.key, taken.path.display());
             return Err(IdentifyError::Refused(format!(
                 "{campaign}: {key}: {record} was itself fitted to {}, which this job fits again: the same data would count twice, and the \
-                 interval would be too narrow. Take the {key} from a record of other data, or leave it out",
+                 interval would be too narrow. Take the {key} from a record of other data",
                 twice.path
             )));
         }

@@ -9,12 +9,15 @@ use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Sou
 use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::meant;
 use froude_records::plausible;
+use froude_records::run::step::Step;
+use froude_records::sidecar::read_sidecar;
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration};
 use froude_records::table_file::{read_table, read_table_with_blanks};
 use froude_records::text::counted;
 use froude_records::texts::Texts;
 use froude_records::units::Dimension;
 
+use crate::data_files::PART;
 use crate::dataset::{Channel, Dataset, GroupedBy, LOADS};
 use crate::error::IdentifyError;
 use crate::lint::motion::motion_contradictions;
@@ -59,7 +62,11 @@ pub(crate) fn files_of(table: &Table) -> Vec<ReadFile> {
         let sidecar = joined.sidecar.clone().map(|path| ReadFile::new(path, "joined"));
         std::iter::once(ReadFile::new(joined.path.clone(), "joined")).chain(sidecar)
     });
-    std::iter::once(ReadFile::new(table.path.clone(), "table")).chain(sidecar).chain(joined).collect()
+    // Two sheets of a workbook are different data.
+    let words = table.sidecar.as_deref().and_then(|path| read_sidecar(path).ok()).and_then(|own| own.file.part_words());
+    let part = words.map(|words| Step::new(PART, "", words));
+    let own = ReadFile { steps: part.into_iter().collect(), ..ReadFile::new(table.path.clone(), "table") };
+    std::iter::once(own).chain(sidecar).chain(joined).collect()
 }
 
 /// Reduces a table in memory, made of `files`: of a file, or of the windows of raw runs.

@@ -11,6 +11,7 @@ use crate::block::{Block, TableBuilder};
 use crate::error::{Place, RecordError};
 use crate::outcome::{Exit, Outcome};
 use crate::run::{Channel, RunLog, read_run};
+use crate::sidecar::is_sidecar;
 use crate::sidecar_file::sidecar_path;
 use crate::table::{Column, ColumnData, Table};
 use crate::table_file::{prepare_table, read_table_with_blanks};
@@ -22,10 +23,19 @@ use crate::write::Prepared;
 ///
 /// # Errors
 ///
-/// An input that cannot be read, an output of another ending or one that is there already, a file that cannot be written.
+/// An input that cannot be read, an output of another ending, one that is there already or that a sidecar lies beside, a file that cannot be written.
 pub fn convert(input: &Path, sidecar: Option<&Path>, out: &Path) -> Result<Outcome, RecordError> {
     if out.exists() {
         let why = format!("{} is there already, and is not replaced; name another file", out.display());
+        return Ok(Outcome { exit: Exit::Refused(why), ..Outcome::default() });
+    }
+    let beside = out.with_extension("toml");
+    if beside.is_file() && is_sidecar(&beside) {
+        let why = format!(
+            "{} would be read through {}, which is of another file; name another file",
+            out.display(),
+            beside.display()
+        );
         return Ok(Outcome { exit: Exit::Refused(why), ..Outcome::default() });
     }
     let ending = |path: &Path| path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();

@@ -93,6 +93,14 @@ impl FileWords {
             .any(|word| word.eq_ignore_ascii_case(cell) || (value.is_some() && word.parse::<f64>().ok() == value))
     }
 
+    /// Which part of its file the table is, in words; `None` where it is the whole.
+    #[must_use]
+    pub fn part_words(&self) -> Option<String> {
+        let words = [("sheet", &self.sheet), ("cells", &self.range), ("part", &self.part)];
+        let said = words.into_iter().filter_map(|(what, name)| Some(format!("{what} {}", name.as_ref()?)));
+        Some(said.collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
+    }
+
     /// Whether a row with a cell is declared to be left out.
     #[must_use]
     pub fn leaves_out(&self, cell: &str) -> bool {

@@ -17,6 +17,7 @@ use crate::label_rows::{Labels, Odd, OddRows, odd};
 use crate::outcome::Outcome;
 use crate::reading::Reading;
 use crate::records::Skipped;
+use crate::sidecar::read_sidecar;
 use crate::table_file::Format;
 use crate::toml_text::{key_word, quoted};
 use crate::units::parse_unit;
@@ -34,49 +35,67 @@ const SAMPLE_BYTES: usize = 1 << 20;
 /// # Errors
 ///
 /// As [`write_sidecar`].
-pub fn propose(table: &Path) -> Result<Outcome, RecordError> {
-    let path = write_sidecar(table)?;
+pub fn propose(table: &Path, sidecar: Option<&Path>) -> Result<Outcome, RecordError> {
+    let path = write_sidecar(table, sidecar)?;
     let rows = [path.display().to_string()];
     let t = TableBuilder::new("files", "", &rows);
     let files = t.build(vec![t.text("path", "", Clone::clone)]);
-    let said = format!("wrote {}: check every line, correct it, then froude inspect {}", rows[0], table.display());
+    let named = sidecar.map_or_else(String::new, |path| format!(" --sidecar {}", path.display()));
+    let said =
+        format!("wrote {}: check every line, correct it, then froude inspect {}{named}", rows[0], table.display());
     Ok(Outcome { blocks: vec![files.into(), Block::text("", vec![said])], ..Outcome::default() })
 }
 
-/// Writes the proposal beside the table, as its `.toml`; its path.
+/// Writes the proposal as the sidecar that is named, or beside the table as its `.toml`; its path. What a sidecar without columns says of the
+/// file stays, and holds.
 ///
 /// # Errors
 ///
-/// A file of that name that is there already, a table that cannot be looked at, a file that cannot be written.
-pub fn write_sidecar(table: &Path) -> Result<PathBuf, RecordError> {
-    let path = table.with_extension("toml");
+/// A sidecar that names columns already, a table that cannot be looked at, a file that cannot be written.
+pub fn write_sidecar(table: &Path, sidecar: Option<&Path>) -> Result<PathBuf, RecordError> {
+    let path = sidecar.map_or_else(|| table.with_extension("toml"), Path::to_owned);
+    let (mut text, mut file) = (String::new(), FileWords::default());
     if path.exists() {
-        let problem = "is there already; move it away, or correct it by hand";
-        return Err(RecordError::Refused(format!("{}: {problem}", path.display())));
+        let own = read_sidecar(&path)?;
+        if !own.columns.is_empty() {
+            let problem = "is there already and names columns; move it away, or correct it by hand";
+            return Err(RecordError::Refused(format!("{}: {problem}", path.display())));
+        }
+        text = read::text(&path, 1 << 20, "a sidecar")?;
+        file = own.file;
     }
-    let proposal = sidecar(table)?;
+    let proposal = self::sidecar(table, &file)?;
+    let proposal = if text.is_empty() { proposal } else { with_columns(&text, &proposal) };
     Prepared::new(&path, |file| std::io::Write::write_all(file, proposal.as_bytes()))?.take_place()?;
     Ok(path)
 }
 
-/// The proposal for a table.
+/// A sidecar that is there, with the columns of a proposal, and as a remark what the proposal says of the file.
+fn with_columns(text: &str, proposal: &str) -> String {
+    let (head, columns) = proposal.split_once("\n[columns]\n").unwrap_or(("", proposal));
+    let words = head.split_once("\n[file]\n").map_or("", |(_, words)| words);
+    let words: String = words.lines().map(|line| format!("# {}\n", line.trim_start_matches("# "))).collect();
+    let said = if words.is_empty() { words } else { format!("# Perhaps for [file] above:\n{words}") };
+    format!("{}\n\n{said}[columns]\n{columns}", text.trim_end())
+}
+
+/// The proposal for a table of whose file something is stated.
 ///
 /// # Errors
 ///
 /// A table that cannot be looked at.
-pub fn sidecar(table: &Path) -> Result<String, RecordError> {
-    let unstated = FileWords::default();
+pub fn sidecar(table: &Path, file: &FileWords) -> Result<String, RecordError> {
     match Format::of(table)? {
         Format::Text => {
             let bytes = read::whole(table, LARGEST_BYTES, "a table")?;
-            let decoded = text(table, &bytes, &unstated)?;
-            let reading = Reading::of(table, &decoded, &unstated)?;
+            let decoded = text(table, &bytes, file)?;
+            let reading = Reading::of(table, &decoded, file)?;
             let end = decoded.text.floor_char_boundary(SAMPLE_BYTES);
             let rows = rows(&decoded.text[..end], reading.dialect.separator);
             Ok(proposed(table, &reading, &rows))
         }
-        Format::Sheet => sheet_table::look(table, &unstated).map(|(rows, reading)| proposed(table, &reading, &rows)),
-        Format::Columns => container_table::look(table, &unstated).map(|reading| proposed(table, &reading, &[])),
+        Format::Sheet => sheet_table::look(table, file).map(|(rows, reading)| proposed(table, &reading, &rows)),
+        Format::Columns => container_table::look(table, file).map(|reading| proposed(table, &reading, &[])),
         Format::Parquet => {
             let problem = "a sidecar is proposed for text, spreadsheets and logs; name the columns of a Parquet file as `speed [m/s]`";
             Err(RecordError::syntax(Place::whole(table), problem))

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
+use froude_records::convert::convert;
 use froude_records::csv_table::read_csv;
+use froude_records::file_words::FileWords;
+use froude_records::outcome::Exit;
 use froude_records::proposal;
 use froude_records::sidecar::parse_sidecar;
 use froude_records::table::{ColumnData, Table};
@@ -252,7 +255,7 @@ fn a_proposed_sidecar_reads_the_table_that_it_was_made_for() {
     let text = "Lauf;Geschwindigkeit;Driftwinkel;Résistance;Seitenkraft;Bemerkung\n-;m/s;°;gf;gf;\n1;0,5;-12;204,1;10;gut\n2;1,25;6;NaN;-20;\nMittelwert;0,9;0;1;1;\n";
     let latin: Vec<u8> = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
     std::fs::write(&path, latin).unwrap();
-    assert_eq!(proposal::write_sidecar(&path).unwrap(), folder.path().join("drift.toml"));
+    assert_eq!(proposal::write_sidecar(&path, None).unwrap(), folder.path().join("drift.toml"));
     let sidecar = std::fs::read_to_string(folder.path().join("drift.toml")).unwrap();
     for line in [
         "not_measured = [\"NaN\"]",
@@ -267,8 +270,26 @@ fn a_proposed_sidecar_reads_the_table_that_it_was_made_for() {
     let table = read_table_with_blanks(&path, None).unwrap();
     assert!((si(&table, "f_x")[0] + 2.0015).abs() < 1e-3);
     assert_eq!((table.n_rows, table.blank.len()), (2, 1));
-    let again = proposal::write_sidecar(&path).unwrap_err().to_string();
-    assert!(again.contains("drift.toml: is there already"), "{again}");
+    let again = proposal::write_sidecar(&path, None).unwrap_err().to_string();
+    assert!(again.contains("drift.toml: is there already and names columns"), "{again}");
+    // What is stated of the file stays; another sidecar is named.
+    let other = folder.path().join("other.toml");
+    std::fs::write(&other, "schema = 1\n[file]\nseparator = \";\"  # as I said\n").unwrap();
+    assert_eq!(proposal::write_sidecar(&path, Some(&other)).unwrap(), other);
+    let kept = std::fs::read_to_string(&other).unwrap();
+    assert!(
+        kept.starts_with("schema = 1\n[file]\nseparator = \";\"  # as I said\n\n# Perhaps for [file] above:"),
+        "{kept}"
+    );
+    assert!(
+        kept.contains("\n# leave_out = [\"Mittelwert\"]\n")
+            && kept.contains("\n[columns]\n")
+            && parse_sidecar(&other, &kept).is_ok(),
+        "{kept}"
+    );
+    // A converted table must not be read through a sidecar that is of another.
+    let said = convert(&path, None, &folder.path().join("other.csv")).unwrap().exit;
+    assert!(matches!(said, Exit::Refused(why) if why.contains("which is of another file; name another file")));
 }
 
 #[test]
@@ -375,7 +396,7 @@ fn headers_of_six_languages_are_proposed_and_none_is_proposed_wrongly() {
     for (header, expected) in HEADERS {
         // Tabs: some headers hold commas.
         std::fs::write(&path, format!("{header}\tother (m)\n1.5\t2.5\n2.5\t3.5\n")).unwrap();
-        let proposed = proposal::sidecar(&path).unwrap();
+        let proposed = proposal::sidecar(&path, &FileWords::default()).unwrap();
         let key = proposed.lines().find(|line| line.contains(header)).unwrap_or_else(|| panic!("{header}\n{proposed}"));
         let is_open = key.starts_with('#');
         let value = key.split_once(" = {").map(|(_, value)| value).unwrap();
@@ -387,7 +408,7 @@ fn headers_of_six_languages_are_proposed_and_none_is_proposed_wrongly() {
 #[test]
 fn exports_of_openfast_orcaflex_and_wec_sim_are_read() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../froude-foreign/tests/data");
-    let proposed = |name: &str| proposal::sidecar(&data.join(name)).unwrap();
+    let proposed = |name: &str| proposal::sidecar(&data.join(name), &FileWords::default()).unwrap();
     let openfast = proposed("openfast.out");
     for line in ["Time = { name = \"time\", unit = \"s\" }", "HydroFxi = { name = \"HydroFxi\", unit = \"kN\" }"] {
         assert!(openfast.lines().any(|own| own == line), "{openfast}");
@@ -420,7 +441,7 @@ fn a_workbook_is_read_as_the_same_table_of_text() {
         said.contains("drift.xlsx, row 1: column `Geschwindigkeit [m/s]` would not be used; is it speed?"),
         "{said}"
     );
-    proposal::write_sidecar(&path).unwrap();
+    proposal::write_sidecar(&path, None).unwrap();
     let table = read_table(&path, None).unwrap();
     assert_eq!(table.n_rows, 90);
     assert_eq!(table.understood.as_deref(), Some("units in row 2"));
