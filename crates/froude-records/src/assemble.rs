@@ -281,6 +281,7 @@ pub(crate) fn not_a_number(cell: &str, header: &str, place: Place) -> RecordErro
              whole numbers in the header"
                 .to_owned()
         }
+        Some("%") => "; the sheet shows parts of one in percent: give its cells a plain number format, and the header the unit 1".to_owned(),
         Some(unit) if parse_unit(unit).is_ok() => {
             format!("; the unit `{unit}` belongs into the header, once for the whole column")
         }

@@ -109,7 +109,11 @@ impl FileWords {
 }
 
 /// Round numbers that programs write where there is none.
-const SENTINELS: [f64; 38] = [
+const SENTINELS: [f64; 42] = [
+    99999.99,
+    888.88,
+    -1e15,
+    1e15,
     9999.99,
     8_388_607.0,
     -8_388_608.0,
@@ -151,7 +155,8 @@ const SENTINELS: [f64; 38] = [
 ];
 
 /// Those that no measurement is by chance: fill values and flags of loggers, netCDF, Fortran and single precision.
-const CERTAIN: [f64; 8] = [9.9e37, -9.9e37, 9.91e37, -1e34, 9.969_21e36, 3.402_823e38, -3.402_823e38, -9.99e-29];
+const CERTAIN: [f64; 10] =
+    [1.7e38, -1.7e38, 9.9e37, -9.9e37, 9.91e37, -1e34, 9.969_21e36, 3.402_823e38, -3.402_823e38, -9.99e-29];
 
 /// Those that a measurement is now and then, but hardly farther out than all others.
 const FLAGS: [f64; 6] = [-999.25, -999.9, -999.99, -9999.25, -9999.9, -9999.99];

@@ -94,7 +94,6 @@ const KNOWN: [Known; 32] = [
             "towingspeed",
             "towspeed",
             "flowspeed",
-            "currentspeed",
             "geschwindigkeit",
             "fahrgeschwindigkeit",
             "schleppgeschwindigkeit",
@@ -439,8 +438,12 @@ fn plain(name: &str) -> String {
 /// What a name means for a column of this dimension; `None` for the dimension of a column without a unit.
 pub(crate) fn meant(name: &str, dimension: Option<Dimension>) -> Option<Meant> {
     let plain = plain(name);
+    // `-X` is written against its axis, and a text has no unit. `T` is a period as often as a time, and `M` a torque of a propeller.
+    let is_open = name.trim().starts_with(['-', '−', '–'])
+        || matches!((name.trim(), dimension), ("T", Some(Dimension::TIME)) | ("M", Some(Dimension::MOMENT)));
     let fits = |known: &&Known| {
-        known.words.contains(&plain.as_str()) && (known.dimension == dimension || known.dimension.is_none())
+        let is_text = known.dimension.is_none() && dimension.is_none_or(|of| of == Dimension::ONE);
+        !is_open && known.words.contains(&plain.as_str()) && (known.dimension == dimension || is_text)
     };
     let known = KNOWN.iter().find(fits)?;
     Some(Meant { name: known.name, sign: known.sign })
@@ -481,6 +484,12 @@ pub(crate) fn of_sname(columns: &[(&str, Option<Dimension>)]) -> Vec<(usize, &'s
     if !is("u", "v_x", Dimension::SPEED) {
         return Vec::new();
     }
+    // `u` twice is a velocity and an uncertainty, and `v` beside it a speed.
+    if columns.iter().enumerate().any(|(at, (own, _))| {
+        SNAME.iter().any(|(letter, ..)| letter == own) && columns[..at].iter().any(|(other, _)| other == own)
+    }) {
+        return Vec::new();
+    }
     let of = |(at, (own, dimension)): (usize, &(&str, Option<Dimension>))| {
         let (_, name, _) = SNAME.iter().find(|(letter, _, of)| letter == own && Some(*of) == *dimension)?;
         (!columns.iter().any(|(other, _)| other == name)).then_some((at, *name))
@@ -507,6 +516,8 @@ mod tests {
         assert_eq!(of("t", Some(Dimension::TIME)), Some(("time", 1)));
         assert_eq!(of("t", Some(Dimension::TEMPERATURE)), Some(("temperature", 1)));
         assert_eq!(of("Lauf", None), Some(("run", 1)));
+        assert_eq!((of("-X", Some(Dimension::FORCE)), of("Test", Some(Dimension::FORCE))), (None, None));
+        assert_eq!((of("T", Some(Dimension::TIME)), of("current speed", Some(Dimension::SPEED))), (None, None));
         assert_eq!(of("Geschwindigkeit", Some(Dimension::FORCE)), None);
         assert_eq!(meant_without_unit("Widerstand").map(|(m, d)| (m.name, d)), Some(("f_x", Some(Dimension::FORCE))));
         assert_eq!(meant_without_unit("t"), None);
@@ -520,6 +531,8 @@ mod tests {
             of_sname(&[("u", v), ("v", v), ("r", rate), ("X", f), ("N", m)]),
             [(0, "v_x"), (1, "v_y"), (2, "w_z"), (3, "f_x"), (4, "m_z")]
         );
+        // An uncertainty of a force beside velocities.
+        assert_eq!(of_sname(&[("u", v), ("v", v), ("u", f)]), []);
         assert!(of_sname(&[("v", v), ("X", f)]).is_empty());
         assert_eq!(of_sname(&[("u", v), ("X", Some(Dimension::LENGTH)), ("f_x", f)]), [(0, "v_x")]);
         assert_eq!(of_sname(&[("v_x", v), ("X", f), ("p", Some(Dimension::PRESSURE))]), [(1, "f_x")]);

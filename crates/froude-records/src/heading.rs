@@ -2,8 +2,9 @@
 
 use froude_foreign::layout::{Head, bare};
 
-use crate::foreign_names::{meant, of_sname};
+use crate::foreign_names::{meant, meant_without_unit, of_sname};
 use crate::known_columns::{is_text_column, known_dimension};
+use crate::label_rows::odd;
 use crate::units::{Dimension, Unit, parse_unit};
 
 /// What stands above a column.
@@ -35,7 +36,18 @@ impl Heading {
     /// What Froude calls it, as far as its name or the longer one above it tells.
     pub fn meant(&self) -> Option<crate::foreign_names::Meant> {
         let dimension = self.dimension();
-        meant(&self.name, dimension).or_else(|| meant(&self.above, dimension))
+        let own = meant(&self.name, dimension);
+        let above = if self.above == self.name { None } else { meant(&self.above, dimension) };
+        // `std` below `drag` is no drag, and `R` below `Rudder force` no resistance: only a symbol takes what stands above it.
+        let is_symbol = self.name.chars().count() <= 3 && odd(&self.name).is_none();
+        match (own, above) {
+            (Some(own), None) if !self.above.is_empty() && self.above != self.name && is_symbol => {
+                let says_nothing = meant_without_unit(&self.above).is_none() && self.above.chars().count() > 3;
+                (!says_nothing).then_some(own)
+            }
+            (None, Some(above)) => is_symbol.then_some(above),
+            (own, _) => own,
+        }
     }
 
     /// A name with the unit that its file states; empty where it states none, so that the name may hold it.
@@ -85,8 +97,14 @@ pub(crate) fn split_header(header: &str) -> Result<(&str, Option<&str>), &'stati
 /// Marks between a name and its unit that may also mean something else: `x / L`.
 const BETWEEN: [&str; 3] = [" / ", " in ", ", "];
 
-/// What stands behind a unit and says where or by what it was measured.
-const BEHIND: [&str; 6] = ["- ", "at ", "Run ", "@ ", "Ch", "AI"];
+/// Whether what stands behind a unit names a channel, a run or an end of a line, and nothing that may change the numbers: `- AI 1`, `Run 3`.
+fn is_place(rest: &str) -> bool {
+    let rest = rest.trim_start_matches("- ");
+    let word = rest.trim_end_matches(|c: char| c.is_ascii_digit() || matches!(c, ' ' | '_' | '#'));
+    let is_numbered = word.len() < rest.len();
+    (is_numbered && ["AI", "Ch", "CH", "ch", "Channel", "Run", "Sensor"].contains(&word))
+        || ["at End A", "at End B"].contains(&rest)
+}
 
 /// Name and unit of a header in round parentheses, or with a mark between them; the mark is empty for parentheses.
 fn split(written: &str) -> Option<(&str, &str, &'static str)> {
@@ -94,7 +112,9 @@ fn split(written: &str) -> Option<(&str, &str, &'static str)> {
     if let Some(inner) = written.strip_suffix(')') {
         let parts = inner.match_indices('(').map(|(at, _)| (&inner[..at], inner[at + 1..].trim()));
         // `F(t)` is a force over time, and no tonnes.
-        let is_argument = |name: &str, unit: &str| !name.ends_with(' ') && matches!(unit, "t" | "s" | "h");
+        let is_time = |name: &str| meant(name, Some(Dimension::TIME)).is_some();
+        let is_argument =
+            |name: &str, unit: &str| !name.ends_with(' ') && !is_time(name) && matches!(unit, "t" | "s" | "h");
         let found =
             parts.into_iter().find(|(name, unit)| !name.trim().is_empty() && is_unit(unit) && !is_argument(name, unit));
         return found.map(|(name, unit)| (name.trim().trim_end_matches(['/', ',']).trim_end(), unit, ""));
@@ -102,7 +122,7 @@ fn split(written: &str) -> Option<(&str, &str, &'static str)> {
     // Where and by what it was measured stands behind the unit: `Fx (kN) - AI 1`, `tension (kN) at End A`.
     if let Some((before, rest)) = written.split_once(") ")
         && let Some((name, unit)) = before.rsplit_once('(')
-        && BEHIND.iter().any(|start| rest.starts_with(start))
+        && is_place(rest)
         && !name.trim().is_empty()
         && is_unit(unit.trim())
     {
@@ -214,6 +234,8 @@ mod tests {
         );
         assert_eq!(of(&["strain (N) (N)", "mu (kg/(m s))"]), ["strain (N) [N]", "mu [kg/(m s)]"]);
         assert_eq!(of(&["Fx (kN) - AI 1", "mass (kg) ratio"]), ["Fx [kN]", "mass (kg) ratio"]);
+        assert_eq!(of(&["f_x (N) - std", "f_x (N) Change"]), ["f_x (N) - std", "f_x (N) Change"]);
+        assert_eq!(of(&["Time(s)"]), ["Time [s]"]);
         assert_eq!(of(&["t / s", "F / N"]), ["t [s]", "F [N]"]);
         assert_eq!(of(&["Geschwindigkeit in m/s"]), ["Geschwindigkeit [m/s]"]);
         assert_eq!(of(&["Speed, m/s", "Force, [N]"]), ["Speed [m/s]", "Force [N]"]);

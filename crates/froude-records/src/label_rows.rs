@@ -7,7 +7,7 @@ use froude_foreign::marks::shape;
 use crate::file_words::sidecar_name;
 
 /// What rows that sum up others begin with, in small letters and digits alone.
-const SUMS: [&str; 113] = [
+const SUMS: [&str; 135] = [
     "mean",
     "means",
     "meanvalue",
@@ -121,6 +121,28 @@ const SUMS: [&str; 113] = [
     "p95",
     "q1",
     "q3",
+    "durchschn",
+    "mw1",
+    "abweichung",
+    "fehler",
+    "ecarttypen1",
+    "desviación",
+    "desviacion",
+    "gjennomsnittsverdi",
+    "medelvärde",
+    "genomsnitt",
+    "totaal",
+    "totale",
+    "summa",
+    "итого",
+    "平均值",
+    "均值",
+    "평균",
+    "průměr",
+    "átlag",
+    "desviopadrão",
+    "leerlauf",
+    "nullpunkt",
 ];
 
 /// Those that also name bodies, places and directions: asked about at the end of a table alone.
@@ -206,8 +228,11 @@ pub(crate) fn odd(cell: &str) -> Option<Odd> {
 pub(crate) fn is_sum_in_note(note: &str) -> bool {
     let lower = note.to_lowercase();
     let mut words = lower.split_whitespace();
-    let begins = words.next().is_some_and(|word| SUM_WORDS.contains(&word))
-        && words.next().is_some_and(|word| ["of", "over", "from", "von", "aus", "de"].contains(&word));
+    let begins = words.next().is_some_and(|word| SUM_WORDS.contains(&word.trim_end_matches('.')))
+        && words.next().is_some_and(|word| {
+            ["of", "over", "from", "von", "aus", "de", "der", "des", "run", "runs"].contains(&word)
+                || word.starts_with(|c: char| c.is_ascii_digit())
+        });
     odd(note) == Some(Odd::Sum) && !LAST_SUMS.contains(&bare(&lower).as_str()) && (begins || !note.contains(' '))
 }
 
@@ -402,7 +427,11 @@ mod tests {
         assert_eq!(asked(&["SE", "N", "S"]), [0_usize; 0]);
         assert_eq!(asked(&["a", "b", "SD"]), [2]);
         assert_eq!(asked(&["SE", "SE", "Mean"]), [2, 0]);
-        assert!(["Mean", "mean of 1 to 3"].iter().all(|note| is_sum_in_note(note)));
+        assert!(
+            ["Mean", "mean of 1 to 3", "avg. of runs 1-3", "Mittelwert der Fahrten 1-3"]
+                .iter()
+                .all(|note| is_sum_in_note(note))
+        );
         assert!(!["average weather", "SE", "good"].iter().any(|note| is_sum_in_note(note)));
     }
 

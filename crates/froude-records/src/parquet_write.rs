@@ -40,7 +40,9 @@ fn write_columns(table: &Table, file: impl std::io::Write + Send) -> Result<(), 
                 Type::primitive_type_builder(&header, Physical::BYTE_ARRAY).with_logical_type(Some(LogicalType::String))
             }
         };
-        fields.push(Arc::new(field.with_repetition(Repetition::REQUIRED).build()?));
+        let is_blank = table.blank.iter().any(|(name, _)| *name == column.name);
+        let repetition = if is_blank { Repetition::OPTIONAL } else { Repetition::REQUIRED };
+        fields.push(Arc::new(field.with_repetition(repetition).build()?));
     }
     let schema = Arc::new(Type::group_type_builder("table").with_fields(fields).build()?);
     let properties = WriterProperties::builder().set_compression(Compression::ZSTD(ZstdLevel::default())).build();
@@ -51,8 +53,19 @@ fn write_columns(table: &Table, file: impl std::io::Write + Send) -> Result<(), 
         let Some(mut target) = group.next_column()? else { break };
         let cells = match &column.data {
             ColumnData::Number { unit, si, .. } => {
-                let values: Vec<f64> = si.iter().map(|si| unit.from_si(*si)).collect();
-                target.typed::<DoubleType>().write_batch(&values, None, None)?;
+                let mut values: Vec<f64> = si.iter().map(|si| unit.from_si(*si)).collect();
+                // 1 for a number, 0 for a null, which is read as an empty cell.
+                let mut is_there = vec![1_i16; values.len()];
+                let blank: Vec<usize> =
+                    table.blank.iter().filter(|(name, _)| *name == column.name).map(|(_, row)| *row).collect();
+                for row in &blank {
+                    values[*row] = 0.0;
+                    is_there[*row] = 0;
+                }
+                let numbers = values.iter().zip(&is_there).filter(|(_, is_there)| **is_there == 1);
+                let numbers: Vec<f64> = numbers.map(|(value, _)| *value).collect();
+                let levels = (!blank.is_empty()).then_some(is_there.as_slice());
+                target.typed::<DoubleType>().write_batch(&numbers, levels, None)?;
                 Raw::Numbers(values)
             }
             ColumnData::Text(cells) => {

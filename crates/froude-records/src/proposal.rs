@@ -1,6 +1,5 @@
 //! A sidecar that proposes what the columns of a table are, for a person to check and correct.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use froude_foreign::layout::is_missing;
@@ -117,10 +116,10 @@ fn proposed(table: &Path, reading: &Reading, rows: &[Row<'_>]) -> String {
     }
     out += &of_file(reading, rows);
     out += "\n[columns]\n# name: what Froude calls it; unit: of the numbers in the file; sign = -1 where the file counts against Froude's axes\n# (x forward, y to starboard, z down; loads are those of the water on the body).\n";
-    let mut keys = BTreeSet::new();
     for heading in &reading.headings {
-        // A key is there once: of two columns of one name only a person can tell them apart.
-        let is_open = heading.written.is_empty() || !keys.insert(&heading.written);
+        // Of two columns of one name only a person can tell which is which.
+        let n_alike = reading.headings.iter().filter(|other| other.written == heading.written).count();
+        let is_open = heading.written.is_empty() || n_alike > 1;
         out += if is_open { "# " } else { "" };
         out += &line(heading, reading);
     }
@@ -141,8 +140,11 @@ fn of_file(reading: &Reading, rows: &[Row<'_>]) -> String {
         found.extend(odd_rows.see(&first(row), row.line));
     }
     found.extend(odd_rows.end());
-    for (_, word) in found {
+    let top = data().next().map(|row| row.line);
+    for (line, word) in found {
         match odd(&word) {
+            // Words above all numbers may be a second line of names.
+            Some(Odd::Sum) if Some(line) == top => scales.push(word),
             Some(Odd::Sum) if !sums.contains(&word) => sums.push(word),
             Some(Odd::Scale) if !scales.contains(&word) => scales.push(word),
             _ => {}

@@ -118,7 +118,10 @@ impl Reading {
         let mut records = Records::new(path, text, 1, dialect.separator);
         let mut cells = Vec::new();
         records.next(&mut cells)?;
-        let mut headings: Vec<Heading> = cells.iter().map(|cell| Heading::own(unguarded(cell.trim()))).collect();
+        let heads: Vec<Head> =
+            cells.iter().map(|cell| Head { name: unguarded(cell.trim()).to_owned(), ..Head::default() }).collect();
+        let mut headings = headings(&heads, &vec![true; heads.len()])
+            .map_err(|problem| RecordError::syntax(Place::line(path, 1), problem))?;
         let sname = rename_sname(&mut headings);
         let place = Place::line(path, 1);
         let words = of_encoding(decoded).into_iter().chain(renamed(&sname)).collect();
@@ -180,8 +183,7 @@ fn of_encoding(decoded: &Decoded<'_>) -> Option<String> {
 }
 
 /// What loggers write below the units about how a number was made, in small letters.
-const MADE_BY: [&str; 14] =
-    ["avg", "smp", "max", "min", "std", "tot", "med", "mom", "wvc", "raw", "sample", "average", "total", "-"];
+const MADE_BY: [&str; 5] = ["avg", "smp", "sample", "average", "-"];
 
 /// `speed:0.5` in the place of a name: a serial plotter's line, which names each number again.
 fn named_numbers(heads: &[Head]) -> Option<String> {
@@ -231,6 +233,17 @@ fn refuse_scales(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), R
         );
         return Err(RecordError::syntax(Place::in_table(path, line.number), problem));
     }
+    let is_statistic = |head: &&Head| odd(&head.above) == Some(Odd::Sum) && !head.name.starts_with(&head.above);
+    if let (Some(head), None) = (layout.heads.iter().find(is_statistic), file.stated.names_line) {
+        let problem = format!(
+            "`{}` stands above `{}`: where the numbers are no single readings, say so by the name in the sidecar, and write the line of the names in {}:\n  schema = 1\n  [file]\n  names = {}",
+            head.above,
+            head.name,
+            sidecar_name(path),
+            layout.names_line
+        );
+        return Err(RecordError::syntax(Place::in_table(path, layout.names_line), problem));
+    }
     let is_power = |text: &str| is_scale(text) && (text.contains("10") || text.contains(['^', '⁻', 'e', 'E']));
     let all_scale =
         layout.heads.len() > 1 && layout.heads.iter().all(|head| head.name.is_empty() || is_scale(&head.name));
@@ -265,7 +278,7 @@ fn told(
     sname: &[(String, &'static str)],
     noun: &str,
 ) -> Vec<String> {
-    let Layout { units_line, titles, names_line, below, .. } = &seen.layout;
+    let Layout { heads, units_line, titles, names_line, below, .. } = &seen.layout;
     let dialect = Dialect::own();
     if seen.separator != dialect.separator {
         words.push(format!("cells separated by {}", seen.separator.words()));
@@ -294,6 +307,12 @@ fn told(
             said += &format!(" (also {noun} {}, `{}`, which nothing applies)", line.number, joined(line));
         }
         words.push(said);
+    }
+    let mut above: Vec<&str> =
+        heads.iter().filter(|head| !head.name.starts_with(&head.above)).map(|head| head.above.as_str()).collect();
+    above.dedup();
+    if !above.is_empty() {
+        words.push(format!("`{}` above names passed over", above.join("; ")));
     }
     if *names_line > 1 {
         words.push(format!("names in {noun} {names_line}"));

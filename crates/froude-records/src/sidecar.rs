@@ -333,6 +333,15 @@ impl Mapping {
                 format!("is {:?}, and the table states {stated}; leave `unit` out, or correct one of them", own.text);
             return Err(RecordError::value(self.place.clone(), "unit", problem));
         }
+        if let (Some(_), None, Some(stated)) =
+            (&self.scale, &self.unit, heading.and_then(|heading| heading.unit.as_deref()))
+            && parse_unit(stated).is_ok_and(|unit| unit.factor != 1.0)
+        {
+            let problem = format!(
+                "takes the numbers as they stand, and the table states {stated}; write unit = \"{stated}\" beside it, so that it multiplies values in that unit"
+            );
+            return Err(RecordError::value(self.place.clone(), "scale", problem));
+        }
         if self.unit.is_some() || self.scale.is_some() || is_text_column(&self.name) {
             return Ok(mapping);
         }

@@ -70,8 +70,8 @@ const RATES: &[&str] = &[
 ];
 
 /// Parts of names of accelerations, in small letters.
-const ACCELERATIONS: [&str; 9] =
-    ["acc", "accel", "acceleration", "ax", "ay", "az", "beschleunigung", "accélération", "加速度"];
+const ACCELERATIONS: [&str; 10] =
+    ["a", "acc", "accel", "acceleration", "ax", "ay", "az", "beschleunigung", "accélération", "加速度"];
 
 /// Parts of names of forces, in small letters.
 const FORCES: [&str; 14] = [
@@ -90,6 +90,9 @@ const FORCES: [&str; 14] = [
     "抵抗",
     "推力",
 ];
+
+/// Parts of names of pressures, in small letters.
+const PRESSURES: [&str; 5] = ["pressure", "druck", "pression", "presión", "trykk"];
 
 /// Whether a name has one of some words, numbers apart: `imu.acc_x`, `Kraft1`.
 fn has_word(name: &str, words: &[&str]) -> bool {
@@ -207,7 +210,10 @@ pub fn question(name: &str, unit: &Unit) -> Option<String> {
             ))
         }
         Dimension::MASS if matches!(text, "g" | "mg") && has_word(plain, &ACCELERATIONS) => {
-            Some(format!("`{text}` is a mass here; write `g0` (9.80665 m/s^2) where it is the acceleration of gravity"))
+            let milli = if text == "mg" { ", and take the numbers times 0.001," } else { "" };
+            Some(format!(
+                "`{text}` is a mass here; write `g0` (9.80665 m/s^2){milli} where it is the acceleration of gravity"
+            ))
         }
         Dimension::MASS if has_word(plain, &FORCES) => {
             let weight = as_weight(unit, Dimension::FORCE).map_or_else(|| "N".to_owned(), |weight| weight.text);
@@ -215,7 +221,19 @@ pub fn question(name: &str, unit: &Unit) -> Option<String> {
                 "`{text}` is a mass, and the name one of a force; write `{weight}` where it is a weight, or call the column mass or payload"
             ))
         }
-        Dimension::TIME if text == "Ms" => Some("`Ms` is megaseconds; write `ms` where it is milliseconds".to_owned()),
+        Dimension::TIME | Dimension::LENGTH | Dimension::VOLTAGE | Dimension::CURRENT
+            if matches!(text, "Ms" | "Mm" | "MV" | "MA") =>
+        {
+            let meant = text.replacen('M', "m", 1);
+            Some(format!("`{text}` is a million; write `{meant}` where it is a thousandth"))
+        }
+        of if has_word(plain, &PRESSURES)
+            && as_weight(unit, Dimension::PRESSURE).is_some()
+            && of != Dimension::PRESSURE =>
+        {
+            let weight = as_weight(unit, Dimension::PRESSURE).map_or_else(String::new, |weight| weight.text);
+            Some(format!("`{text}` is a mass on an area, and the name one of a pressure; write `{weight}`"))
+        }
         Dimension::SPEED if text == "nm/h" => {
             Some("`nm/h` is nanometres an hour; write `kn` where it is nautical miles an hour".to_owned())
         }

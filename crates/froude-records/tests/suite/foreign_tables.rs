@@ -186,6 +186,29 @@ fn what_may_scale_or_sum_up_others_is_never_taken_for_data() {
     assert!(is_the_table(&read(blank.as_bytes(), "schema = 1\n[file]\nleave_out = [\"x1000\"]\n").unwrap()));
     let empty = parse_sidecar(Path::new("t.toml"), "schema = 1\n[file]\nleave_out = [\"\"]\n").unwrap_err();
     assert!(empty.to_string().contains("has an empty word; write what the row begins with"), "{empty}");
+    // Statistics in a line below the units, above the names, or below a name.
+    for text in [
+        "speed;f_x\nm/s;N\nAvg;Std\n0.5;-2\n1.25;-12.5\n",
+        "mean;;std\nspeed [m/s];f_x [N];f_y [N]\n0.5;-2;1\n1.25;-12.5;2\n",
+        "speed [m/s],f_x [N]\n,std\n0.5,-2\n1.25,-12.5\n",
+    ] {
+        refused(text, "");
+    }
+    let above = "speed [m/s];f_x [N];f_y [N]\n0.5;-2;1\n1.25;-12.5;2\n";
+    let understood = read(format!(";Experiment;CFD\n{above}").as_bytes(), "").unwrap().understood.unwrap();
+    assert!(understood.contains("`Experiment; CFD` above names passed over"), "{understood}");
+    // The unit that the table states holds, whatever brackets it stands in, and a scale multiplies values in it.
+    let bridge = "speed (m/s),bridge (mV/V)\n0.4,-0.0162\n";
+    let scaled = |unit: &str| {
+        format!(
+            "schema = 1\n[constants]\nk = \"50 kN\"\n[columns]\n\"speed (m/s)\" = {{ name = \"speed\" }}\n\"bridge (mV/V)\" = {{ name = \"f_x\", scale = \"k\"{unit} }}\n"
+        )
+    };
+    assert!(refused(bridge, &scaled("")).contains("write unit = \"mV/V\" beside it"));
+    let force = si(&read(bridge.as_bytes(), &scaled(", unit = \"mV/V\"")).unwrap(), "f_x")[0];
+    assert!((force + 0.81).abs() < 1e-12, "{force}");
+    let mixed = "schema = 1\n[columns]\n\"speed [m/s]\" = { name = \"speed\" }\n\"F (kN)\" = { name = \"f_x\", unit = \"N\" }\n";
+    assert!(refused("speed [m/s],F (kN)\n0.4,-1.62\n", mixed).contains("the table states kN"));
     for between in [",", "\t", " "] {
         let text = ["speed:0.5|force:-2\n", "speed:1|force:-8\n"].concat().replace('|', between);
         assert!(refused(&text, "").contains("states a number with its name"), "{text}");
@@ -460,4 +483,18 @@ fn a_unit_that_a_number_format_shows_agrees_with_the_header() {
     std::fs::write(folder.path().join("t.toml"), mapped).unwrap();
     let said = read_table(&path, None).unwrap_err().to_string();
     assert!(said.contains("`-2 kN` is not a number; the unit `kN` belongs into the header"), "{said}");
+}
+
+/// What was not measured is so in every format.
+#[test]
+fn a_converted_table_keeps_what_was_not_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("t.csv"), "speed [m/s],f_x [N],f_y [N]\n0.4,-1.62,0.5\n0.6,,0.6\n1.0,-10.1,\n").unwrap();
+    for name in ["a.parquet", "a.csv"] {
+        assert!(matches!(convert(&at("t.csv"), None, &at(name)).unwrap().exit, Exit::Done));
+        let table = read_table_with_blanks(&at(name), None).unwrap();
+        assert_eq!(table.blank, [("f_x".to_owned(), 1), ("f_y".to_owned(), 2)], "{name}");
+        assert_eq!(si(&table, "f_x"), [-1.62, 0.0, -10.1], "{name}");
+    }
 }
