@@ -9,6 +9,7 @@ use crate::csv_table::Blanks;
 use crate::error::{Place, RecordError};
 use crate::file_words::{FileWords, sidecar_name};
 use crate::heading::{Heading, rename_sname};
+use crate::obstacles::remedy;
 use crate::raw_column::Raw;
 use crate::read;
 use crate::reading::Reading;
@@ -89,7 +90,8 @@ pub(crate) fn read_columns(
     let header: Vec<String> = headings.iter().map(Heading::header).collect();
     let fitted = sidecar.map(|sidecar| sidecar.fitted(&headings)).transpose()?;
     let columns = fitted.as_ref().filter(|sidecar| !sidecar.columns.is_empty());
-    let wants = plan(path, &header, columns, &place).map_err(|error| with_reason(error, &words))?;
+    let wants = plan(path, &header, columns, &place).map_err(|error| with_reason(error, &words));
+    let wants = if columns.is_none() { wants.map_err(|error| with_remedy(error, path))? } else { wants? };
     let n_rows = part.columns.first().map_or(0, |column| column.cells.len());
     let mut room = Room::new(path);
     let mut raws = Vec::new();
@@ -121,6 +123,14 @@ pub(crate) fn read_columns(
     Ok(Table { sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..table }.also(understood))
 }
 
+/// An error about a column of a file without a sidecar, with the way to one.
+fn with_remedy(error: RecordError, path: &Path) -> RecordError {
+    match error {
+        RecordError::Syntax { place, problem } => RecordError::syntax(place, format!("{problem}\n{}", remedy(path))),
+        other => other,
+    }
+}
+
 /// An error about a column that was left out, with the reason; `words` are of the file.
 fn with_reason(error: RecordError, words: &[String]) -> RecordError {
     let RecordError::Syntax { place, problem } = error else { return error };
@@ -135,7 +145,11 @@ fn with_reason(error: RecordError, words: &[String]) -> RecordError {
     }
 }
 
-/// The part that is declared, or the only one.
+fn has_numbers(part: &Part) -> bool {
+    part.columns.iter().any(|column| matches!(column.cells, Cells::Numbers(_)))
+}
+
+/// The part that is declared, or the only one with numbers.
 fn chosen(path: &Path, mut parts: Vec<Part>, file: &FileWords) -> Result<Part, RecordError> {
     let all: Vec<String> = parts
         .iter()
@@ -148,7 +162,11 @@ fn chosen(path: &Path, mut parts: Vec<Part>, file: &FileWords) -> Result<Part, R
         .collect();
     let at = match &file.part {
         Some(name) => parts.iter().position(|part| part.name == *name),
-        None => Some(0).filter(|_| parts.len() == 1),
+        // A remark beside the numbers is no table.
+        None => {
+            let mut of_numbers = (0..parts.len()).filter(|at| has_numbers(&parts[*at]));
+            of_numbers.next().filter(|_| of_numbers.next().is_none()).or(Some(0).filter(|_| parts.len() == 1))
+        }
     };
     if let Some(at) = at {
         return Ok(parts.swap_remove(at));

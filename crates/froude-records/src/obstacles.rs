@@ -29,7 +29,7 @@ const SAMPLE_BYTES: usize = 1 << 18;
 const MOST_WORDS: usize = 5;
 
 /// What to do about all of it.
-fn remedy(path: &Path) -> String {
+pub(crate) fn remedy(path: &Path) -> String {
     format!(
         "froude inspect {} --write-sidecar writes {}, which proposes names, units and signs for you to check and correct",
         path.display(),

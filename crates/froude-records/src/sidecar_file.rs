@@ -75,6 +75,33 @@ pub fn sidecar_path(table: &Path) -> Result<Option<PathBuf>, RecordError> {
     }
 }
 
+/// Endings of logs whose columns a sidecar has to name.
+const LOGS: [&str; 9] = ["mat", "h5", "hdf5", "tdms", "ulg", "txt", "dat", "tsv", "xlsx"];
+
+/// What to write so that the files of a folder that no sidecar names are read as logs, as the rest of a sentence; empty where there are none.
+#[must_use]
+pub fn to_be_named(folder: &Path) -> String {
+    let ending = |path: &Path| path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .take(MOST_FILES)
+        .map(|entry| entry.path())
+        .filter(|path| path.is_file() && LOGS.contains(&ending(path).as_str()))
+        .collect();
+    files.sort();
+    let Some(first) = files.first() else { return String::new() };
+    let sidecar = folder.join("logs.toml");
+    format!(
+        ". Its {} files become logs by a sidecar that names their columns: froude inspect {} --sidecar {} --write-sidecar proposes it; then write files = \"*.{}\" at its head",
+        ending(first),
+        first.display(),
+        sidecar.display(),
+        ending(first)
+    )
+}
+
 /// Whether a file has a key `files`: others beside a table do not concern it, whatever is wrong with them.
 fn names_files(path: &Path) -> bool {
     let text = read::whole(path, 1 << 20, "a sidecar").unwrap_or_default();

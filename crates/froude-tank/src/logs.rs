@@ -18,7 +18,7 @@ use froude_records::nearest::suggestion;
 use froude_records::run::clocks::is_own;
 use froude_records::run::step::Step;
 use froude_records::run::{Channel, Role, RunReader, RunStatus, read_run_meta};
-use froude_records::sidecar_file::{joined_files, sidecar_path};
+use froude_records::sidecar_file::{joined_files, sidecar_path, to_be_named};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
@@ -72,7 +72,9 @@ pub(crate) fn read(folder: &Path, wanted: &Wanted<'_>, progress: &dyn Fn(&str)) 
     if paths.is_empty() {
         refuse_others(folder, method, &recorded_in(folder)?)?;
         let sidecar = if assumed.is_none() { ", each with a sidecar (.toml)" } else { "" };
-        let what = format!("no runs: put one log per run there, as CSV, Parquet or MCAP with {channels}{sidecar}");
+        let named = to_be_named(folder);
+        let what =
+            format!("no runs: put one log per run there, as CSV, Parquet or MCAP with {channels}{sidecar}{named}");
         return Err(MethodError::input(folder, what));
     }
     let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };

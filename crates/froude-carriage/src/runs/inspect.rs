@@ -12,6 +12,7 @@ use froude_records::run::{
     Block, BodyState, Doubt, DoubtKind, ImportedRun, Mounted, Role, RunMeta, RunReader, RunStatus, TOW, import_run,
     read_run, read_run_meta,
 };
+use froude_records::sidecar_file::to_be_named;
 use froude_records::text::counted;
 use froude_rig::carriage::{CarriageCampaign, Directions, RigKind};
 use indexmap::IndexMap;
@@ -96,7 +97,10 @@ pub fn folder(path: &Path) -> Result<Inspection, MethodError> {
         }
         return Err(MethodError::input(
             path,
-            "a folder without runs; name a table (.csv, .parquet), a campaign (.toml), a record (.json) or a run (.mcap)",
+            format!(
+                "a folder without runs; name a table (.csv, .parquet), a campaign (.toml), a record (.json) or a run (.mcap){}",
+                to_be_named(path)
+            ),
         ));
     };
     for file in &files {
