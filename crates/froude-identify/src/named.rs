@@ -298,6 +298,7 @@ pub(crate) fn primes(law: &ForceLaw, data: &Dataset, length_m: f64) -> (Vec<Deri
             formula: format!("{}/(0.5*density{}{})", spec.name, power("length", of_length), power("speed", of_speed)),
             of: spec.name.clone(),
             factor: 1.0 / (0.5 * density * length_m.powi(of_length) * speed.powi(of_speed)),
+            factor_relative: 0.0,
             unit: "1".to_owned(),
         })
     };
