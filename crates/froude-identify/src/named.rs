@@ -116,7 +116,7 @@ impl NamedLaw {
 
     fn ambiguous(&self, several: &[&str], what: &str) -> IdentifyError {
         self.refused(&format!(
-            "the columns {} may both be its {what}; name the others in no sidecar, or leave them out of the table",
+            "the columns {} may both be its {what}; remove the others from the table or the sidecar",
             several.join(" and ")
         ))
     }
