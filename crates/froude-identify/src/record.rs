@@ -19,6 +19,8 @@ use crate::regression::{ModelFit, Scatter};
 use crate::seam::reduced::{self, Choice, Reduced};
 use crate::selection::Recommendation;
 
+/// Part of an uncertainty below which another is the rounding of numbers that cancel.
+const ROUNDING: f64 = 1e-12;
 /// Relative difference of two regressors that are one.
 const SAME_REGRESSOR: f64 = 1e-9;
 
@@ -292,7 +294,7 @@ pub fn coefficient(value: Option<f64>, unit: &str, status: Status, combined: Opt
     Coefficient {
         standard_uncertainty: combined.map(|c| c.standard),
         type_a: combined.map(|c| c.type_a),
-        type_b: combined.map(|c| c.type_b),
+        type_b: combined.map(|c| if c.type_b > ROUNDING * c.standard { c.type_b } else { 0.0 }),
         interval_95: value.zip(combined).map(|(value, c)| c.interval(value)),
         effective_dof: finite(combined.map(|c| c.dof)),
         ..Coefficient::of(value, unit, status)
