@@ -73,7 +73,9 @@ impl Case {
         };
         let held: Vec<Vec<bool>> = (1..=SEEDS).into_par_iter().map(of).collect();
         let mut counts = vec![Count::default(); self.truths.len()];
-        held.iter().for_each(|held| counts.iter_mut().zip(held).for_each(|(count, is_held)| count.add(*is_held)));
+        for held in &held {
+            counts.iter_mut().zip(held).for_each(|(count, is_held)| count.add(*is_held));
+        }
         counts
     }
 }
