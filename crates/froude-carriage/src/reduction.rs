@@ -192,7 +192,10 @@ pub fn setup_of(campaign: Option<&DrivenCampaign>, axis: Option<&AxisConstants>)
     let carriage = campaign.and_then(|c| c.carriage.as_ref());
     if let Some(DrivenCampaign { campaign, .. }) = campaign {
         setup.name.clone_from(&campaign.name);
-        setup.reference_area_m2 = campaign.body.as_ref().and_then(|b| b.reference_area_m2);
+        let area = campaign.body.as_ref().and_then(|b| Some((b.reference_area_m2?, b.reference_area_standard_m2)));
+        setup.reference_area_m2 = area.map(|(area, _)| area);
+        let of_area = area.map_or(0.0, |(area, standard)| standard / area);
+        setup.reference_relative = of_area.hypot(campaign.fluid.density_standard_kg_m3 / setup.density_kg_m3);
         setup.travel = campaign.body.as_ref().and_then(|b| b.travel);
     }
     let spec = carriage.map(|c| &c.rig.y);

@@ -1,4 +1,4 @@
-//! Drag coefficients of simple shapes over the Reynolds number, as published: what a test is drawn beside.
+//! Published drag coefficients of simple shapes, for comparison with tests.
 //!
 //! **Setting.** One smooth body, steady motion, uniform stream without turbulence, far from walls and surface.
 //! **Units.** All dimensionless. Re is on the length named; C_D is on the area that the stream sees.
@@ -134,24 +134,33 @@ mod tests {
         }
     }
 
+    /// To this the experiments are read.
+    const READ: f64 = 0.05;
+
+    /// A finding: at and above 1e5, where the boundary layer is about to become turbulent, the two fits differ by 7 %.
     #[test]
-    fn the_sphere_is_within_8_per_cent_of_the_standard_drag_curve() {
+    fn the_sphere_is_within_5_per_cent_of_the_standard_drag_curve_but_for_the_end_of_its_range() {
         for k in -8..=21 {
             let re = 10.0_f64.powf(f64::from(k) / 4.0);
-            let (own, other) = (at(Shape::Sphere, re), clift_grace_weber(re));
-            assert!((own / other - 1.0).abs() < 0.08, "{re}: {own} {other}");
+            let off = at(Shape::Sphere, re) / clift_grace_weber(re) - 1.0;
+            match k {
+                20 => assert!((off + 0.0711).abs() < 5e-5, "{off}"),
+                21 => assert!((off + 0.0727).abs() < 5e-5, "{off}"),
+                _ => assert!(off.abs() < READ, "{re}: {off}"),
+            }
         }
         // Stokes.
         assert!((at(Shape::Sphere, 0.01) * 0.01 / 24.0 - 1.0).abs() < 0.01);
     }
 
-    /// Park, Kwon & Choi (1998) at Re 100, computed; above that Wieselsberger's experiments (1921) as Schlichting draws them, read to 5 %.
+    /// Park, Kwon & Choi (1998) at Re 100, computed; above that Wieselsberger's experiments (1921) as Schlichting draws them, read to 5 %. A finding: at 1e4 the curve is 5.4 % below what is read.
     #[test]
-    fn the_cylinder_is_within_8_per_cent_of_measured_ones() {
-        for (re, measured) in [(100.0, 1.345), (1e3, 0.98), (1e4, 1.15), (1e5, 1.2)] {
-            let own = at(Shape::Cylinder, re);
-            assert!((own / measured - 1.0).abs() < 0.08, "{re}: {own} {measured}");
+    fn the_cylinder_is_within_5_per_cent_of_measured_ones_but_for_1e4() {
+        let off = |re: f64, measured: f64| at(Shape::Cylinder, re) / measured - 1.0;
+        for (re, measured) in [(100.0, 1.345), (1e3, 0.98), (1e5, 1.2)] {
+            assert!(off(re, measured).abs() < READ, "{re}: {}", off(re, measured));
         }
+        assert!((off(1e4, 1.15) + 0.0540).abs() < 5e-5, "{}", off(1e4, 1.15));
     }
 
     /// At Re 1e7 the line has C_F 0.003, so that four diameters have 0.003 (12 + 2.25 + 1.3125); the least is where 3 = 2.25 s^−1.5 + 42 s^−3, s = 2.58.

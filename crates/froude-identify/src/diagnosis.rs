@@ -98,6 +98,7 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     out.extend(decided_by_one(model, data));
     out.extend(lag::findings(campaign, model, data));
     out.extend(added_mass_sign(model, data));
+    out.extend(dead_bands(model));
     out.extend(rows);
     if let Some(c) = d.condition_number
         && c > COLLINEAR_ABOVE
@@ -228,6 +229,20 @@ fn decided_by_one(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
         }
     }
     out
+}
+
+/// Dead bands below zero: the inverse has no command for small loads.
+fn dead_bands(model: &ModelFit) -> impl Iterator<Item = Finding> {
+    let all = model.law.coefficients.iter().zip(model.law_coefficients());
+    let below =
+        all.filter(|(spec, value)| model.law.is_thruster() && spec.name.starts_with("dead_band") && **value < 0.0);
+    below.map(|(spec, _)| {
+        let text = format!(
+            "{} is below zero, which no thruster has; a load whose zero is not taken off, or that does not grow with the square of the command, looks like that. Small loads have no command in the inverse",
+            spec.name
+        );
+        Finding::new(Severity::Note, "negative-dead-band", text)
+    })
 }
 
 /// A load that grows with the acceleration along its own axis: an added mass below zero.

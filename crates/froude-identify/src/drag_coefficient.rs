@@ -30,7 +30,6 @@ use froude_records::units::{Dimension, parse_unit};
 use crate::dataset::Dataset;
 use crate::method::Found;
 use crate::predict::{above_first, combined};
-use crate::validity;
 
 /// Name in the records.
 const NAME: &str = "C_D";
@@ -41,7 +40,7 @@ const SLOWEST: f64 = 0.05;
 const ONE_NUMBER: f64 = 1e-9;
 /// How far published curves are drawn beyond the Reynolds numbers of the test.
 const BEYOND: f64 = 3.0;
-/// Least angle off the axis that still shows the frontal area, rad: 8°.
+/// Largest angle off the axis at which the frontal area still applies, rad: 8°.
 const MOST_OBLIQUE: f64 = 0.14;
 /// Two values that are one, but for the text between them.
 const SAME: f64 = 1e-9;
@@ -59,6 +58,9 @@ struct Reference {
 struct Line {
     name: String,
     reference: Reference,
+    /// The load, the velocity along its axis, and the load at rest, N.
+    axis: (&'static str, &'static str),
+    rest_n: f64,
     speed_m_s: Vec<f64>,
     c_d: Vec<f64>,
     standard: Vec<Option<f64>>,
@@ -73,16 +75,14 @@ pub fn state(found: &mut Found, campaign: &Campaign) {
         let rows = answer.fitted().map(|source| source.data.clone());
         let name = answer.name().to_owned();
         let is_one = answer.estimates().len() == 1;
-        let mut is_shown = false;
         for estimate in answer.estimates_mut() {
-            let Some(line) = line(estimate, &name, rows.as_ref(), campaign) else { continue };
-            put(estimate, &line);
+            let Some(mut line) = line(estimate, &name, rows.as_ref(), campaign) else { continue };
+            put(estimate, &mut line);
             if is_one || estimate.recommended {
-                is_shown = true;
+                points.extend(rows.as_ref().and_then(|rows| line.observed(rows)));
                 lines.push(line);
             }
         }
-        points.extend(rows.filter(|_| is_shown).and_then(|rows| observed(&rows, &name, campaign)));
     }
     if lines.is_empty() {
         return;
@@ -130,7 +130,12 @@ impl Reference {
 /// C_D of a law; `None` where it gives none.
 fn line(estimate: &Estimate, name: &str, rows: Option<&Dataset>, campaign: &Campaign) -> Option<Line> {
     let reference = Reference::of(estimate, rows, campaign)?;
-    let (load, velocity) = axis(estimate)?;
+    let axis = axis(estimate)?;
+    let (load, velocity) = axis;
+    // What an actuator exerts is no drag.
+    if rows.is_some_and(|rows| !rows.is_of_water(load)) {
+        return None;
+    }
     let range = ahead(estimate, velocity)?;
     // Ahead where it went ahead at all: a law need not be the same astern.
     let [fastest, nearest] = if range.high > 0.0 { [range.high, range.low.max(0.0)] } else { [range.low, range.high] };
@@ -141,7 +146,7 @@ fn line(estimate: &Estimate, name: &str, rows: Option<&Dataset>, campaign: &Camp
     let speed_m_s: Vec<f64> =
         (0..POINTS).map(|k| slowest + (fastest - slowest) * k as f64 / (POINTS - 1) as f64).collect();
     let places = places(estimate, velocity, &speed_m_s, &reference)?;
-    let forces = above_first(estimate, &places, load).ok()?;
+    let (rest_n, forces) = above_first(estimate, &places, load).ok()?;
     let [[area, of_area], [density, of_density]] = [reference.area, reference.density];
     let (mut c_d, mut standard, mut interval_95) = (Vec::new(), Vec::new(), Vec::new());
     for (u, (force, uncertainty)) in speed_m_s.iter().zip(forces.get(1..)?) {
@@ -158,12 +163,14 @@ fn line(estimate: &Estimate, name: &str, rows: Option<&Dataset>, campaign: &Camp
     }
     // A law of the angle alone, or of a thruster at rest, gives no drag along the axis.
     let is_drag = c_d.iter().all(|x| x.is_finite()) && c_d.iter().any(|x| *x != 0.0);
-    is_drag.then(|| Line { name: name.to_owned(), reference, speed_m_s, c_d, standard, interval_95 })
+    is_drag.then(|| Line { name: name.to_owned(), reference, axis, rest_n, speed_m_s, c_d, standard, interval_95 })
 }
+
+/// Forces with the velocity along the same axis.
+const AXES: [(&str, &str); 3] = [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z")];
 
 /// The force that a law gives along one axis, and the velocity there: along x where it gives several.
 fn axis(estimate: &Estimate) -> Option<(&'static str, &'static str)> {
-    const AXES: [(&str, &str); 3] = [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z")];
     let given: Vec<_> = AXES.into_iter().filter(|(load, _)| estimate.law.outputs.contains_key(*load)).collect();
     match given[..] {
         [one] => Some(one),
@@ -216,9 +223,14 @@ fn places(estimate: &Estimate, velocity: &str, speed_m_s: &[f64], reference: &Re
     Some(data)
 }
 
-/// The number in the record, with what it refers to.
-fn put(estimate: &mut Estimate, line: &Line) {
-    let Some((load, velocity)) = axis(estimate) else { return };
+/// The number in the record, with what it refers to; where a method has stated it, for a force of U², that one is drawn.
+fn put(estimate: &mut Estimate, line: &mut Line) {
+    if let Some(own) = estimate.derived.get(NAME) {
+        line.standard.fill(own.standard_uncertainty);
+        line.interval_95.fill(own.interval_95);
+        return;
+    }
+    let (load, velocity) = line.axis;
     let Some((c_d, fastest)) = line.c_d.last().copied().zip(line.speed_m_s.last().copied()) else { return };
     let [[area, _], [density, _]] = [line.reference.area, line.reference.density];
     let is_one_number = line.c_d.iter().all(|x| (x - c_d).abs() <= ONE_NUMBER * c_d.abs());
@@ -238,21 +250,9 @@ fn put(estimate: &mut Estimate, line: &Line) {
         interval_95: line.interval_95.last().copied().flatten(),
         ..Derived::of(formula, Some(c_d), "1")
     };
-    // A method that states its own knows more of its errors.
-    estimate.derived.entry(NAME.to_owned()).or_insert(number);
+    estimate.derived.insert(NAME.to_owned(), number);
     estimate.refers_to.entry("area".to_owned()).or_insert_with(|| Measured::of(area, "m^2"));
     estimate.refers_to.entry("density".to_owned()).or_insert_with(|| Measured::of(density, "kg/m^3"));
-}
-
-/// C_D of each row, over its Reynolds number, or its speed.
-fn observed(rows: &Dataset, name: &str, campaign: &Campaign) -> Option<(String, Vec<[f64; 2]>, Vec<f64>)> {
-    let c_d = validity::drag_coefficient(rows, campaign)?;
-    let reynolds = validity::per_observation(rows, campaign).into_iter().find(|(name, _)| *name == "Re");
-    let speed = rows.values("speed")?;
-    let of_row = reynolds.map_or_else(|| speed.to_vec(), |(_, re)| re);
-    let all = speed.iter().zip(of_row).zip(c_d).filter(|(_, c_d)| c_d.is_finite());
-    let (x, y) = all.map(|((speed, re), c_d)| ([*speed, re], c_d)).unzip();
-    Some((name.to_owned(), x, y))
 }
 
 /// The curves of the declared shape.
@@ -261,6 +261,24 @@ fn published(campaign: &Campaign) -> &'static [Curve] {
 }
 
 impl Line {
+    /// C_D of each row along the axis, the load at rest taken off, over its speed and its Reynolds number.
+    fn observed(&self, rows: &Dataset) -> Option<(String, Vec<[f64; 2]>, Vec<f64>)> {
+        let (load, velocity) = self.axis;
+        let [[area, _], [density, _]] = [self.reference.area, self.reference.density];
+        let force = rows.values(load)?;
+        let along = rows.values(velocity).or_else(|| rows.values("speed"))?;
+        let across = AXES.map(|(_, other)| rows.values(other).filter(|_| other != velocity));
+        let off_axis = |i: usize| across.iter().flatten().fold(0.0_f64, |sum, v| sum.hypot(v[i])).atan2(along[i].abs());
+        let kept = (0..rows.rows).filter(|i| rows.observes(load, *i) && off_axis(*i) <= MOST_OBLIQUE);
+        let of = |i: usize| {
+            let u = along[i];
+            let c_d = -2.0 * (force[i] - self.rest_n) / (density * u * u.abs() * area);
+            ([u.abs(), self.reference.reynolds(u).unwrap_or(f64::NAN)], c_d)
+        };
+        let (x, y) = kept.map(of).filter(|(_, c_d)| c_d.is_finite()).unzip();
+        Some((self.name.clone(), x, y))
+    }
+
     /// Fastest speed.
     fn fastest(&self) -> f64 {
         self.speed_m_s.last().copied().unwrap_or(f64::NAN)

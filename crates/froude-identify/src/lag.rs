@@ -82,7 +82,7 @@ pub(crate) fn findings(campaign: &Campaign, model: &ModelFit, data: &Dataset) ->
         }
         lag_s.is_finite().then(|| {
             let text = format!(
-                "{}, {load}: the load {} the motion by {} ± {} s (95 %, {}): drag and added mass are biased by this. A filter of one channel or two clocks do it: shift the load by that time in the \
+                "{}, {load}: the load {} the motion by {} ± {} s (95 %, {}): drag and added mass are biased by this. A filter in one channel or separate clocks can cause this: shift the load by that time in the \
                  table",
                 model.law.name,
                 if lag_s > 0.0 { "lags" } else { "leads" },

@@ -116,7 +116,7 @@ impl NamedLaw {
 
     fn ambiguous(&self, several: &[&str], what: &str) -> IdentifyError {
         self.refused(&format!(
-            "the columns {} may both be its {what}; name the others in no sidecar, or leave them out of the table",
+            "the columns {} may both be its {what}; remove the others from the table or the sidecar",
             several.join(" and ")
         ))
     }
@@ -298,6 +298,7 @@ pub(crate) fn primes(law: &ForceLaw, data: &Dataset, length_m: f64) -> (Vec<Deri
             formula: format!("{}/(0.5*density{}{})", spec.name, power("length", of_length), power("speed", of_speed)),
             of: spec.name.clone(),
             factor: 1.0 / (0.5 * density * length_m.powi(of_length) * speed.powi(of_speed)),
+            factor_relative: 0.0,
             unit: "1".to_owned(),
         })
     };

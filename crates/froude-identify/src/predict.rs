@@ -207,7 +207,7 @@ fn by_law(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyErro
     Ok(Predicted { laws: vec![id.clone()], left_out: Vec::new(), id, law: estimate.law.name.clone(), rows, joint })
 }
 
-/// A load of a record's law in rows of a data set, each less that in the first row, with standard uncertainty and degrees of freedom where the record states a covariance. A law that has no value
+/// A load of a record's law in the first row of a data set, and in each row less that in the first, with standard uncertainty and degrees of freedom where the record states a covariance. A law that has no value
 /// in the first row, as a power law at rest, is zero there.
 ///
 /// # Errors
@@ -217,7 +217,7 @@ pub(crate) fn above_first(
     estimate: &Estimate,
     data: &Dataset,
     load: &str,
-) -> Result<Vec<(f64, Option<(f64, f64)>)>, IdentifyError> {
+) -> Result<(f64, Vec<(f64, Option<(f64, f64)>)>), IdentifyError> {
     let data = &with_loads(estimate, data);
     let law = ForceLaw::of_estimate(estimate, data)?;
     let no_value = |name: &str| IdentifyError::Refused(format!("estimate {}: {name} has no value", estimate.id));
@@ -228,15 +228,16 @@ pub(crate) fn above_first(
     let refused = estimate.without_interval();
     let known = |x: f64| if x.is_finite() { x } else { 0.0 };
     let first = response * data.rows;
+    let rest = known(forces[first]);
     let of = |place: usize| {
         let uncertainty = slopes.as_ref().and_then(|slopes| {
             let at_rest = slopes.line(first).into_iter().map(known);
             let x: Vec<f64> = slopes.line(place).iter().zip(at_rest).map(|(x, rest)| x - rest).collect();
             (!slopes.moves_with(&x, &refused)).then(|| combined(&slopes.parts(&x)))
         });
-        (forces[place] - known(forces[first]), uncertainty)
+        (forces[place] - rest, uncertainty)
     };
-    Ok((first..first + data.rows).map(of).collect())
+    Ok((rest, (first..first + data.rows).map(of).collect()))
 }
 
 /// The data with a channel for each load of the law: formulas need its unit, and what was not measured is no number.

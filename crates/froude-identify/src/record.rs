@@ -2,6 +2,7 @@
 
 use froude_fit as fit;
 use froude_fit::budget::{Combined, Kind as Evaluation, Part};
+use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
 use froude_records::estimate::{
     Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Interval, Law, Measured, MethodUsed, OWN,
@@ -18,6 +19,8 @@ use crate::regression::{ModelFit, Scatter};
 use crate::seam::reduced::{self, Choice, Reduced};
 use crate::selection::Recommendation;
 
+/// Part of an uncertainty below which another is the rounding of numbers that cancel.
+const ROUNDING: f64 = 1e-12;
 /// Relative difference of two regressors that are one.
 const SAME_REGRESSOR: f64 = 1e-9;
 
@@ -81,7 +84,7 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         sigma,
         run_scatter: run_scatter(model, data),
         n_observations: data.observations(),
-        derived: stated.derived.iter().chain(&primes).filter_map(|d| derived(d, &coefficients)).collect(),
+        derived: stated.derived.iter().chain(&primes).filter_map(|d| derived(d, &coefficients, of.looks)).collect(),
         coefficients,
         type_a,
         errors: errors(model),
@@ -186,13 +189,24 @@ fn run_scatter(model: &ModelFit, data: &Dataset) -> IndexMap<String, RunScatter>
     model.fit.components.iter().zip(sizes).map(of).collect()
 }
 
-/// A coefficient times an exact factor.
-fn derived(d: &reduced::Derived, coefficients: &IndexMap<String, Coefficient>) -> Option<(String, Derived)> {
+/// A coefficient times a factor; each arm of the interval in quadrature with that of the factor, which pays for the looks too.
+fn derived(
+    d: &reduced::Derived,
+    coefficients: &IndexMap<String, Coefficient>,
+    looks: usize,
+) -> Option<(String, Derived)> {
     let c = coefficients.get(&d.of)?;
+    let value = c.value.map(|x| x * d.factor);
+    let of_factor = value.map_or(0.0, |x| (x * d.factor_relative).abs());
+    let k = coverage_factor(1.0 - 0.05 / looks.max(1) as f64, f64::INFINITY);
+    let widened = |end: f64| match value {
+        Some(x) if of_factor > 0.0 => x + (end - x).hypot(k * of_factor).copysign(end - x),
+        _ => end,
+    };
     let number = Derived {
-        standard_uncertainty: c.standard_uncertainty.map(|u| u * d.factor),
-        interval_95: c.interval_95.map(|ends| ends.map(|x| x * d.factor)),
-        ..Derived::of(&d.formula, c.value.map(|x| x * d.factor), &d.unit)
+        standard_uncertainty: c.standard_uncertainty.map(|u| (u * d.factor).hypot(of_factor)),
+        interval_95: c.interval_95.map(|ends| ends.map(|x| widened(x * d.factor))),
+        ..Derived::of(&d.formula, value, &d.unit)
     };
     Some((d.name.clone(), number))
 }
@@ -280,7 +294,7 @@ pub fn coefficient(value: Option<f64>, unit: &str, status: Status, combined: Opt
     Coefficient {
         standard_uncertainty: combined.map(|c| c.standard),
         type_a: combined.map(|c| c.type_a),
-        type_b: combined.map(|c| c.type_b),
+        type_b: combined.map(|c| if c.type_b > ROUNDING * c.standard { c.type_b } else { 0.0 }),
         interval_95: value.zip(combined).map(|(value, c)| c.interval(value)),
         effective_dof: finite(combined.map(|c| c.dof)),
         ..Coefficient::of(value, unit, status)

@@ -90,8 +90,8 @@ pub(crate) fn read_columns(
     let header: Vec<String> = headings.iter().map(Heading::header).collect();
     let fitted = sidecar.map(|sidecar| sidecar.fitted(&headings)).transpose()?;
     let columns = fitted.as_ref().filter(|sidecar| !sidecar.columns.is_empty());
-    let wants = plan(path, &header, columns, &place).map_err(|error| with_reason(error, &words));
-    let wants = if columns.is_none() { wants.map_err(|error| with_remedy(error, path))? } else { wants? };
+    let told = |error| if columns.is_none() { with_remedy(error, path) } else { error };
+    let wants = plan(path, &header, columns, &place).map_err(|error| told(with_reason(error, &words)))?;
     let n_rows = part.columns.first().map_or(0, |column| column.cells.len());
     let mut room = Room::new(path);
     let mut raws = Vec::new();
@@ -118,7 +118,7 @@ pub(crate) fn read_columns(
             }
         });
     }
-    let table = assemble(path, &header, &wants, raws, (columns, file), &place, (1..=n_rows).collect())?;
+    let table = assemble(path, &header, &wants, raws, (columns, file), &place, (1..=n_rows).collect()).map_err(told)?;
     let understood = (!words.is_empty()).then(|| words.join(", "));
     Ok(Table { sidecar: sidecar.map(|sidecar| sidecar.path.clone()), ..table }.also(understood))
 }

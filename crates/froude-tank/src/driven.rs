@@ -10,7 +10,7 @@
 //! | [`matrix`]                 | run matrix                                                        |
 //! | [`mod@fit`]                | unknowns, priors and declared errors of the joint fit ([`crate::joint`]) |
 //! | [`twin`]                   | truth, draws, logs and sidecars                                   |
-//! | `lag`                      | a delay that the runs show and nobody declared                    |
+//! | [`lag`]                    | a delay that the runs show and nobody declared                    |
 //! | [`mod@forecast`], [`plan`] | the intervals to expect                                           |
 //! | [`derived`]                | sums of coefficients with their uncertainty                       |
 //! | [`record`], [`page`], [`source`] | estimate, report, campaign                                  |
@@ -22,7 +22,7 @@ pub mod derived;
 pub mod fit;
 pub mod fitted;
 pub mod forecast;
-mod lag;
+pub mod lag;
 pub mod matrix;
 pub mod method;
 pub mod page;

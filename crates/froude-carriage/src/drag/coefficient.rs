@@ -6,7 +6,6 @@ use froude_fit::budget::{Part, Uncertain};
 use froude_identify::source::SourceResult;
 
 use crate::drag::point::{Method, Point};
-use crate::drag::setup::DragSetup;
 
 /// D_d by one method.
 #[derive(Debug, Clone)]
@@ -41,11 +40,11 @@ pub struct Coefficient {
 }
 
 impl Coefficient {
-    /// C_D = 2 D_d/(ρA), with its interval; `None` where no area is declared.
+    /// C_D = 2 D_d/(ρA), with its interval, as the record has it; `None` where no area is declared.
     #[must_use]
-    pub fn drag_coefficient(&self, setup: &DragSetup) -> Option<(f64, Option<[f64; 2]>)> {
-        let q = 0.5 * setup.density_kg_m3 * setup.reference_area_m2?;
-        Some((self.value / q, self.interval_95.map(|[low, high]| [low / q, high / q])))
+    pub fn drag_coefficient(&self) -> Option<(f64, Option<[f64; 2]>)> {
+        let number = self.result.estimates.first()?.derived.get("C_D")?;
+        Some((number.value?, number.interval_95))
     }
 
     /// Half-width of the interval as part of the value.

@@ -91,6 +91,7 @@ fn stated(method: Method, name: String, setup: &DragSetup) -> Stated {
             formula: format!("2*{name}/(density*area)"),
             of: name.clone(),
             factor: 2.0 / (setup.density_kg_m3 * area),
+            factor_relative: setup.reference_relative,
             unit: "1".to_owned(),
         });
     }

@@ -118,6 +118,8 @@ pub struct DragSetup {
     pub density_kg_m3: f64,
     /// Area that C_D refers to, m².
     pub reference_area_m2: Option<f64>,
+    /// Standard uncertainty of density times area, as a part of it; counts in C_D alone.
+    pub reference_relative: f64,
     /// The two-mass model, where it was identified.
     pub flexible: Option<Flexible>,
     /// 1; or, where the campaign stopped at the first interval that was short enough, the number of looks that were planned: the
@@ -150,6 +152,7 @@ impl DragSetup {
             strut_n_s2_m2: None,
             density_kg_m3: 1000.0,
             reference_area_m2: None,
+            reference_relative: 0.0,
             flexible: None,
             looks: 1,
             steady: SteadySettings::default(),

@@ -16,8 +16,7 @@ use crate::drag::setup::DragSetup;
 pub fn sections(reduction: &Reduction) -> (Section, Vec<Section>) {
     let Reduction { runs, setup, calibration, report } = reduction;
     let said = Block::words(summary(report, setup));
-    let drag =
-        Section::new("Drag by every method", [methods_table(report, setup).into(), said, force_chart(report).into()]);
+    let drag = Section::new("Drag by every method", [methods_table(report).into(), said, force_chart(report).into()]);
     let mut more = Vec::new();
     if let Some(c) = calibration {
         let value = format!(
@@ -121,7 +120,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
 
 /// C_D with its interval, and what it refers to; `None` where no area is declared.
 fn drag_coefficient(c: &Coefficient, setup: &DragSetup) -> Option<String> {
-    let ((value, interval), area_m2) = (c.drag_coefficient(setup)?, setup.reference_area_m2?);
+    let ((value, interval), area_m2) = (c.drag_coefficient()?, setup.reference_area_m2?);
     let value = interval.map_or_else(|| number::plain(value, 4), |ends| number::value_and_interval(value, ends));
     Some(format!(
         "C_D = {value} (95 %), for an area of {} m² and {} kg/m³.",
@@ -131,10 +130,10 @@ fn drag_coefficient(c: &Coefficient, setup: &DragSetup) -> Option<String> {
 }
 
 /// The methods side by side: the paper's Table IV.
-fn methods_table(report: &DragReport, setup: &DragSetup) -> ResultTable {
+fn methods_table(report: &DragReport) -> ResultTable {
     let caption = "D_d by every method that the runs allow; ratio to the force sensor, or to MCD where there is none.";
     let t = TableBuilder::new("methods", caption, &report.coefficients);
-    let drag = |c: &Coefficient| c.drag_coefficient(setup);
+    let drag = Coefficient::drag_coefficient;
     t.build(vec![
         t.text("method", "", |c| c.method.name().to_owned()),
         t.text("", "method", |c| format!("{} ({})", c.method.words(), c.method.name())),

@@ -61,7 +61,7 @@ fn all_methods_stand_side_by_side_and_hold_the_truth() {
     assert!((mapped / flexible - 1.0).abs() < 2e-3, "{mapped} {flexible}");
     assert_eq!(report.recommended, Some(Method::Fsm));
     assert!(report.rejected.is_empty(), "{:?}", report.rejected);
-    let (c_d, _) = report.coefficients[0].drag_coefficient(&setup).unwrap();
+    let (c_d, _) = report.coefficients[0].drag_coefficient().unwrap();
     assert!((c_d - 1.0).abs() < 0.02);
 }
 
@@ -83,6 +83,15 @@ fn the_records_carry_value_interval_and_budget() {
             .any(|n| n.starts_with("force per volt, calibrated (type B, shared by campaign)"))
     );
     assert_eq!(report.estimates.iter().filter(|e| e.recommended).count(), 1);
+    // 3 % of area and density, in quadrature with each arm; in the record and in what is printed alike.
+    let uncertain = DragSetup { reference_relative: 0.03, ..setup(&scenario) };
+    let wider = self::report(&scenario, &uncertain, |_| true).unwrap();
+    let coefficient = wider.coefficients.iter().find(|c| c.method == Method::Mcd).unwrap();
+    let (value, interval) = coefficient.drag_coefficient().unwrap();
+    let own = c.interval_95.unwrap().map(|end| (end - value).abs().hypot(1.959_964 * 0.03 * value));
+    for (arm, end) in own.into_iter().zip(interval.unwrap()) {
+        assert!(((end - value).abs() / arm - 1.0).abs() < 1e-6, "{arm} {value} {end}");
+    }
 }
 
 /// One wet run: nothing tells its scatter, so that the record has no interval and no covariance; what is declared is known all the same.

@@ -41,7 +41,7 @@ fn reduced(folder: &Path) -> Result<Reduction, String> {
 /// C_D by a method, with its interval.
 fn c_d(reduction: &Reduction, method: Method) -> (f64, [f64; 2]) {
     let coefficient = reduction.report.coefficients.iter().find(|c| c.method == method).unwrap();
-    let (value, interval) = coefficient.drag_coefficient(&reduction.setup).unwrap();
+    let (value, interval) = coefficient.drag_coefficient().unwrap();
     (value, interval.unwrap())
 }
 

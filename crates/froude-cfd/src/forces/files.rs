@@ -214,14 +214,18 @@ fn no_second(start: &Path, first: &str) -> Result<(), MethodError> {
     }
 }
 
-/// The density that the function objects of a case divide by or multiply with, where its dictionary states one, and the file; `None` where it states several.
+/// The density that the forces of a case are of, where its dictionary states one, and the file; `None` where it states several, or has no function object `forces`: one of coefficients divides by its own.
 pub(super) fn stated_rho_inf(case: &Path) -> Option<(f64, PathBuf)> {
     let path = case.join("system/controlDict");
     let text = input::text(&path).ok()?;
-    let code = text.lines().map(|line| line.split_once("//").map_or(line, |(code, _)| code));
+    let code = || text.lines().map(|line| line.split_once("//").map_or(line, |(code, _)| code).trim());
+    let value = |line: &'_ str, key: &str| Some(line.strip_prefix(key)?.strip_suffix(';')?.trim().to_owned());
+    if !code().any(|line| value(line, "type ").is_some_and(|kind| kind == "forces")) {
+        return None;
+    }
     // `rhoInf 998;` and, in old files, `rhoInf rhoInf [1 -3 0 0 0 0 0] 998;`.
-    let mut stated = code
-        .filter_map(|line| line.trim().strip_prefix("rhoInf")?.trim_end().strip_suffix(';'))
+    let mut stated = code()
+        .filter_map(|line| value(line, "rhoInf"))
         .map(|value| value.split_whitespace().next_back().and_then(|last| last.parse::<f64>().ok()));
     let first = stated.next()??;
     stated.all(|other| other == Some(first)).then_some((first, path))

@@ -101,12 +101,15 @@ fn across(gathered: &Gathered, spec: &ForcesSpec) -> Option<Finding> {
         (!some.is_empty()).then_some((k, some))
     })?;
     let first = cases.first()?;
+    let [forward, up] = [spec.lies.forward().axis, spec.lies.up().axis];
+    let normal = if k == 2 { up } else { 3 - forward - up };
     let text = format!(
-        "symmetry = \"none\", and {} is {} N in {}{}: a body that is symmetric has no such force, and half of a body has. If the mesh ends at a plane of symmetry, write it: symmetry = \"y = 0\"",
+        "symmetry = \"none\", and {} is {} N in {}{}: a whole, symmetric body in a single-phase flow has none. If the mesh ends at a plane of symmetry, write symmetry = \"{} = 0\"; if the loads include buoyancy or lift, ignore this",
         LOADS[k],
         plain(first.judged.window.mean[k], 4),
         first.setting.name,
         if cases.len() == 1 { String::new() } else { format!(" (likewise {} more)", cases.len() - 1) },
+        ["x", "y", "z"][normal],
     );
     Some(warning("openfoam-half", text))
 }

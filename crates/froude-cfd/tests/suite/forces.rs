@@ -179,6 +179,8 @@ fn half_of_the_body_that_is_declared_whole_is_doubted() {
     let found = identified(folder(half).path(), SECTION).unwrap();
     let doubt = said(&found, "openfoam-half");
     assert!(doubt.starts_with("symmetry = \"none\", and f_z is 1.755 N in U1.5_b0 (likewise "), "{doubt}");
+    let advice = "a whole, symmetric body in a single-phase flow has none. If the mesh ends at a plane of symmetry, write symmetry = \"z = 0\"; if the loads include buoyancy or lift, ignore this";
+    assert!(doubt.ends_with(advice), "{doubt}");
     assert!(!codes(&identified(folder(AS_BODY).path(), SECTION).unwrap()).contains(&"openfoam-half"));
 }
 
@@ -296,7 +298,14 @@ fn what_is_not_stated_is_asked_and_what_cannot_be_is_refused() {
     let cases = folder.path().join("cases");
     let system = cases.join("U1_b0/system");
     std::fs::create_dir_all(&system).unwrap();
-    std::fs::write(system.join("controlDict"), "rho rhoInf;\n    rhoInf 1000; // fresh\n").unwrap();
+    let stated = |kind: &str| {
+        let text = format!("type {kind};\nrho rhoInf;\n    rhoInf 1000; // fresh\n");
+        std::fs::write(system.join("controlDict"), text).unwrap();
+    };
+    // Coefficients beside the forces have a density of their own.
+    stated("forceCoeffs");
+    identified(folder.path(), SECTION).unwrap();
+    stated("forces");
     let found = refused(SECTION);
     assert!(found.contains("is 998 kg/m^3, and rhoInf is 1000 in ") && found.contains("controlDict"), "{found}");
     std::fs::remove_dir_all(&system).unwrap();

@@ -3,7 +3,7 @@
 //! Loads are those of the water on the body, the body's own inertia and weight taken off, in body axes; `v_x v_y v_z` m/s, `w_x w_y w_z` rad/s, angles in rad. A coefficient is called as in SNAME,
 //! its letters being the factors of its term: `Y_vr` is |v| r of Fossen, v² r is `Y_vvr` of Abkowitz and MMG. The book has the same table.
 
-/// The law of a thruster, the one that is no sum of terms.
+/// The law of a thruster, the only law that is not a sum of terms.
 pub(crate) const THRUSTER: &str = "thruster";
 
 /// A set of terms.
@@ -33,7 +33,7 @@ pub(crate) static LAWS: [NamedLaw; 8] = [
         name: "oblique",
         words: "oblique towing of a hull with lift",
         source: "SNAME (1952), Bulletin 1-5; Clarke, Gedling & Hine (1983), Trans. RINA 125, 45",
-        range: "motion ahead, drift below stall; Y_uv is lift, Y_vv cross-flow, Y_v the part that grows with the speed alone",
+        range: "motion ahead, drift below stall; Y_uv is lift, Y_vv cross-flow, Y_v the part that grows with the speed alone; induced drag (X_vv) is in mmg and abkowitz",
         needs: &[],
         loads: &[
             ("f_x", "", "X_uu*v_x*abs(v_x)"),
@@ -45,10 +45,10 @@ pub(crate) static LAWS: [NamedLaw; 8] = [
         name: "fossen_3dof",
         words: "added mass, linear and quadratic damping in surge, sway and yaw",
         source: "Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control, 6.4 and 7.1",
-        range: "one forward speed, or low speed: the products of u with v and r are in Y_v, Y_r, N_v and N_r",
+        range: "one forward speed, or low speed: the products of u with v and r are in Y_v, Y_r, N_v and N_r; X_vr is -Y_v_dot and X_rr is -Y_r_dot of the added mass",
         needs: &[],
         loads: &[
-            ("f_x", "", "X_u_dot*v_x_dot + X_u*v_x + X_uu*v_x*abs(v_x)"),
+            ("f_x", "", "X_u_dot*v_x_dot + X_u*v_x + X_uu*v_x*abs(v_x) + X_vr*v_y*w_z + X_rr*w_z^2"),
             (
                 "f_y",
                 "",
@@ -80,7 +80,7 @@ pub(crate) static LAWS: [NamedLaw; 8] = [
         name: "abkowitz",
         words: "third-order polynomial of a ship, by the speed of each row",
         source: "Abkowitz (1964), HyA report Hy-5; Chislett & Strøm-Tejsen (1965), HyA report Hy-6",
-        range: "ahead near the approach speed, drift and rate small enough for a third order; rows at rest are left out with `keep`",
+        range: "ahead near the approach speed, drift and rate small enough for a third order; rows at rest are left out with `keep`; published Y_r, N_r, X_vr and X_rr include the ship's own mass, these do not",
         needs: &[],
         loads: &[
             (
@@ -104,7 +104,7 @@ pub(crate) static LAWS: [NamedLaw; 8] = [
         name: "mmg",
         words: "hull forces of the MMG standard method over v' and r', as pure numbers",
         source: "Yasukawa & Yoshimura (2015), J. Mar. Sci. Technol. 20, 37; X_0 is -R'_0",
-        range: "ahead, hull without propeller and rudder, drift to some 20 deg and r' to some 1; the terms of r include the added mass of a steady turn",
+        range: "ahead, hull without propeller and rudder, drift up to about 20 deg, r' up to about 1; the terms of r include the added mass of a steady turn",
         needs: &[LENGTH, DRAUGHT],
         loads: &[
             (
@@ -159,7 +159,7 @@ pub(crate) static LAWS: [NamedLaw; 8] = [
         name: THRUSTER,
         words: "thrust and torque over voltage or rate of rotation, with a dead band, T = k s^2 ahead, -k s^2 astern, + c |s| v_x, s being the command beyond the dead band of its direction",
         source: "Fossen (2021), Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., ch. 9; the dead bands are ours",
-        range: "steady commands; an inflow that does not turn the flow through the propeller round",
+        range: "steady commands; inflow that does not reverse the flow through the propeller",
         needs: &[],
         loads: &[],
     },

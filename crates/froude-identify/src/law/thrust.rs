@@ -10,7 +10,7 @@
 //!
 //! **Source.** Fossen (2021), Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., ch. 9: thrust
 //! `T_|n|n |n|n + T_|n|u |n|u`, bilinear in rate and inflow. The dead bands are ours: brushes, seals and the
-//! converter take the first part of a command, and not the same in both directions.
+//! converter absorb the first part of a command, by different amounts in the two directions.
 //! **Range.** Steady commands; inflow along the axis, without reversing the flow through the disc.
 
 /// What a thruster does to a command: of each pair ahead first, then astern.
@@ -46,10 +46,25 @@ impl Thruster {
         out
     }
 
-    /// The command that gives a load in still water, and √(|T|/k) beyond the dead band; `None` where none does.
+    /// The command that gives a load in still water, and √(|T|/k) beyond the dead band; `None` where none does, as of a small load and a dead band below zero.
     pub(crate) fn command(&self, load: f64) -> Option<[f64; 2]> {
         let side = usize::from(load < 0.0);
         let beyond = (load.abs() / self.slope[side]).sqrt();
-        (load != 0.0 && beyond.is_finite()).then(|| [(self.dead_band[side] + beyond).copysign(load), beyond])
+        let size = self.dead_band[side] + beyond;
+        (load != 0.0 && size > 0.0 && size.is_finite()).then(|| [size.copysign(load), beyond])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// T = 2 (x + 1)² ahead: nothing gives less than 2 N.
+    #[test]
+    fn a_dead_band_below_zero_has_no_command_for_small_loads() {
+        let thruster = Thruster::of([2.0, 2.0, 0.0, -1.0, 0.5]);
+        assert_eq!(thruster.command(8.0), Some([1.0, 2.0]));
+        assert_eq!(thruster.command(1.9), None);
+        assert_eq!(thruster.command(-8.0), Some([-2.5, 2.0]));
     }
 }

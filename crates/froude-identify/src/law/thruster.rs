@@ -50,6 +50,11 @@ impl ForceLaw {
         }
     }
 
+    /// Whether it is that of a thruster.
+    pub(crate) const fn is_thruster(&self) -> bool {
+        matches!(self.kind, Kind::Thruster { .. })
+    }
+
     /// The thruster of a response, where the law is one.
     pub(crate) fn thruster_of(&self, response: usize, at: &[f64]) -> Option<Thruster> {
         let Kind::Thruster { parts, .. } = &self.kind else { return None };

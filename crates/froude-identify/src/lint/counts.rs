@@ -157,7 +157,7 @@ impl Counts {
                  [[source]]{}",
                 if load.starts_with("m_") { "torque" } else { "thrust" },
                 if motion == "v_y" && data.channels.contains_key("angle") {
-                    "; if the angle is counted in the opposite sense (as beta of a ship's drift test is), write sign = -1 for the angle column instead"
+                    "; if the angle is counted in the opposite sense (Fossen's sideslip angle, asin(v/U)), write sign = -1 for the angle column instead"
                 } else {
                     ""
                 }

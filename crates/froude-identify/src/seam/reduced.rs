@@ -126,7 +126,7 @@ pub struct Stated {
     pub derived: Vec<Derived>,
 }
 
-/// A number that is a coefficient times an exact factor.
+/// A number that is a coefficient times a factor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derived {
     /// Its name.
@@ -137,6 +137,8 @@ pub struct Derived {
     pub of: String,
     /// The factor, above zero.
     pub factor: f64,
+    /// Standard uncertainty of the factor, as a part of it.
+    pub factor_relative: f64,
     /// SI unit text of the product.
     pub unit: String,
 }

@@ -194,8 +194,13 @@ pub(crate) fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> Ident
     let own = loads.iter().find(|load| !data.is_of_water(load));
     let own = own.copied().or_else(|| ["thrust", "torque"].into_iter().find(|load| data.values(load).is_some()));
     let lacks = if let Some(load) = own.filter(|_| loads.iter().all(|load| !data.is_of_water(load))) {
+        let of_motion = if data.channels.contains_key("time") && data.values("v_x_dot").is_none() && has_motion {
+            "mass*v_x_dot + d_1*v_x + d_2*v_x*abs(v_x)\", with the acceleration in a column v_x_dot [m/s^2] of your own, and the rows shifted by the lag between the two where there is one"
+        } else {
+            "…\""
+        };
         format!(
-            "an actuator exerts {load}, and the built-in laws are of the water: write a law of your own ([[identify.model]], {load} = \"…\"), or \
+            "{load} is exerted by an actuator; the built-in laws describe water loads: write a law of your own ([[identify.model]], {load} = \"{of_motion}), or \
              models = [\"{THRUSTER}\"] where the table has the command, in V or rpm"
         )
     } else if loads.is_empty() {

@@ -4,6 +4,7 @@
 mod advice;
 mod choices;
 mod declare;
+mod drag_coefficient;
 mod drift;
 mod form_factor;
 mod idle;

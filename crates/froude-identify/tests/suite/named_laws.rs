@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
+use froude_fit::coverage::{Count, z_limit};
 use froude_identify::IdentifyError;
 use froude_identify::source::{SourceResult, identify_source};
 use froude_records::campaign_file::read_campaign;
@@ -11,10 +12,10 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-/// Tables of a law.
+/// Tables of a law. That the intervals of one coefficient hold its truth in all of them is chance enough (0.6 %); that those of all coefficients do is not.
 const SEEDS: u128 = 100;
-/// Of intervals that are not independent within a table: 92 % is what 95 % may fall to by chance.
-const FEWEST: f64 = 0.92;
+/// Chance of a rate beyond the limits among all coefficients of all laws, where each interval holds its truth in 95 of 100.
+const FAMILY_WISE: f64 = 0.01;
 
 fn result(text: &str, keys: &str) -> Result<SourceResult, IdentifyError> {
     let folder = tempfile::tempdir().unwrap();
@@ -57,21 +58,25 @@ impl Case {
         out
     }
 
-    /// How many intervals there are, and how many hold the truth; a truth by the name of a prime is one of the record's derived numbers.
-    fn coverage(&self) -> (usize, usize) {
-        let of = |seed: u128| {
+    /// How often the interval of each coefficient holds the truth; a truth by the name of a prime is one of the record's derived numbers.
+    fn coverage(&self) -> Vec<Count> {
+        let of = |seed: u128| -> Vec<bool> {
             let found = result(&self.table(seed), &format!("{}{}", self.keys, source(self.law))).unwrap();
             let estimate: &Estimate = &found.estimates[0];
-            let held = self.truths.iter().filter(|(name, truth)| {
+            let is_held = |(name, truth): &(&str, f64)| {
                 let prime = || estimate.derived[*name].interval_95;
                 let interval = estimate.coefficients.get(*name).map_or_else(prime, |c| c.interval_95);
                 let [low, high] = interval.unwrap_or_else(|| panic!("{} has no interval of {name}", self.law));
                 low <= *truth && *truth <= high
-            });
-            held.count()
+            };
+            self.truths.iter().map(is_held).collect()
         };
-        let held: Vec<usize> = (1..=SEEDS).into_par_iter().map(of).collect();
-        (self.truths.len() * held.len(), held.into_iter().sum())
+        let held: Vec<Vec<bool>> = (1..=SEEDS).into_par_iter().map(of).collect();
+        let mut counts = vec![Count::default(); self.truths.len()];
+        for held in &held {
+            counts.iter_mut().zip(held).for_each(|(count, is_held)| count.add(*is_held));
+        }
+        counts
     }
 }
 
@@ -128,13 +133,17 @@ fn cases() -> Vec<Case> {
                 let [u, v, r, du, dv, dr] = s else { panic!() };
                 let y = -170.0 * dv - 8.0 * dr - 220.0 * v + 60.0 * r - 300.0 * sq(*v) - 40.0 * r.abs() * v;
                 let n = -8.0 * dv - 110.0 * dr - 130.0 * v - 190.0 * r - 60.0 * sq(*r) + 25.0 * v.abs() * r;
-                vec![-30.0 * du - 12.0 * u - 80.0 * sq(*u), y, n]
+                // X_A = X_u̇ u̇ − Y_v̇ v r − Y_ṙ r².
+                let x = -30.0 * du - 12.0 * u - 80.0 * sq(*u) + 170.0 * v * r + 8.0 * r * r;
+                vec![x, y, n]
             },
             noise: &[0.4, 1.5, 1.0],
             truths: &[
                 ("X_u_dot", -30.0),
                 ("X_u", -12.0),
                 ("X_uu", -80.0),
+                ("X_vr", 170.0),
+                ("X_rr", 8.0),
                 ("Y_v_dot", -170.0),
                 ("Y_r_dot", -8.0),
                 ("Y_v", -220.0),
@@ -318,6 +327,19 @@ fn cases() -> Vec<Case> {
                 ("dead_band_Q_astern", 0.6),
             ],
         },
+        // As the table of the command line's tests: the thrust one step beyond the dead band is a third of the scatter.
+        Case {
+            law: "thruster",
+            keys: "",
+            header: "voltage [V],thrust [N]",
+            settings: (1..=12).flat_map(|x| [vec![-f64::from(x)], vec![f64::from(x)]]).collect(),
+            loads: |s| {
+                let beyond = (s[0].abs() - 0.6).max(0.0).powi(2);
+                vec![if s[0] > 0.0 { 0.32 * beyond } else { -0.25 * beyond }]
+            },
+            noise: &[0.15],
+            truths: &[("T_ahead", 0.32), ("T_astern", 0.25), ("dead_band_ahead", 0.6), ("dead_band_astern", 0.6)],
+        },
         Case {
             law: "thruster",
             keys: "",
@@ -377,10 +399,17 @@ fn cases() -> Vec<Case> {
 
 /// The intervals of a law in all of its tables.
 fn hold_the_truth(law: &str) {
-    let of_law: Vec<(usize, usize)> = cases().iter().filter(|case| case.law == law).map(Case::coverage).collect();
-    let [all, held] = [of_law.iter().map(|(all, _)| all).sum::<usize>(), of_law.iter().map(|(_, held)| held).sum()];
-    println!("{law}: {held} of {all}");
-    assert!(held as f64 >= FEWEST * all as f64, "{law}: {held} of {all} intervals");
+    let all = cases();
+    let limit = z_limit(FAMILY_WISE, all.iter().map(|case| case.truths.len()).sum());
+    for case in all.iter().filter(|case| case.law == law) {
+        let counts = case.coverage();
+        assert!(counts.iter().any(|count| count.hits < count.trials), "{law}: {counts:?}");
+        for ((name, _), count) in case.truths.iter().zip(counts) {
+            let z = count.z_score(0.95);
+            println!("{law} {name}: {} of {}, z = {z:.2}", count.hits, count.trials);
+            assert!(z.abs() < limit, "{law}, {name}: {} of {} intervals", count.hits, count.trials);
+        }
+    }
 }
 
 #[test]
@@ -449,6 +478,19 @@ fn terms_of_one_angle_have_no_interval() {
     assert!(found.estimates[0].undetermined.iter().any(|what| what.contains("Y_uv") && what.contains("Y_vv")));
 }
 
+/// T = 0.3 (x + 0.5)², which no thruster does.
+#[test]
+fn a_dead_band_below_zero_is_noted() {
+    let mut table = "voltage [V],thrust [N]\n".to_owned();
+    for x in 1..=8 {
+        let x = f64::from(x);
+        writeln!(table, "{x},{}", 0.3 * (x + 0.5).powi(2)).unwrap();
+    }
+    let found = result(&table, &source("thruster")).unwrap();
+    let note = found.findings.iter().find(|f| f.code == "negative-dead-band").unwrap();
+    assert!(note.message.starts_with("dead_band_ahead is below zero, which no thruster has; "), "{}", note.message);
+}
+
 #[test]
 fn what_a_law_needs_is_asked_with_the_lines_to_write() {
     let mmg = "speed [m/s],angle [deg],f_x [N],f_y [N]\n1,5,-1,2\n1,10,-2,4\n1,15,-3,8\n1.2,12,-3,8\n";
@@ -481,7 +523,11 @@ fn a_load_of_an_actuator_may_drive_the_body() {
     };
     assert!(has_error(&keys("")) && !has_error(&keys("actuator = [\"f_x\"]\n")));
     let refused = result(&table, &keys("actuator = [\"f_x\"]\n").replace(own, "")).unwrap_err().to_string();
-    assert!(refused.contains("an actuator exerts f_x, and the built-in laws are of the water"), "{refused}");
+    assert!(refused.contains("f_x is exerted by an actuator; the built-in laws describe water loads"), "{refused}");
+    let log = "time [s],thrust [N],speed [m/s]\n0,30,0\n0.1,30,0.03\n0.2,29,0.06\n0.3,30,0.09\n";
+    let refused = result(log, &keys("").replace(own, "")).unwrap_err().to_string();
+    let advice = "([[identify.model]], thrust = \"mass*v_x_dot + d_1*v_x + d_2*v_x*abs(v_x)\", with the acceleration in a column v_x_dot [m/s^2] of your own, and the rows shifted by the lag between the two where there is one)";
+    assert!(refused.contains(advice), "{refused}");
     let refused = result(&table, &keys("actuator = [\"f_q\"]\n")).unwrap_err().to_string();
     assert!(refused.contains("actuator = [\"f_q\"]: the table has no such column; its loads are f_x"), "{refused}");
 }

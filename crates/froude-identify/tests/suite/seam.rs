@@ -62,6 +62,7 @@ fn fitted(weight: Weight, scatter: Scatter) -> SourceResult {
         formula: "2*D_II/(1000*area)".to_owned(),
         of: "D_II".to_owned(),
         factor: 0.004,
+        factor_relative: 0.0,
         unit: "1".to_owned(),
     };
     let mut reduced = Reduced {

@@ -70,7 +70,7 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
     let mut fit = DecayFit {
         method: Method::Envelope,
         axis: setup.axis,
-        names: setup.axis.decay_names(),
+        names: setup.names(),
         values,
         type_a: reduced.scatter(setup),
         inertia: setup.inertia,

@@ -174,7 +174,7 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
     let mut fit = DecayFit {
         method: Method::OutputError,
         axis: setup.axis,
-        names: setup.axis.decay_names(),
+        names: setup.names(),
         values,
         type_a: scatter(&model, &parameters, &found),
         inertia: setup.inertia,
@@ -262,7 +262,7 @@ fn start(reduced: &Reduced<'_>, setup: &DecaySetup, model: &Releases<'_>) -> Vec
     let moving = setup.inertia.value + added;
     let omega = (setup.restoring.stiffness() / moving).sqrt();
     let speed = reduced.range(omega).speed[1];
-    let [name_a, name_i, name_ii] = setup.axis.decay_names();
+    let [name_a, name_i, name_ii] = setup.names();
     let mut out = vec![
         Parameter::new(name_i, linear, NATURAL * moving * omega),
         Parameter::new(name_ii, quadratic, NATURAL * moving * omega / (EIGHT_OVER_3_PI * speed)),

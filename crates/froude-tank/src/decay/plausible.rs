@@ -41,7 +41,8 @@ pub(super) fn check(
     let Some((log, swing)) = largest.filter(|(_, swing)| *swing > 0.0) else { return Ok(()) };
     let refused = |log: &TankLog, what: String| Err(MethodError::input(&log.log.path, what));
     let is_angle = setup.axis.is_rotation();
-    let shown = |x: f64| if is_angle { format!("{:.3} deg", x.to_degrees()) } else { format!("{x:.3e} m") };
+    let shown =
+        |x: f64| if is_angle { format!("{} deg", rounded(x.to_degrees())) } else { format!("{} m", rounded(x)) };
     let [seen, seen_s] = setup.window.seen;
     let apart = |seen: f64, found: f64| !(1.0 / AGREE..=AGREE).contains(&(found / seen));
     let sidecar = if is_angle {
@@ -62,7 +63,7 @@ pub(super) fn check(
             return refused(
                 log,
                 format!(
-                    "the largest swing is {found}{why}. If the unit is another one, {sidecar}; if the body did swing so, write amplitude = \"{found}\" in [source.decay]"
+                    "the largest swing is {found}{why}. If the unit is another one, {sidecar}; if the body really swung that far, write amplitude = \"{found}\" in [source.decay]"
                 ),
             );
         }
@@ -90,17 +91,23 @@ pub(super) fn check(
     }
 }
 
+/// Three digits, and no power of ten that a campaign cannot read.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.2e}").parse().unwrap_or(x)
+}
+
 /// Why a swing is unusual, in words after its size.
 fn doubt(swing: f64, is_angle: bool, period_s: f64) -> Option<String> {
     if is_angle {
-        let [rad, deg] = [swing, swing.to_degrees()];
-        return if rad > FRAC_PI_2 {
-            Some(format!(": in deg the same numbers are {rad:.3} deg"))
-        } else if rad < LEAST_RAD {
-            Some(format!(": in rad the same numbers are {:.3} deg", deg.to_degrees()))
+        // A log may be in either unit.
+        let (deg, what) = if swing > FRAC_PI_2 {
+            (swing, "degrees under a header in rad")
+        } else if swing < LEAST_RAD {
+            (swing.to_degrees().to_degrees(), "radians under a header in deg")
         } else {
-            None
+            return None;
         };
+        return Some(format!(" ({} deg if these are {what})", rounded(deg)));
     }
     let times_g = swing * (TAU / period_s).powi(2) / GRAVITY;
     if times_g > 1.0 {

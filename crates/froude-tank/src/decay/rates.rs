@@ -95,7 +95,7 @@ impl DecayFit {
         let Rates { values, scatter, .. } = self.ratios();
         let moving = |added: f64| (self.restoring.stiffness() / (self.inertia.value + added)).sqrt();
         self.runs.iter_mut().for_each(|run| run.added = moving(run.added));
-        (self.values, self.type_a, self.names) = (values, scatter, self.axis.rate_names());
+        (self.values, self.type_a) = (values, scatter);
         self
     }
 

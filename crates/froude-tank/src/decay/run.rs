@@ -164,6 +164,12 @@ impl DecaySetup {
         Self { restoring, ..Self::new(axis, Uncertain::new(0.0, 0.0), Uncertain::new(1.0, 0.0)) }
     }
 
+    /// Names of the coefficients.
+    #[must_use]
+    pub fn names(&self) -> [String; 3] {
+        if self.restoring.is_per_inertia() { self.axis.rate_names() } else { self.axis.decay_names() }
+    }
+
     /// Unit of a force on the body; per moving inertia that of an acceleration.
     #[must_use]
     pub const fn force_unit(&self) -> &'static str {

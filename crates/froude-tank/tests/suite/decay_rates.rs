@@ -112,6 +112,19 @@ fn a_linear_oscillator_has_one_decrement() {
     }
 }
 
+/// What is said of a fit has the names of its record.
+#[test]
+fn findings_name_the_coefficients_of_the_record() {
+    let roll = Roll { quadratic: -0.3, zeta: 0.05, ..ROLL };
+    let logged = roll.campaign(3, 1e-7, [12.0, 10.0, 8.0]);
+    for method in BOTH {
+        let fit = fitted(method, &logged, &alone());
+        let said: Vec<&str> = fit.findings.iter().map(|f| f.message.as_str()).collect();
+        assert!(said.iter().any(|text| text.starts_with("d_rx_II is -")), "{said:?}");
+        assert!(!said.iter().any(|text| text.contains("D_rx") || text.contains("A44")), "{said:?}");
+    }
+}
+
 /// Inertia and stiffness are a scale: with them the frequency and the damping per inertia are those of the log alone, and their uncertainty too.
 #[test]
 fn what_is_declared_of_the_body_does_not_change_the_rates() {

@@ -2,8 +2,11 @@
 
 use froude_fit::coverage::Count;
 use froude_records::campaign::{Identify, SensorSpec};
+use froude_records::finding::{Finding, Severity};
 use froude_tank::driven::fit::{fit, motions};
+use froude_tank::driven::fitted::Fitted;
 use froude_tank::driven::forecast::forecast;
+use froude_tank::driven::lag::undeclared;
 use froude_tank::driven::run::Run;
 use froude_tank::driven::setup::Setup;
 use froude_tank::driven::twin::{Simulated, Twin};
@@ -269,4 +272,58 @@ fn intervals_hold_what_the_drag_changes_by_from_run_to_run() {
     let logged = logged(&twin, &noise(0.02, Some(0.5)), 4);
     assert!(!fitted(&logged[..2], &twin.setup).has_runs);
     assert!(fitted(&logged[..3], &twin.setup).has_runs);
+}
+
+/// What is said of a lag by the fit of a twin, whose campaign has these changes of its text.
+fn lag(changes: &[(&str, &str)], sensors: &[SensorSpec], seed: u64) -> Option<Finding> {
+    let campaign = campaign(CAMPAIGN, changes);
+    let twin = Twin::of(&campaign, &campaign.sources[0]).unwrap();
+    let logged = logged(&twin, sensors, seed);
+    let runs = views(&logged);
+    let motions = motions(&runs, &twin.setup, &[]).unwrap();
+    let fit = fit(&runs, &motions, &twin.setup, &Identify::default()).unwrap();
+    undeclared(&Fitted {
+        fit: &fit,
+        setup: &twin.setup,
+        runs: &runs,
+        motions: &motions,
+        derived: &[],
+        campaign: &campaign,
+    })
+}
+
+const NO_DELAY: (&str, &str) = ("delay    = { value = \"0 ms\", standard = \"5 ms\" }", "delay    = \"0 ms\"");
+
+/// Both signs; one that is free is a note, one that is declared with a standard uncertainty is left to `declared-contradicted`.
+#[test]
+fn a_delay_beside_one_declared_as_exact_is_reported_with_sign_and_size() {
+    for (truth, words) in
+        [("13 ms", "the force lags the angle by 13.0 ± "), ("-13 ms", "the force leads the angle by 13.0 ± ")]
+    {
+        let delayed = format!("delay    = \"{truth}\"");
+        let delayed = ("delay    = \"0 s\"", delayed.as_str());
+        let said = lag(&[NO_DELAY, delayed], &noise(1e-4, None), 1).unwrap();
+        assert!(said.severity == Severity::Warning && said.message.contains(words), "{said:?}");
+        let advice = "A filter in one channel or separate clocks can cause this: leave delay out of [source.forced_oscillation], and it is fitted with the coefficients";
+        assert!(said.message.ends_with(advice), "{said:?}");
+        let said = lag(&[EXACT[4], delayed], &noise(1e-4, None), 1).unwrap();
+        assert!(said.severity == Severity::Note && said.message.contains(words), "{said:?}");
+        assert!(said.message.ends_with("and the fit takes that into account"), "{said:?}");
+        assert_eq!(lag(&[delayed], &noise(1e-4, None), 1), None);
+    }
+}
+
+/// Three runs of noise that lasts 0.5 s; the chance of three alarms or more of 0.4 % each in 100 is 0.8 %.
+#[test]
+fn a_lag_that_is_not_there_is_hardly_ever_reported() {
+    let runs = [
+        ("[\"60 deg/s\", \"70 deg/s\", \"80 deg/s\"]", "\"70 deg/s\""),
+        ("periods   = 7", "periods   = 7\nrate = \"50 Hz\""),
+        NO_DELAY,
+    ];
+    let changes = [&ONE_BODY[..], &runs].concat();
+    let alarms = (0..100_u64).into_par_iter().filter(|seed| lag(&changes, &noise(0.02, Some(0.5)), 1 + seed).is_some());
+    let alarms = alarms.count();
+    println!("{alarms} of 100");
+    assert!(alarms <= 2, "{alarms} of 100");
 }
