@@ -25,7 +25,7 @@ use crate::runs::{Runs, column, for_drag, mounts};
 use crate::servo::motor::{Drive, MotorSide};
 use crate::servo::report::{effective, of_runs as of_several};
 use crate::servo::rows::Rows;
-use crate::servo::scale::{ForcePerVolt, Scale};
+use crate::servo::scale::{COUNT, Errs, ForcePerVolt, SPROCKET_RADIUS, Scale};
 use crate::servo::two_mass::FlexibleReport;
 use crate::servo::{
     Chain, Friction, RigidFit, ServoCoefficient, ServoError, ServoLog, ServoReport, identify_servo, record,
@@ -353,15 +353,22 @@ pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModel
 fn of_logs(logs: &LogsRig, rig: &str) -> ForcePerVolt<'static> {
     let drive = if logs.is_current { DriveUnit::CURRENT } else { DriveUnit::DECLARED };
     let Declared { value, standard_uncertainty } = logs.force_per_unit;
-    let scale = Scale {
-        key: format!("{rig}/force"),
-        name: drive.error.to_owned(),
-        quantity: drive.name.to_owned(),
-        relative: standard_uncertainty / value,
+    let scale = |key: &str, name: &str, quantity: &str, relative, errs| Scale {
+        key: format!("{rig}/{key}"),
+        name: name.to_owned(),
+        quantity: quantity.to_owned(),
+        relative,
         dof: None,
-        is_radius: false,
+        errs,
     };
-    ForcePerVolt { name: drive.name, unit: drive.unit.to_owned(), ..ForcePerVolt::of_log(value, Some(scale)) }
+    let force = scale("force", drive.error, drive.name, standard_uncertainty / value, Errs::Factor);
+    let length = scale(SPROCKET_RADIUS, COUNT, SPROCKET_RADIUS, logs.position_relative, Errs::Length);
+    ForcePerVolt {
+        name: drive.name,
+        unit: drive.unit.to_owned(),
+        scales: vec![force, length],
+        ..ForcePerVolt::of_log(value, None)
+    }
 }
 
 /// Knots over the travel that the runs cover.

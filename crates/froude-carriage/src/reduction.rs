@@ -353,7 +353,10 @@ fn calibrated_by(runs: &Runs) -> Result<Option<String>, MethodError> {
 #[must_use]
 pub fn rig_key(runs: &Runs, axis: Option<&AxisConstants>) -> Option<String> {
     if let Some(logs) = runs.campaign.as_ref().and_then(|c| c.logs.as_ref()) {
-        return Some(format!("rig/{}", short_key(format!("{logs:?}").as_bytes())));
+        let LogsRig { force_per_unit: Declared { value, standard_uncertainty }, is_current, position_relative, .. } =
+            logs;
+        let text = format!("{value:e} {standard_uncertainty:e} {is_current} {position_relative:e}");
+        return Some(format!("rig/{}", short_key(text.as_bytes())));
     }
     let carriage = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref());
     let AxisConstants {

@@ -29,6 +29,7 @@ pub mod set;
 mod topics;
 pub mod whole;
 
+pub(crate) use imported::not_applied;
 use set::{Member, doubles, is_put_aside, strangers, summed_up};
 use whole::{Complete, beside, folder_of};
 

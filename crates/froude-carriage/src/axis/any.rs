@@ -1,4 +1,4 @@
-//! Any axis that a servo drives, along a line or about an axis, from logs of anybody: the method `servo`.
+//! Any axis that a servo drives, along a line or about an axis, from logs of any program: the method `servo`.
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::estimate::{Estimate, OWN};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::plain;
-use froude_records::run::run_of_table;
+use froude_records::run::{channel_name, run_of_table};
 use froude_records::sidecar_file::sidecar_of;
 use froude_records::table::{ColumnData, Table};
 use froude_records::table_file::read_table;
@@ -24,8 +24,8 @@ use froude_records::units::Dimension;
 use super::declared::{Axis, KEYS, SERVO};
 use super::page::sections;
 use super::{ASYMMETRIC, AxisModels, Model, SLOWEST_HZ, by_direction, doubts, files_of_table, one_excitation};
-use crate::runs::implausible;
-use crate::servo::scale::{ForcePerVolt, Scale};
+use crate::runs::{implausible, not_applied};
+use crate::servo::scale::{Errs, ForcePerVolt, Scale};
 use crate::servo::settle::uncertain;
 use crate::servo::{Chain, Coordinate, Delay, ServoError, ServoLog, identify_logs, record};
 
@@ -148,8 +148,15 @@ fn read(source: &Source, axis: &Axis) -> Result<Read, MethodError> {
         }
         let (position, scale, coordinate) = position(&table, axis)?;
         let (command, dimension) = command(&table, axis)?;
+        let channels = [&position, &command].map(|name| channel_name(name));
+        if let Some(what) = not_applied(&imported, &|name| channels.iter().any(|own| own == name), &|_| false) {
+            return Err(MethodError::input(
+                &path,
+                format!("{what} is not applied by the method servo; take it out, or apply it to the log"),
+            ));
+        }
         let values = |name: &str, factor: f64| -> Result<Vec<f64>, MethodError> {
-            let channel = imported.log.channels.get(&froude_records::run::channel_name(name));
+            let channel = imported.log.channels.get(&channel_name(name));
             let values = channel
                 .map(|channel| channel.values.iter().map(|x| factor * x).collect::<Vec<f64>>())
                 .unwrap_or_default();
@@ -201,7 +208,9 @@ fn read(source: &Source, axis: &Axis) -> Result<Read, MethodError> {
                 if coordinate != all.coordinate || gain.unit != all.gain.unit {
                     return Err(MethodError::input(
                         &path,
-                        format!("is in other units than {first}; give logs of another axis a [[source]] of their own"),
+                        format!(
+                            "has different units from {first}; give logs of another axis a [[source]] of their own"
+                        ),
                     ));
                 }
                 if let Some(twin) = all
@@ -329,7 +338,7 @@ fn position(table: &Table, axis: &Axis) -> Result<(String, f64, Coordinate), Met
         }
         (Some(_), true) => Err(axis
             .values
-            .wrong("count", "is no way and no angle; write count = \"0.1 mm\" or count = \"0.088 deg\"")
+            .wrong("count", "is neither a length nor an angle; write count = \"0.1 mm\" or count = \"0.088 deg\"")
             .into()),
         (Some(_), false) => Err(axis
             .values
@@ -365,7 +374,7 @@ fn at_axis(table: &Table, axis: &Axis, measured: Coordinate) -> Result<(Coordina
     let is_line = dimension != Dimension::ONE;
     if is_line && measured == Coordinate::Linear {
         let what = format!(
-            "is \"motor\", and the position of {} is a way: the motor's is an angle; write encoder = \"axis\"",
+            "is \"motor\", and the position of {} is a length, and that of a motor is an angle; write encoder = \"axis\"",
             table.path.display()
         );
         return Err(axis.values.wrong("encoder", what).into());
@@ -436,11 +445,12 @@ fn gain(
         quantity: "drive_gain".to_owned(),
         relative,
         dof: None,
-        is_radius: false,
+        errs: Errs::Factor,
     });
     let unit = dimension.checked_mul(of_gear).map_or_else(String::new, |unit| unit.written_beside(&[of_command]));
     let exact = "the drive gain is taken as exact: an error of it scales all coefficients alike; declare it by drive_gain = { value = \"…\", standard = \"2 %\" }";
-    Ok(ForcePerVolt { name: "drive_gain", unit, exact, ..ForcePerVolt::of_log(gear * declared.value, scale) })
+    let name = if axis.gear.is_some() { "drive_gain_at_axis" } else { "drive_gain" };
+    Ok(ForcePerVolt { name, unit, exact, ..ForcePerVolt::of_log(gear * declared.value, scale) })
 }
 
 /// One fit of all logs.

@@ -46,7 +46,7 @@ pub const KEYS: &[Key] = &[
         "gear",
         Kind::Coefficient,
         "1",
-        "turns of the motor per turn of the axis; of an axis along a line `\"2000 rad/m\"`, the angle of the motor per way",
+        "turns of the motor per turn of the axis; of an axis along a line `\"2000 rad/m\"`, the motor angle per unit of travel",
     ),
     optional(
         "encoder",
@@ -65,7 +65,7 @@ pub const KEYS: &[Key] = &[
         "count",
         Kind::AnyQuantity,
         "required of a position in counts",
-        "way or angle of one count of the encoder: `\"0.1 mm\"`, `\"0.088 deg\"`",
+        "distance or angle of one count of the encoder: `\"0.1 mm\"`, `\"0.088 deg\"`",
     ),
     usual(
         "friction",
@@ -246,7 +246,14 @@ impl Axis {
                 )));
             }
             let own = load.terms.iter().flat_map(|(formula, _): &(Formula, _)| &formula.coefficients);
-            let taken: Vec<&str> = own.map(|(name, _)| name.as_str()).chain(RESERVED).collect();
+            let names = coordinate.names();
+            let of_motion = [names.speed[0], names.acceleration[0]];
+            let taken: Vec<&str> = own.map(|(name, _)| name.as_str()).chain(RESERVED).chain(of_motion).collect();
+            if let Some((name, _)) = formula.coefficients.iter().find(|(name, _)| name.starts_with("F_")) {
+                return Err(wrong(format!(
+                    "{text:?} names the coefficient {name}; names that begin with F_ belong to friction; rename it"
+                )));
+            }
             if let Some((name, _)) = formula.coefficients.iter().find(|(name, _)| taken.contains(&name.as_str())) {
                 return Err(wrong(format!(
                     "{text:?} names the coefficient {name}, which is there already; give it another name"
@@ -265,8 +272,7 @@ impl Axis {
 }
 
 /// Names that the law of an axis has itself.
-const RESERVED: [&str; 13] =
-    ["J", "M", "F_v", "F_c", "F_v_pos", "F_v_neg", "F_c_pos", "F_c_neg", "F_s", "F_l", "v_s", "offset", "delay"];
+const RESERVED: [&str; 5] = ["J", "M", "v_s", "offset", "delay"];
 
 /// A load over position out of a table.
 fn curve(table: &Table, (of_position, of_load): (Dimension, Dimension), range: [f64; 2]) -> Result<Curve, MethodError> {
@@ -276,11 +282,11 @@ fn curve(table: &Table, (of_position, of_load): (Dimension, Dimension), range: [
         match (found.next(), found.next()) {
             (Some(one), None) => Ok(one.name.as_str()),
             (found, _) => {
-                let many = if found.is_some() { "several columns of this kind" } else { "no such column" };
+                let has = if found.is_some() { "several columns of this kind" } else { "no such column" };
                 Err(MethodError::input(
                     &table.path,
                     format!(
-                        "a table of a known load has two columns, position and load, and here is {many}: write {example}"
+                        "a table of a known load has two columns, position and load; this table has {has}: write {example}"
                     ),
                 ))
             }

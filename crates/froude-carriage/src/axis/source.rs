@@ -14,7 +14,7 @@ use super::cross::hold_against;
 use super::declared::SERVO;
 use super::page::sections;
 use super::{AxisModel, AxisModels, KINDS, force_per_volt_n_v, long, of_runs, of_table};
-use crate::servo::scale::{ForcePerVolt, Scale};
+use crate::servo::scale::{Errs, ForcePerVolt, Scale};
 use crate::source::{DRIVEN, lacking_in, named, not_fitted, nothing_fitted, runs_of};
 
 /// The models of an axis.
@@ -166,7 +166,7 @@ fn declared_gain(source: &Source, campaign: &str) -> Result<ForcePerVolt<'static
     let key = common_key(entry, campaign).unwrap_or_else(|| format!("{OWN}{DRIVE_GAIN}"));
     let name = entry.name.clone().unwrap_or_else(|| "force per volt, declared".to_owned());
     let quantity = DRIVE_GAIN.to_owned();
-    Ok(ForcePerVolt::of_log(n_v, Some(Scale { key, name, quantity, relative, dof: entry.dof, is_radius: false })))
+    Ok(ForcePerVolt::of_log(n_v, Some(Scale { key, name, quantity, relative, dof: entry.dof, errs: Errs::Factor })))
 }
 
 /// An answer for each model, in the order asked for; `lacking` says what the runs do not have for one that somebody named.

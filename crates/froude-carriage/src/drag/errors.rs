@@ -4,6 +4,7 @@ use froude_identify::uncertainty::SharedError;
 
 use crate::drag::point::{Method, Point};
 use crate::drag::setup::{Ballast, DragSetup, Efficiency, UNDECLARED_EFFICIENCY, UNDECLARED_ROLLING};
+use crate::servo::scale::{COUNT, SPROCKET_RADIUS};
 
 /// Errors that all pairs share, and those that the scatter already shows.
 pub(super) fn shared(method: Method, points: &[Point], measured: f64, setup: &DragSetup) -> Vec<SharedError> {
@@ -60,8 +61,8 @@ pub(super) fn shared(method: Method, points: &[Point], measured: f64, setup: &Dr
     let times = if method.is_sensorless() && setup.calibration.is_none() { 3.0 } else { 2.0 };
     // A radius that is taken too large makes the speed too large, and the drag too small.
     let of_length: Vec<f64> = points.iter().map(|p| times * p.force_n).collect();
-    let error = of("length of an encoder count", &of_length, setup.speed_scale_relative, never);
-    out.push(error.known_as(setup.keys.of_rig("sprocket_radius"), "sprocket_radius"));
+    let error = of(COUNT, &of_length, setup.speed_scale_relative, never);
+    out.push(error.known_as(setup.keys.of_rig(SPROCKET_RADIUS), SPROCKET_RADIUS));
     if let Some(strut) = setup.strut_n_s2_m2 {
         // What is taken off too much is missing in the drag.
         let of_strut: Vec<f64> = points.iter().map(|p| p.speed_m_s * p.speed_m_s.abs()).collect();

@@ -1,6 +1,6 @@
 //! What each method makes of the runs: steady points, how these scatter, and the errors that only it has.
 //!
-//! The scatter is that of the pairs, each left out in turn, since runs of one pair share mounts and the hour; with one pair that of its runs. It is
+//! The scatter is that of the pairs, each left out in turn, since runs of one pair share mounts and the hour; with one pair that of its runs about the law. It is
 //! not believed below what is known to differ between any two runs: noise and zeros of the sensor, or what the dry repeats show.
 
 use froude_fit::budget::jackknife_of_one;
@@ -135,14 +135,14 @@ impl<'r, 'a> Tows<'r, 'a> {
         Observed { errors: error.into_iter().collect(), ..observed }
     }
 
-    /// Takes off the differences what friction changes between the speeds of a wet and its dry run, B (v_wet − v_dry), with B of the dry runs; its
-    /// error is that of B.
+    /// Takes off the differences what friction changes between the speeds of a wet and its dry run, B (v_wet − v_dry), with B of the dry runs, mapped where they
+    /// allow it; its error is that of B, all of B where leaving one dry run out leaves none. Where a loop keeps the speed, only what it misses is corrected.
     fn at_one_speed(&self, points: &mut [Point], setup: &DragSetup, reported: &mut Reported) -> Option<SharedError> {
         let faster = |p: &Point| {
             let wet = self.wet.iter().find(|w| w.id == p.run)?;
             let dry = self.dry.iter().find(|d| d.is_partner_of(wet))?;
             let by_m_s = p.speed_m_s - mean_speed(dry, window(dry, setup.steady).ok()?);
-            (by_m_s.abs() > SPEEDS_DIFFER * p.speed_m_s.abs()).then_some(by_m_s)
+            (wet.held.is_some() || by_m_s.abs() > SPEEDS_DIFFER * p.speed_m_s.abs()).then_some(by_m_s)
         };
         let faster_m_s: Vec<f64> = points.iter().map(|p| faster(p).unwrap_or(0.0)).collect();
         let most = points.iter().zip(&faster_m_s).map(|(p, by)| (by / p.speed_m_s).abs()).fold(0.0, f64::max);
@@ -150,28 +150,40 @@ impl<'r, 'a> Tows<'r, 'a> {
             return None;
         }
         let cells: Vec<Vec<Cell>> = self.dry.iter().map(|d| cells(d, setup.steady)).collect();
-        let viscous = |skip: Option<usize>| {
+        let viscous = |is_mapped: bool, skip: Option<usize>| {
             let kept = cells.iter().enumerate().filter(|(i, _)| Some(*i) != skip).flat_map(|(_, cells)| cells);
-            Friction::identify(kept, false).map(|friction| friction.viscous_v_s_m).filter(|b| *b != 0.0)
+            Friction::identify(kept, is_mapped).map(|friction| friction.viscous_v_s_m).filter(|b| *b != 0.0)
         };
-        let known = viscous(None).zip(jackknife_of_one(cells.len(), |i| viscous(Some(i))));
+        let known: Vec<(f64, Option<(f64, f64)>)> = [true, false]
+            .into_iter()
+            .filter_map(|is_mapped| {
+                Some((viscous(is_mapped, None)?, jackknife_of_one(cells.len(), |i| viscous(is_mapped, Some(i)))))
+            })
+            .collect();
+        let known = known.iter().find(|(_, scatter)| scatter.is_some()).or(known.first()).copied();
         let differ = format!("wet and dry runs differ in speed by up to {}", percent(most));
+        let is_said = most > SPEEDS_DIFFER;
         let k = setup.force_per_volt_n();
-        let Some((b, (standard, dof))) = known else {
-            let text = format!(
-                "mcd: {differ}, and dry runs at one speed do not show how friction changes with it: the difference is in the drag. Add dry runs at other speeds"
-            );
-            reported.findings.push(Finding::new(Severity::Warning, "speeds-differ", text));
+        let Some((b, scatter)) = known else {
+            if is_said {
+                let text = format!(
+                    "mcd: {differ}, and dry runs at one speed do not show how friction changes with it: the drag includes this difference. Add dry runs at other speeds"
+                );
+                reported.findings.push(Finding::new(Severity::Warning, "speeds-differ", text));
+            }
             return None;
         };
+        let (standard, dof) = scatter.unwrap_or((b.abs(), f64::INFINITY));
         for (p, by_m_s) in points.iter_mut().zip(&faster_m_s) {
             p.force_n -= k * b * by_m_s;
         }
-        let text = format!(
-            "mcd: {differ}; friction changes by {} N s/m with the speed (dry runs), and the differences are corrected for it",
-            short_form(k * b, k * standard)
-        );
-        reported.findings.push(Finding::new(Severity::Note, "speeds-differ", text));
+        if is_said {
+            let text = format!(
+                "mcd: {differ}; friction changes by {} N s/m with the speed (dry runs), and the differences are corrected for it",
+                short_form(k * b, k * standard)
+            );
+            reported.findings.push(Finding::new(Severity::Note, "speeds-differ", text));
+        }
         let direction: Vec<f64> = faster_m_s.iter().map(|by| k * by).collect();
         Some(SharedError::of_load(
             "friction between the speeds of wet and dry runs",
@@ -192,18 +204,17 @@ impl<'r, 'a> Tows<'r, 'a> {
             (false, false) => self.sweeps.clone(),
         };
         let k = setup.force_per_volt_n();
-        let without_drag: Vec<(Cluster, Vec<Cell>)> =
-            clusters(&frictional).into_iter().zip(frictional.iter().map(|r| cells(r, setup.steady))).collect();
+        let without_drag: Vec<Vec<Cell>> = frictional.iter().map(|r| cells(r, setup.steady)).collect();
         let with_drag: Vec<(u32, Vec<Cell>)> = self.wet.iter().map(|r| (r.pair, cells(r, setup.steady))).collect();
         // A map is made where it is used: friction runs elsewhere would leave stretches of it that nobody passed.
         let towed: Vec<f64> = with_drag.iter().flat_map(|c| &c.1).map(|c| c.position_m).collect();
         let [low, high] = super::steady::reach(&towed);
         let is_near = |c: &&Cell| !is_mapped || (low - KNOT_SPACING_M..=high + KNOT_SPACING_M).contains(&c.position_m);
-        let identify = |skip: Option<Cluster>| {
-            let cells = without_drag.iter().filter(|c| Some(c.0) != skip).flat_map(|c| &c.1);
+        let identify = |is_kept: &dyn Fn(usize) -> bool| {
+            let cells = without_drag.iter().enumerate().filter(|(i, _)| is_kept(*i)).flat_map(|(_, cells)| cells);
             Friction::identify(cells.filter(is_near), is_mapped)
         };
-        let Some(friction) = identify(None) else {
+        let Some(friction) = identify(&|_| true) else {
             if !frictional.is_empty() {
                 let why = if is_mapped {
                     "the dry runs do not cover the whole tow"
@@ -224,8 +235,8 @@ impl<'r, 'a> Tows<'r, 'a> {
         };
         let points = keep(self.wet.iter().map(|w| point(w)), method, reported);
         let groups = pairs(&points);
-        let without = |skip: Cluster| {
-            let without = identify(Some(skip))?;
+        let slope_without = |clusters: &[Cluster], skip: Cluster| {
+            let without = identify(&|i| clusters[i] != skip)?;
             let (mut xx, mut xy) = (0.0, 0.0);
             for (_, cells) in with_drag.iter().filter(|c| Cluster::Pair(c.0) != skip && groups.contains(&c.0)) {
                 let x = cells.first().map_or(0.0, |c| c.speed_m_s * c.speed_m_s.abs());
@@ -236,28 +247,45 @@ impl<'r, 'a> Tows<'r, 'a> {
             }
             (xx > 0.0).then(|| vec![xy / xx])
         };
-        let mut sweeps: Vec<Cluster> =
-            without_drag.iter().map(|c| c.0).filter(|c| !matches!(c, Cluster::Pair(_))).collect();
-        sweeps.dedup();
+        // The runs of the friction that stand or fall with no pair, each left out in turn; and how many they are.
+        let alone = |clusters: &[Cluster]| {
+            let mut alone: Vec<Cluster> = clusters.iter().copied().filter(|c| !matches!(c, Cluster::Pair(_))).collect();
+            alone.dedup();
+            let set = Replicates::leaving_out("friction run", alone.len(), |g| slope_without(clusters, alone[g]));
+            (set, alone.len())
+        };
         // A wet run alone has half the variance of a difference, and friction that is known exactly adds none.
         let floor = self.promised(&points, setup).map(|d| of_dry_repeats(&d, 0.5_f64.sqrt(), &points, setup));
-        let of_pairs = Replicates::leaving_out("pair", groups.len(), |g| without(Cluster::Pair(groups[g])));
-        let of_sweeps = Replicates::leaving_out("friction run", sweeps.len(), |g| without(sweeps[g]));
-        let by_pairs: Vec<Replicates> = match of_pairs {
-            Some(pairs) => std::iter::once(Replicates { floor, ..pairs }).chain(of_sweeps).collect(),
-            // Of one pair the wet runs are left out in turn, and the dry ones.
-            None => of_sweeps.map_or_else(Vec::new, |dry| repeats(&points).into_iter().chain([dry]).collect()),
+        let by_pair = clusters(&frictional, true);
+        let of_pairs =
+            Replicates::leaving_out("pair", groups.len(), |g| slope_without(&by_pair, Cluster::Pair(groups[g])));
+        let (sets, is_known) = if let Some(pairs) = of_pairs {
+            let (sweeps, count) = alone(&by_pair);
+            let is_known = sweeps.is_some() || count == 0;
+            (std::iter::once(Replicates { floor, ..pairs }).chain(sweeps).collect::<Vec<_>>(), is_known)
+        } else {
+            // Of one pair the wet runs scatter about the law, and the runs of the friction are left out in turn.
+            let (dry, _) = alone(&clusters(&frictional, false));
+            let is_known = dry.is_some();
+            (repeats(&points).into_iter().chain(dry).collect(), is_known)
         };
+        if !(is_known || points.is_empty()) {
+            let text = format!(
+                "{}: the interval does not include the uncertainty of the friction, which {} not show; add dry runs",
+                method.name(),
+                if frictional.len() == 1 { "one dry run does" } else { "the dry runs, left out in turn, do" }
+            );
+            reported.findings.push(Finding::new(Severity::Warning, "friction-uncertain", text));
+        }
         // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
         let of_nothing: Vec<Point> = self.dry.iter().filter_map(|d| point(d).ok()).collect();
-        let chance = together("", &by_pairs).map_or(f64::INFINITY, |part| part.standard(0));
+        let chance = together("", &sets).filter(|_| is_known).map_or(f64::INFINITY, |part| part.standard(0));
         let phantom = slope(&of_nothing).filter(|phantom| phantom.abs() > chance);
         let left = phantom.map(|phantom| {
             let squares: Vec<f64> = points.iter().map(|p| p.speed_m_s * p.speed_m_s.abs()).collect();
             let name = "friction outside the range where it was identified, not corrected";
             SharedError::of_load(name, setup.load(), &squares, phantom.abs(), f64::INFINITY)
         });
-        let sets = if by_pairs.is_empty() { repeats(&points).into_iter().collect() } else { by_pairs };
         Some(Observed {
             scatter: scatter(sets),
             errors: left.into_iter().collect(),
@@ -287,7 +315,8 @@ impl Observed {
     }
 }
 
-/// Pairs left out in turn, where there are two; else the runs.
+/// Pairs left out in turn, where there are two; else the runs, which err alike: all points have one weight, and the fastest decide the slope, so that a jackknife of
+/// them would have fewer degrees of freedom than runs.
 fn repeats(points: &[Point]) -> Option<Replicates> {
     let pairs = pairs(points);
     if pairs.len() >= 2 {
@@ -295,7 +324,14 @@ fn repeats(points: &[Point]) -> Option<Replicates> {
         return Replicates::leaving_out("pair", pairs.len(), without);
     }
     let without = |g: usize| slope(points.iter().enumerate().filter(|(i, _)| *i != g).map(|(_, p)| p)).map(|d| vec![d]);
-    Replicates::leaving_out("run", points.len(), without)
+    let runs = Replicates::leaving_out("run", points.len(), without)?;
+    let d = slope(points)?;
+    let (squares, left) = points.iter().fold((0.0, 0.0), |(squares, left), p| {
+        let x = p.speed_m_s * p.speed_m_s.abs();
+        (squares + x * x, left + (p.force_n - d * x).powi(2))
+    });
+    let dof = points.len() as f64 - 1.0;
+    Some(Replicates { variance: Some(vec![left / (dof * squares)]), ..runs })
 }
 
 /// Sets of replicates under their name.
@@ -367,24 +403,21 @@ fn unseen_drift(
 enum Cluster {
     /// A dry tow: with its pair.
     Pair(u32),
-    /// A dry tow of the only pair: alone.
-    Tow(u32),
+    /// A dry tow alone.
+    Tow(usize),
     /// A friction run: with its repeat of all speeds, or alone where repeats are not distinguished.
     Sweep(u32),
 }
 
-/// Clusters of the runs that the friction is identified from.
-fn clusters(runs: &[&DragRun<'_>]) -> Vec<Cluster> {
+/// Clusters of the runs that the friction is identified from; dry tows by their pair or each alone.
+fn clusters(runs: &[&DragRun<'_>], by_pair: bool) -> Vec<Cluster> {
     let mut repeats = runs.iter().filter(|r| r.kind == RunKind::Friction).map(|r| r.pair);
     let first = repeats.next();
     let is_told = repeats.any(|r| Some(r) != first);
-    let mut tows = runs.iter().filter(|r| r.kind != RunKind::Friction).map(|r| r.pair);
-    let first_pair = tows.next();
-    let is_one_pair = tows.all(|pair| Some(pair) == first_pair);
     let of = |(i, r): (usize, &&DragRun<'_>)| match r.kind {
         RunKind::Friction => Cluster::Sweep(if is_told { r.pair } else { i as u32 }),
-        _ if is_one_pair => Cluster::Tow(i as u32),
-        _ => Cluster::Pair(r.pair),
+        _ if by_pair => Cluster::Pair(r.pair),
+        _ => Cluster::Tow(i),
     };
     runs.iter().enumerate().map(of).collect()
 }

@@ -101,7 +101,7 @@ fn judge(
     let promised = tows.filter(|tows| !tows.dry.is_empty()).and_then(|tows| tows.promised(differences, setup));
     let agrees = promised.as_ref().and_then(|d| agreement(differences, d, setup));
     let detectability = promised.map(|d| Detectability { zero_change_n: zero_change(runs, setup), ..d });
-    let recommended = recommended(&coefficients);
+    let recommended = recommended(coefficients.iter().filter(|c| unphysical(c, setup).is_none()));
     findings.extend(doubts(runs, setup, &coefficients, detectability.as_ref(), agrees));
     let added_mass = added_mass(runs, setup);
     findings.extend(added_mass.as_ref().filter(|m| m.interval_95[1] < 0.0).map(|m| {
@@ -160,7 +160,7 @@ fn or_reported(
     })
 }
 
-/// The narrowest interval among the methods that need no model of the friction, or the first method's; a number without an interval is
+/// The narrowest interval among the methods that need no model of the friction, or the first method's; a number without an interval or that no body has is
 /// recommended to nobody.
 #[must_use]
 fn recommended<'a>(all: impl IntoIterator<Item = &'a Coefficient> + Clone) -> Option<Method> {
@@ -183,10 +183,7 @@ fn doubts(
 ) -> Vec<Finding> {
     let mut out: Vec<Finding> = not_calibrated(setup, all).into_iter().chain(wheel_load(runs, setup)).collect();
     for c in all {
-        out.extend(setup.reference_area_m2.and_then(|area| {
-            let name = format!("D_d ({})", c.method.name());
-            froude_identify::lint::drag_coefficient(&name, c.value, setup.density_kg_m3, area)
-        }));
+        out.extend(unphysical(c, setup));
         out.extend([few_pairs(c), constant_beside_drag(c), drifts_in_window(c)].into_iter().flatten());
     }
     if let (Some(d), Some(c)) = (detectability, all.iter().find(|c| c.method == Method::Mcd)) {
@@ -239,6 +236,12 @@ fn wheel_load(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<Finding> {
         _ => return None,
     };
     Some(Finding::new(Severity::Warning, code, text))
+}
+
+/// A C_D that no body has.
+fn unphysical(c: &Coefficient, setup: &DragSetup) -> Option<Finding> {
+    let name = format!("D_d ({})", c.method.name());
+    froude_identify::lint::drag_coefficient(&name, c.value, setup.density_kg_m3, setup.reference_area_m2?)
 }
 
 fn few_pairs(c: &Coefficient) -> Option<Finding> {

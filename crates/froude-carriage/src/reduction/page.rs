@@ -51,8 +51,11 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
         out.push(format!("Recommended: {}, D_d = {value} N s²/m² (95 %).", c.method.words()));
         out.extend(drag_coefficient(c, setup));
     } else {
+        let is_unphysical = report.findings.iter().any(|f| f.code == "unphysical-drag-coefficient");
         let has_interval = report.coefficients.iter().any(|c| c.interval_95.is_some());
-        let why = if has_interval {
+        let why = if is_unphysical {
+            "C_D is one that no body has; check which runs are listed as wet and as dry, the units and the reference area"
+        } else if has_interval {
             "neither the force sensor nor the difference of wet and dry runs gives an interval here, and those of the models depend on \
              their own friction"
         } else {

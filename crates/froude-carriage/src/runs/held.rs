@@ -6,9 +6,10 @@
 
 use std::ops::Range;
 
+use froude_fit::series::Line;
 use froude_records::number::{percent, plain, significant};
 use froude_records::run::median;
-use froude_records::run::stamps::{gaps, usual_step_s};
+use froude_records::run::stamps::{parts, usual_step_s};
 
 use crate::drag::steady::SteadySettings;
 
@@ -51,7 +52,7 @@ pub(super) fn held(
     let way_m = |rows: &Range<usize>| position_m[rows.end - 1] - position_m[rows.start];
     let mut found: Vec<(Range<usize>, Range<usize>, Vec<f64>)> = Vec::new();
     let mut fastest_m_s = 0.0_f64;
-    for part in parts(time_s) {
+    for part in parts(time_s).into_iter().filter(|part| part.len() > 2) {
         let time = &time_s[part.clone()];
         let local_m_s = local_speed(time, &position_m[part.clone()]);
         fastest_m_s = local_m_s.iter().fold(fastest_m_s, |fastest, v| fastest.max(v.abs()));
@@ -106,12 +107,28 @@ pub(super) fn held(
     Ok(Held { part, steady, local_m_s })
 }
 
-/// Rows between gaps.
-fn parts(time_s: &[f64]) -> Vec<Range<usize>> {
-    let gaps = gaps(time_s);
-    let starts = std::iter::once(0).chain(gaps.iter().map(|[_, after]| *after));
-    let ends = gaps.iter().map(|[before, _]| before + 1).chain([time_s.len()]);
-    starts.zip(ends).map(|(start, end)| start..end).filter(|part| part.len() > 2).collect()
+/// Pieces of a window whose mean speeds a line is laid through, its degrees of freedom, and Student's t that one window in a hundred exceeds.
+const PIECES: usize = 6;
+const DOF: f64 = 4.0;
+const CHANCE: f64 = 4.60;
+/// Change of the speed over a window, as a part of it, that is reported.
+const DRIFTS: f64 = 0.005;
+
+/// Change of the speed over a window, as a part of its mean, where it is more than chance and half a per cent: a drive without a loop still accelerates.
+pub(super) fn drift(time_s: &[f64], position_m: &[f64]) -> Option<f64> {
+    let last = time_s.len().checked_sub(1).filter(|last| *last >= PIECES)?;
+    let piece = |k: usize| {
+        let (a, b) = (k * last / PIECES, (k + 1) * last / PIECES);
+        (position_m[b] - position_m[a]) / (time_s[b] - time_s[a])
+    };
+    let speeds: Vec<f64> = (0..PIECES).map(piece).collect();
+    let line = Line::through(&speeds);
+    let left: f64 = speeds.iter().enumerate().map(|(k, v)| (v - line.at(k)).powi(2)).sum();
+    let n = PIECES as f64;
+    let standard = (left / DOF / (n * (n * n - 1.0) / 12.0)).sqrt();
+    // From the first row to the last, and not from the middle of the first piece.
+    let part = n * line.slope / line.middle;
+    (line.slope.abs() > CHANCE * standard && part.abs() > DRIFTS).then_some(part)
 }
 
 /// The speed at each row: the way over [`SPAN_S`] around it.
@@ -173,6 +190,21 @@ mod tests {
             let declared = super::held(&time, &position, speed_m_s.abs(), Some([3.0, 5.0])).unwrap();
             assert_eq!((time[declared.steady.start], declared.steady.len()), (3.0, 401));
         }
+    }
+
+    /// A carriage of 6 kg that a constant force takes to its speed with a time constant of 3 s; and one that keeps it, whose counts of 0.1 mm are 0.3 % of a piece.
+    #[test]
+    fn a_speed_that_still_changes_is_seen_and_counts_are_not() {
+        let time: Vec<f64> = (0..400).map(|i| 0.005 * f64::from(i)).collect();
+        let x = |late_s: f64| -> Vec<f64> {
+            let way = |t: f64| 0.1 * (t + 3.0 * (-(t + late_s) / 3.0).exp());
+            time.iter().map(|t| (1e4 * way(*t)).round() / 1e4).collect()
+        };
+        // v = 0.1 (1 − e^−(t + 8)/3): from 0.9305 to 0.9643 of its end over 2 s, 3.6 % of its mean; the line through it is within a tenth.
+        let found = drift(&time, &x(8.0)).unwrap();
+        assert!((found - 0.0356).abs() < 0.004, "{found}");
+        assert_eq!(drift(&time, &x(60.0)), None);
+        assert_eq!(drift(&time[..3], &time[..3]), None);
     }
 
     #[test]

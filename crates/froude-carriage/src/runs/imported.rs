@@ -24,7 +24,7 @@ use froude_records::units::Dimension;
 use froude_rig::carriage::{DrivenCampaign, LogsRig};
 use indexmap::IndexMap;
 
-use super::held::{CORNER_S, HELD_WITHIN, Held, SPAN_S, held};
+use super::held::{CORNER_S, HELD_WITHIN, Held, SPAN_S, drift, held};
 use super::set::{Member, doubles};
 use super::whole::folder_of;
 use super::{Named, Runs, attitude, column, first_folder};
@@ -150,7 +150,7 @@ pub(super) fn read(
     pair(&mut out.logs, &settings)?;
     for (mut finding, n) in said.into_values() {
         if n > 1 {
-            finding.message += &format!(" (so it is with {} more)", n - 1);
+            finding.message += &format!(" (and {})", counted(n - 1, "more log", "more logs"));
         }
         out.findings.push(finding);
     }
@@ -174,6 +174,7 @@ pub(super) fn read(
         return Err(MethodError::input(&out.folder, what));
     }
     out.findings.push(steady_by_position());
+    out.findings.extend(speed_drifts(&out.logs)?);
     out.travel = attitude(&out.logs, Some(&driven.campaign))?;
     out.campaign = Some(driven);
     let named = if paths.iter().all(|path| path.is_dir()) { paths } else { all };
@@ -242,34 +243,42 @@ fn told(path: &Path) -> Result<Tow, MethodError> {
     };
     let table = read_table(path, None)?;
     let imported = run_of_table(&table, Some(&sidecar))?;
-    if let Some(what) = not_applied(&imported) {
+    let of_force = || imported.log.channels.contains_key("force").then(|| OF_FORCE.to_owned());
+    let is_steady = |segment: &Segment| segment.kind == SegmentKind::Steady;
+    if let Some(what) = not_applied(&imported, &|_| true, &is_steady).or_else(of_force) {
         return lacks(&format!("{what} is not applied to logs of a carriage; take it out, or apply it to the log"));
     }
     Ok(Tow { sidecar, role, speed_m_s, foreign: table.findings(), imported })
 }
 
-/// What is declared of the data and would be passed over.
-fn not_applied(run: &ImportedRun) -> Option<String> {
+/// A channel that tows of other programs do not have.
+const OF_FORCE: &str = "the channel force of a force sensor (method = \"steady\" reads f_x)";
+
+/// What is declared of the data, or of the channels that are read, and would be passed over: segments that are not used among it.
+pub(crate) fn not_applied(
+    run: &ImportedRun,
+    is_read: &dyn Fn(&str) -> bool,
+    is_used: &dyn Fn(&Segment) -> bool,
+) -> Option<String> {
     let Declarations { jumps: _, clocks, frames, cell, marks, segments } = &run.declared;
     let sections = [
         ("[clocks]", !clocks.is_empty()),
         ("[frames]", !frames.is_empty()),
         ("[cell]", cell.is_some()),
         ("[[marks]]", !marks.is_empty()),
-        ("[[segments]] that is not steady", segments.iter().any(|segment| segment.kind != SegmentKind::Steady)),
-        ("the channel force of a force sensor (method = \"steady\" reads f_x)", run.log.channels.contains_key("force")),
+        ("[[segments]] of this kind", segments.iter().any(|segment| !is_used(segment))),
     ];
     let sections = sections.into_iter().find(|(_, is)| *is).map(|(section, _)| section.to_owned());
     let sensor = || {
         run.told
             .iter()
-            .find(|(_, told)| !told.sensor.is_silent())
+            .find(|(name, told)| is_read(name) && !told.sensor.is_silent())
             .map(|(name, _)| format!("range, resolution, filter or delay of {name}"))
     };
     let clock = || {
         let mut channels = run.log.channels.iter();
         channels
-            .find(|(_, channel)| !is_own(&channel.meaning.clock))
+            .find(|(name, channel)| is_read(name) && !is_own(&channel.meaning.clock))
             .map(|(name, channel)| format!("the clock {:?} of {name}", channel.meaning.clock))
     };
     sections.or_else(sensor).or_else(clock)
@@ -320,8 +329,8 @@ fn run_of(tow: Tow, rig: &LogsRig) -> Result<RunLog, Unread> {
     let drive_mean = command[steady.clone()].iter().sum::<f64>() / steady.len() as f64;
     if drive_mean * direction.sign() <= 0.0 {
         return Err(refused(format!(
-            "its {} is {} {} on average while its position {}: the motor would brake its own carriage. Where all runs are so write sign = -1 beside \
-             one of the two columns; where only one direction is, the log shows sizes without their sign, and the sign must come from the drive",
+            "its {} is {} {} on average while its position {}: the command opposes the motion. If this holds for all runs, set sign = -1 for one of the two columns; \
+             if only for one direction, the log stores magnitudes and the sign must come from the drive",
             drive.trim_start_matches("y/"),
             significant(drive_mean, 3),
             if rig.is_current { "A" } else { "V" },
@@ -433,6 +442,28 @@ fn not_there(declared_by: &[PathBuf], all: &[PathBuf]) -> Result<Option<Finding>
         let text =
             format!("{} listed and not there: {}", counted(missing.len(), "log is", "logs are"), missing.join(", "));
         Finding::new(Severity::Warning, "campaign-unfinished", text)
+    }))
+}
+
+/// Runs whose speed still changes where they are steady.
+fn speed_drifts(logs: &[RunLog]) -> Result<Option<Finding>, MethodError> {
+    let mut drifting: Vec<(f64, &str)> = Vec::new();
+    for log in logs {
+        let Some(Segment { from_s, to_s, .. }) = log.meta.declared.segments.first() else { continue };
+        let rows = log.time_s.partition_point(|t| t < from_s)..log.time_s.partition_point(|t| t <= to_s);
+        let position_m = column(log, "y/position", Dimension::LENGTH)?;
+        drifting.extend(drift(&log.time_s[rows.clone()], &position_m[rows]).map(|part| (part, log.meta.id.as_str())));
+    }
+    let worst = drifting.iter().max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    Ok(worst.map(|(part, id)| {
+        let text = format!(
+            "in {} of {} the speed still changes over the steady window, by up to {} ({id}); the force that accelerates the carriage is in the drag. Tow further, or hold the \
+             speed with a loop",
+            drifting.len(),
+            counted(logs.len(), "run", "runs"),
+            percent(part.abs())
+        );
+        Finding::new(Severity::Warning, "speed-drifts", text)
     }))
 }
 

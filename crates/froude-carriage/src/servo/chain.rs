@@ -337,12 +337,16 @@ impl Chain {
 /// Least part of the column of the delay that no other column has.
 const LEAST_PART: f64 = 0.02;
 
-/// Whether a fit knows more of the delay than that it lies within a step: its standard uncertainty, and the part of its column that no other column has.
-pub(crate) fn is_delay_known(standard_s: f64, part: f64, step_s: f64) -> bool {
-    standard_s <= step_s / 12.0_f64.sqrt() && part >= LEAST_PART
+/// Standard uncertainties by which a delay must lie beyond the step to be determined, however wide they are.
+const BEYOND: f64 = 2.0;
+
+/// Whether a fit knows more of the delay than that it lies within a step: its value, its standard uncertainty, and the part of its column that no other column has.
+pub(crate) fn is_delay_known(delay_s: f64, standard_s: f64, part: f64, step_s: f64) -> bool {
+    let is_beyond = (delay_s - 0.5 * step_s).abs() > 0.5 * step_s + BEYOND * standard_s;
+    part >= LEAST_PART && (is_beyond || standard_s <= step_s / 12.0_f64.sqrt())
 }
 
-/// What is said where it does not.
+/// Finding for an undetermined delay.
 pub(crate) fn delay_unknown(step_s: f64) -> String {
     format!(
         "the motion does not determine the delay of the command: it is taken to lie between 0 and one step ({} ms), which the intervals include; move at several \

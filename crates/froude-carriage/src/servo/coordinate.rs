@@ -1,4 +1,4 @@
-//! What an axis moves along: a line or an angle. The equations are the same; names and units differ.
+//! Linear or rotary axes: the equations are the same; names and units differ.
 
 /// The coordinate of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

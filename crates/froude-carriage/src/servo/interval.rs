@@ -84,18 +84,12 @@ pub struct Spread {
     pub block_s: f64,
     /// Runs whose scatter stands in the place of the blocks'; `None` for a single record.
     pub runs: Option<usize>,
+    /// What was taken as one piece of evidence, in words.
+    pub pieces: String,
     /// Degrees of freedom of each interval: blocks side by side less coefficients, or those of the clusters' variance.
     pub dof: Vec<f64>,
     /// Covariance over the blocks' resamples, or over the runs.
     pub covariance: Mat<f64>,
-}
-
-impl Spread {
-    /// What was taken as one piece of evidence, in words.
-    #[must_use]
-    pub fn pieces(&self) -> String {
-        self.runs.map_or_else(|| format!("blocks of {:.1} s", self.block_s), |n| format!("{n} clusters, one per run"))
-    }
 }
 
 /// Scatter of a least-squares solution of `rows`.
@@ -113,7 +107,8 @@ pub fn spread(rows: &Rows, solution: &Solution, hac_lag_s: Option<f64>) -> Resul
     let (hac, hac_lag_s) = hac(&rows.columns, &residuals, &inverse_gram(solution), rows.rate_hz, hac_lag_s);
     let over = over_blocks(residuals.len(), rows.rate_hz, solution.coefficients.len(), refit)?;
     let dof = vec![over.dof; solution.coefficients.len()];
-    Ok(Spread { hac, hac_lag_s, block_s: over.block_s, runs: None, dof, covariance: over.covariance })
+    let pieces = format!("blocks of {:.1} s", over.block_s);
+    Ok(Spread { hac, hac_lag_s, block_s: over.block_s, runs: None, pieces, dof, covariance: over.covariance })
 }
 
 /// As [`spread`], the runs (ranges of rows) being the clusters.
@@ -129,7 +124,9 @@ pub(crate) fn over_runs(
     let p = solution.coefficients.len();
     let of_one = |j: usize| clustered.dof(&(0..p).map(|k| f64::from(u8::from(k == j))).collect::<Vec<f64>>());
     let dof = (0..p).map(of_one).collect();
-    Ok(Spread { hac, hac_lag_s, block_s: BLOCK_S, runs: Some(runs.len()), dof, covariance: clustered.covariance })
+    let pieces = format!("{} clusters, one per run", runs.len());
+    let covariance = clustered.covariance;
+    Ok(Spread { hac, hac_lag_s, block_s: BLOCK_S, runs: Some(runs.len()), pieces, dof, covariance })
 }
 
 /// HAC standard deviations, and the lag used, s.

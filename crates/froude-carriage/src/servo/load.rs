@@ -5,6 +5,8 @@
 //! | terms  | `Σ k_j φ_j(q)`, formulas that are linear in their coefficients |
 //! | table  | a known load over position, by straight lines                  |
 //!
+//! Friction in proportion to the load is that of these loads; the torque of the inertia is not included, unlike Hamon et al.
+//!
 //! **Sign.** As friction: positive is what the drive must give in the direction of positive positions to hold the axis.
 
 use froude_identify::formula::Formula;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use froude_records::number::{percent, plain};
-use froude_records::run::stamps::{LACKS, gaps, usual_step_s};
+use froude_records::run::stamps::{LACKS, parts, usual_step_s};
 use froude_records::text::counted;
 use froude_signal::resample::Spline;
 
@@ -146,14 +146,13 @@ impl ServoLog {
     ///
     /// [`ServoError::Length`], [`ServoError::TooFewRows`], [`ServoError::Setting`] for a rate that no record has.
     pub fn evenly(&self) -> Result<Evenly, ServoError> {
-        let n = self.checked_len()?;
+        self.checked_len()?;
         let step_s = usual_step_s(&self.time_s).unwrap_or(f64::NAN);
         let rate_hz = rate_of(step_s)?;
-        let gaps = gaps(&self.time_s);
-        let starts = std::iter::once(0).chain(gaps.iter().map(|[_, after]| *after));
-        let ends = gaps.iter().map(|[before, _]| before + 1).chain([n]);
+        let parts = parts(&self.time_s);
+        let gaps = parts.len().saturating_sub(1);
         let (mut stretches, mut put, mut short) = (Vec::new(), 0, 0);
-        for rows in starts.zip(ends).map(|(from, to)| from..to) {
+        for rows in parts {
             let part = self.part(rows.clone());
             if part.time_s.windows(2).all(|w| is_even(w[1] - w[0], step_s)) && rows.len() >= FEWEST {
                 stretches.push(Stretch { log: part, recorded: None });
@@ -175,8 +174,8 @@ impl ServoLog {
                 percent(put as f64 / samples.max(1) as f64)
             ));
         }
-        if !gaps.is_empty() {
-            done.push(format!("the log is cut at {}: no filter runs across them", counted(gaps.len(), "gap", "gaps")));
+        if gaps > 0 {
+            done.push(format!("the log is cut at {}: no filter runs across them", counted(gaps, "gap", "gaps")));
         }
         if short > 0 {
             done.push(format!("{} between gaps are too few for a filter and left out", counted(short, "row", "rows")));

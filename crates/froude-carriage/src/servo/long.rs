@@ -349,7 +349,7 @@ impl LongServo {
         if let Some(d) = delay {
             let (step_s, late_s) = (self.rate_hz.recip(), solution.coefficients[d]);
             let part = solution.sigma / (solution.standard[d] * self.squares[d].sqrt());
-            if !is_delay_known(covariance[(d, d)].sqrt(), part, step_s) {
+            if !is_delay_known(late_s + self.chain.delay.at_s, covariance[(d, d)].sqrt(), part, step_s) {
                 // The other coefficients for a delay that lies within a step: they are linear in it.
                 let by: Vec<f64> = (0..p).map(|i| solution.covariance[(i, d)] / solution.covariance[(d, d)]).collect();
                 for (c, by) in solution.coefficients.iter_mut().zip(&by) {

@@ -183,31 +183,58 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
     }
 }
 
-/// As [`of_runs`], from logs each of which determines all coefficients: with two to four of them the intervals are those of the scatter between fits of single
-/// logs, S/n with Student's t of n − 1 degrees of freedom, and what the blocks show within them.
+/// As [`of_runs`], from logs each of which should determine all coefficients. With two to four, or where one log alone decides a coefficient, the intervals are
+/// those of the scatter between fits of single logs, S/n with Student's t of n − 1 degrees of freedom, and of blocks within the logs; logs that cannot be
+/// fitted alone are named and not in S.
 ///
 /// # Errors
 ///
 /// [`ServoError`].
 pub(crate) fn of_logs(logs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError> {
-    let n = logs.len();
-    let each: Option<Vec<Vec<f64>>> = (2..FEWEST_RUNS)
-        .contains(&n)
-        .then(|| logs.iter().map(|rows| Some(least_squares(rows).ok()?.coefficients)).collect())
-        .flatten();
-    let Some(each) = each else { return of_runs(logs, chain) };
+    let alone: Vec<Option<Vec<f64>>> = logs.iter().map(|log| Some(least_squares(log).ok()?.coefficients)).collect();
     let (all, ranges) = joined(logs)?;
+    if ranges.len() == 1 {
+        return of_rows(all, chain);
+    }
     let solution = least_squares(&all)?;
+    if ranges.len() >= FEWEST_RUNS {
+        match over_runs(&all, &solution, &ranges, chain.hac_lag_s) {
+            Ok(spread) => return Ok(reported(all, ranges, &solution, spread, chain)),
+            Err(ServoError::Alone { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let each: Vec<&Vec<f64>> = alone.iter().flatten().collect();
     let mut spread = spread(&all, &solution, chain.hac_lag_s)?;
-    let mean = |j: usize| each.iter().map(|b| b[j]).sum::<f64>() / n as f64;
-    let between = |i: usize, j: usize| {
-        let products = each.iter().map(|b| (b[i] - mean(i)) * (b[j] - mean(j)));
-        products.sum::<f64>() / ((n - 1) * n) as f64
-    };
-    let p = solution.coefficients.len();
-    spread.covariance += &Mat::from_fn(p, p, between);
-    (spread.runs, spread.dof) = (Some(n), vec![(n - 1) as f64; p]);
-    Ok(reported(all, ranges, &solution, spread, chain))
+    let n = each.len();
+    if n >= 2 {
+        let mean = |j: usize| each.iter().map(|b| b[j]).sum::<f64>() / n as f64;
+        let between = |i: usize, j: usize| {
+            let products = each.iter().map(|b| (b[i] - mean(i)) * (b[j] - mean(j)));
+            products.sum::<f64>() / ((n - 1) * n) as f64
+        };
+        let p = solution.coefficients.len();
+        spread.covariance += &Mat::from_fn(p, p, between);
+        (spread.runs, spread.dof) = (Some(n), vec![(n - 1) as f64; p]);
+        spread.pieces = format!("fits of {n} single logs");
+    }
+    let mut report = reported(all, ranges, &solution, spread, chain);
+    let unfit: Vec<String> = (1..).zip(&alone).filter(|(_, fit)| fit.is_none()).map(|(k, _)| k.to_string()).collect();
+    if !unfit.is_empty() {
+        report.fit.findings.push(format!(
+            "{} {} of {} alone {} not determine all coefficients: {}; record logs that each do",
+            if unfit.len() == 1 { "log" } else { "logs" },
+            unfit.join(", "),
+            alone.len(),
+            if unfit.len() == 1 { "does" } else { "do" },
+            if n >= 2 {
+                "the scatter between logs is that of the others"
+            } else {
+                "the intervals do not include what changes from log to log"
+            }
+        ));
+    }
+    Ok(report)
 }
 
 /// Rows of runs behind each other, and which are of which.
@@ -261,7 +288,7 @@ fn reported(
     let whiteness = whiteness(&residuals_n, rows.rate_hz);
     let design = Mat::from_fn(rows.force_n.len(), rows.columns.len(), |i, j| rows.columns[j][i]);
     let n = rows.force_n.len();
-    let pieces = spread.pieces();
+    let pieces = spread.pieces.clone();
     let columns: Vec<Column<'_>> = (rows.names.iter().enumerate())
         .map(|(j, (name, _))| Column {
             name,

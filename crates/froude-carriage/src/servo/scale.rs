@@ -61,15 +61,33 @@ pub struct Scale {
     pub relative: f64,
     /// Degrees of freedom behind it; infinite where none are given.
     pub dof: Option<f64>,
-    /// Whether it is the radius that makes counts into metres and torques into forces: it goes into a coefficient by a power of its own, any
-    /// other factor once.
-    pub is_radius: bool,
+    /// What it scales.
+    pub errs: Errs,
 }
 
+/// What a factor that errs scales.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Errs {
+    /// The force.
+    Factor,
+    /// Lengths, and by the torque the force: the sprocket's radius.
+    Radius,
+    /// Lengths alone.
+    Length,
+}
+
+/// An error of lengths in words, and its key: that of the drag has the same.
+pub(crate) const COUNT: &str = "length of an encoder count";
+pub(crate) const SPROCKET_RADIUS: &str = "sprocket_radius";
+
 impl Scale {
-    /// What a part of it changes in a coefficient, as a part of that.
+    /// What a part of it changes in a coefficient, as a part of that; `radii` is the power of the radius, with one for the torque.
     fn power(&self, name: &str, radii: &dyn Fn(&str) -> f64) -> f64 {
-        if self.is_radius { radii(name) } else { 1.0 }
+        match self.errs {
+            Errs::Factor => 1.0,
+            Errs::Radius => radii(name),
+            Errs::Length => radii(name) + 1.0,
+        }
     }
 }
 
@@ -77,17 +95,17 @@ impl Drive {
     /// Errors of K_T with the amplifier's gain, and of the radius.
     #[must_use]
     pub fn scales(&self) -> [Scale; 2] {
-        let scale = |name: &str, quantity: &str, relative, is_radius| Scale {
+        let scale = |name: &str, quantity: &str, relative, errs| Scale {
             key: format!("{}/{quantity}", self.rig),
             name: name.to_owned(),
             quantity: quantity.to_owned(),
             relative,
             dof: None,
-            is_radius,
+            errs,
         };
         [
-            scale("K_T and amplifier gain, declared", "torque_constant", self.torque_relative, false),
-            scale("length of an encoder count", "sprocket_radius", self.radius_relative, true),
+            scale("K_T and amplifier gain, declared", "torque_constant", self.torque_relative, Errs::Factor),
+            scale(COUNT, SPROCKET_RADIUS, self.radius_relative, Errs::Radius),
         ]
     }
 }

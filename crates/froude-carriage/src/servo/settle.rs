@@ -5,7 +5,7 @@
 //!
 //! **Delay.** The force at `t` is that of the command at `t − delay`, by straight lines between its samples. A command that is held until the next sample acts half a
 //! step late on average, one that is continuous at once. The column is the slope of the force; a log whose motion has one frequency cannot tell it from inertia and viscous
-//! friction. Where it is worse known than by the knowledge that it lies between 0 and a step (a standard uncertainty of h/√12), it is taken as that.
+//! friction. If the estimate is compatible with a delay between 0 and a step, and less certain than that (a standard uncertainty of h/√12), this is used instead.
 //!
 //! **Source.** Gautier & Poignet (2001), Control Eng. Pract. 9, 1361 (rows and parallel filters); Bates & Watts (1988), *Nonlinear regression analysis*, 2.2 (the steps).
 
@@ -92,7 +92,7 @@ fn of_prepared(logs: &Stretches, chain: &Chain) -> Result<ServoReport, ServoErro
     };
     if !is_settled {
         report.fit.findings.push(format!(
-            "the search for what the law is not linear in did not settle in {STEPS} steps: use a simpler law of friction, or declare delay and stribeck_speed"
+            "the fit did not converge in {STEPS} iterations; use a simpler friction law, or declare delay and stribeck_speed"
         ));
     }
     report.fit.findings.extend(doubts(&report, found.friction.fitted_stribeck.is_some()));
@@ -127,8 +127,16 @@ pub fn uncertain(logs: &[ServoLog], chain: &Chain, standard_s: f64) -> Result<Ch
 fn changing(logs: &Stretches, chain: &Chain, standard_s: f64) -> Result<Chain, ServoError> {
     let at = |late_s: f64| -> Result<Vec<f64>, ServoError> {
         let delay = Delay { at_s: chain.delay.at_s + late_s, is_estimated: false, changes: Vec::new() };
-        let (rows, ..) = settled(logs, &started(logs, &Chain { delay, ..chain.clone() })?)?;
-        Ok(least_squares(&joined(rows)?.0)?.coefficients)
+        let (rows, found, _) = settled(logs, &started(logs, &Chain { delay, ..chain.clone() })?)?;
+        let (rows, _) = joined(rows)?;
+        let mut coefficients = least_squares(&rows)?.coefficients;
+        // The column of Stribeck's speed says by how much it differs from where the model is linearised.
+        for ((name, _), c) in rows.names.iter().zip(&mut coefficients) {
+            if name == STRIBECK_SPEED {
+                *c += found.friction.stribeck_speed_m_s.unwrap_or(0.0);
+            }
+        }
+        Ok(coefficients)
     };
     let (early, late) = (at(-standard_s)?, at(standard_s)?);
     let changes = early.iter().zip(&late).map(|(early, late)| 0.5 * (late - early)).collect();
@@ -141,7 +149,7 @@ fn is_undetermined(report: &ServoReport, step_s: f64) -> bool {
     let found = place.and_then(|j| Some((report.fit.coefficients.get(j)?, report.rows.columns.get(j)?)));
     let Some((c, column)) = found else { return true };
     let part = report.fit.sigma_n / (c.classical_std * column.iter().map(|x| x * x).sum::<f64>().sqrt());
-    !is_delay_known(c.block_std.max(c.hac_std), part, step_s)
+    !is_delay_known(c.value, c.block_std.max(c.hac_std), part, step_s)
 }
 
 /// What is doubtful of delay and terms of friction.

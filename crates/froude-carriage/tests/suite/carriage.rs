@@ -158,6 +158,7 @@ fn an_area_in_the_wrong_unit_is_found_out_by_its_drag_coefficient() {
         "{:?}",
         report.findings
     );
+    assert_eq!(report.recommended, None);
 }
 
 #[test]

@@ -110,13 +110,23 @@ fn units_counts_and_gear_change_no_coefficient() {
             assert!((a / b - 1.0).abs() < 1e-6, "{name}: {a} {b} of {section}");
         }
     }
-    // A motor behind a spindle of 2 mm/rad moves a mass of J/r².
+    // A motor behind a spindle of r = 2 mm/rad moves a mass of J/r² against F_v/r² and loads of F_c/r and m g l/r.
     let axis = identified(
         &turned("time [s],position [m],current [A]", 0.002, 1.0),
-        "drive_gain = \"0.35 N m/A\"\ngear = \"500 rad/m\"\nencoder = \"axis\"\n",
+        "drive_gain = \"0.35 N m/A\"\ngear = \"500 rad/m\"\nencoder = \"axis\"\nloads = [\"m_g_l*sin(k*position)\"]\n[constants]\nk = \"500 m^-1\"\n",
     );
-    let mass = &axis["estimates"][0]["coefficients"]["M"];
-    assert_eq!(mass["unit"], "kg", "{mass}");
+    for (name, of_joint, factor) in
+        [("M", "J", 2.5e5), ("F_v", "F_v", 2.5e5), ("F_c", "F_c", 500.0), ("m_g_l", "m_g_l", 500.0)]
+    {
+        let value =
+            |record: &Value, name: &str| record["estimates"][0]["coefficients"][name]["value"].as_f64().unwrap();
+        let (a, b) = (value(&axis, name), factor * value(&own, of_joint));
+        assert!((a / b - 1.0).abs() < 1e-6, "{name}: {a} {b}");
+    }
+    assert_eq!(axis["estimates"][0]["coefficients"]["M"]["unit"], "kg");
+    // The record has the gain with the gear in it, and says so.
+    let gain = &axis["estimates"][0]["law"]["constants"]["drive_gain_at_axis"];
+    assert!((gain["value"].as_f64().unwrap() - 175.0).abs() < 1e-9, "{axis}");
 }
 
 #[test]
@@ -139,7 +149,12 @@ fn what_is_not_declared_or_does_not_fit_is_refused_with_the_line_to_write() {
         (
             log,
             "drive_gain = \"0.35 N m/A\"\nloads = [\"F_c*sin(angle)\"]\n",
-            "names the coefficient F_c, which is there already",
+            "names the coefficient F_c; names that begin with F_ belong to friction; rename it",
+        ),
+        (
+            log,
+            "drive_gain = \"0.35 N m/A\"\nloads = [\"angle_dot*sin(angle)\"]\n",
+            "names the coefficient angle_dot, which is there already",
         ),
         (log, "drive_gain = \"0.35 N m/A\"\nload = \"k*angle\"\n", "did you mean `loads`"),
         (log, "drive_gain = \"0.35 N m/A\"\ncount = \"1 deg\"\n", "is of a position in counts, and angle"),
@@ -166,6 +181,21 @@ fn what_is_not_declared_or_does_not_fit_is_refused_with_the_line_to_write() {
         assert!(output.status.code() == Some(2) && said.contains(told), "{section}: {said}");
         assert!(!folder.path().join("joint-results").exists());
     }
+}
+
+/// What a sidecar declares of position or command and no fit applies is refused.
+#[test]
+fn a_delay_of_the_position_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("log.csv"), joint_log(1)).unwrap();
+    let sidecar = "schema = 1\n[columns]\n\"time [s]\" = { name = \"time\" }\n\"angle [rad]\" = { name = \"angle\", delay = \"1 ms\" }\n\
+                   \"current [A]\" = { name = \"current\" }\n";
+    std::fs::write(folder.path().join("log.toml"), sidecar).unwrap();
+    std::fs::write(folder.path().join("joint.toml"), campaign("log.csv", SECTION)).unwrap();
+    let output = froude(folder.path(), &["identify", "joint.toml"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2), "{said}");
+    assert!(said.contains("range, resolution, filter or delay of angle is not applied by the method servo"), "{said}");
 }
 
 /// Numbers that look like noise, between −1 and 1.

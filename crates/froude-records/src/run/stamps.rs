@@ -204,6 +204,15 @@ pub fn gaps(time_s: &[f64]) -> Vec<[usize; 2]> {
     (0..last).filter(is_gap).map(|i| [i, i + 1]).collect()
 }
 
+/// Rows between the gaps.
+#[must_use]
+pub fn parts(time_s: &[f64]) -> Vec<Range<usize>> {
+    let gaps = gaps(time_s);
+    let starts = std::iter::once(0).chain(gaps.iter().map(|[_, after]| *after));
+    let ends = gaps.iter().map(|[before, _]| before + 1).chain([time_s.len()]);
+    starts.zip(ends).map(|(start, end)| start..end).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
