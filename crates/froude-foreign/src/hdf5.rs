@@ -368,6 +368,9 @@ const UNITS: [&str; 4] = ["units", "unit", "Units", "Unit"];
 const RAW: [&str; 9] =
     ["scale", "scaling", "offset", "gain", "slope", "factor", "sensitivity", "calibration", "conversion_factor"];
 
+/// Attributes by which programs turn any numbers into values: NWB and others.
+const FACTORS: [&str; 3] = ["conversion", "conversion_factor", "multiplier"];
+
 /// Attributes of a group or dataset.
 struct Attributes(Vec<(String, AttrValue)>);
 
@@ -417,6 +420,12 @@ impl Attributes {
                 "holds unsigned numbers in a signed type (attribute _Unsigned); write them in an unsigned one"
                     .to_owned(),
             );
+        }
+        let factor = FACTORS.iter().find(|name| self.number(name).is_some_and(|factor| factor != 1.0));
+        if let Some(factor) = factor {
+            return Some(format!(
+                "has the attribute {factor}, which may turn its numbers into values; write the values"
+            ));
         }
         let raw = self.0.iter().map(|(name, _)| name).find(of_raw).filter(|_| is_whole)?;
         Some(format!("has whole numbers with the attribute {raw}, which may turn them into values; write the values"))

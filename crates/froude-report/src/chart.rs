@@ -161,11 +161,26 @@ pub(crate) fn label(ticks: &Ticks, scale: Scale, place: f64) -> Rich {
     }
 }
 
+/// More points than these are samples of a log: each dot's rim would cover the dots beside it.
+const MOST_DOTS: usize = 300;
+/// Radius of the specks that stand for them.
+const SPECK: f64 = 1.0;
+
 fn draw(canvas: &mut Canvas, frame: &Panel, series: &Series, scales: (Scale, Scale), ink: crate::canvas::Ink) {
     let x: Vec<f64> = series.x.iter().map(|&x| on(scales.0, x)).collect();
     let put = |values: &[f64]| -> Vec<f64> { values.iter().map(|&y| on(scales.1, y)).collect() };
     let (y, low, high) = (put(&series.y), put(&series.low), put(&series.high));
     match series.mark {
+        Mark::Points if x.len() > MOST_DOTS => {
+            let mut last = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+            for at in x.iter().zip(&y).filter_map(|(&x, &y)| frame.at(x, y)) {
+                // Specks on one another are one.
+                if f64::hypot(at.0 - last.0, at.1 - last.1) >= 0.5 * SPECK {
+                    canvas.speck(at, SPECK, ink);
+                    last = at;
+                }
+            }
+        }
         Mark::Points => {
             for (i, (&x, &y)) in x.iter().zip(&y).enumerate() {
                 if let (Some(&low), Some(&high)) = (low.get(i), high.get(i))

@@ -52,4 +52,4 @@ pub use envelope::envelope;
 pub use error::DecayError;
 pub use fit::{DecayFit, HalfCycle, Method, Range, RunSummary, Scatter};
 pub use output_error::output_error;
-pub use run::{DecayRun, DecaySetup, DecayWindow, Restoring};
+pub use run::{DecayRun, DecaySetup, DecayWindow, Known, Restoring};

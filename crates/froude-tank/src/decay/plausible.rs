@@ -21,6 +21,8 @@ use crate::log::TankLog;
 /// Least swing of a rotation that nobody is asked about, rad; most and least of a translation, m.
 const LEAST_RAD: f64 = 0.017_453;
 const ALONG_M: [f64; 2] = [1e-3, 1.0];
+/// No body in water swings faster.
+const LEAST_PERIOD_S: f64 = 5e-3;
 /// m/s².
 const GRAVITY: f64 = 9.81;
 /// What was seen and what was logged agree within this factor.
@@ -74,6 +76,12 @@ pub(super) fn check(
             "period = \"{seen_s:.4} s\" is declared, and the logs swing with {period_s:.4} s: state the unit of the time, `time [ms]` as its header, for example"
         );
         return refused(log, what);
+    }
+    if seen_s.is_none() && period_s < LEAST_PERIOD_S {
+        let what = format!(
+            "the period comes out as {period_s:.1e} s: state the unit of the time, `time [ms]` as its header, for example (MATLAB's datenum counts days: multiply by 86400); if it is right, write period = \"{period_s:e} s\" in [source.decay]"
+        );
+        return refused(&logs[0], what);
     }
     let is_counted = |run: &DecayRun<'_>| {
         let is_whole = run.time_s.iter().all(|t| t.fract() == 0.0);

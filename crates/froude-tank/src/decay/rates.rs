@@ -26,7 +26,7 @@ use super::error::DecayError;
 use super::fit::{DecayFit, Method, Scatter};
 use super::motion::Motion;
 use super::output_error::output_error;
-use super::run::{DecayRun, DecaySetup, Restoring};
+use super::run::{DecayRun, DecaySetup, Known, Restoring};
 
 /// Relative step of a difference quotient: its own error is of the order of its square.
 const STEP: f64 = 1e-5;
@@ -72,9 +72,9 @@ pub fn fitted_by(method: Method, runs: &[DecayRun<'_>], setup: &DecaySetup) -> R
         Method::Envelope => envelope,
         Method::OutputError => output_error,
     };
-    let Restoring::PerInertia { stiffness, .. } = setup.restoring else { return of(runs, setup) };
+    let Restoring::PerInertia { known, .. } = setup.restoring else { return of(runs, setup) };
     let [per_stiffness, ..] = of(runs, setup)?.values;
-    let restoring = Restoring::PerInertia { omega2: per_stiffness.recip(), stiffness };
+    let restoring = Restoring::PerInertia { omega2: per_stiffness.recip(), known };
     of(runs, &DecaySetup { restoring, ..*setup }).map(DecayFit::per_inertia)
 }
 
@@ -132,19 +132,24 @@ impl DecayFit {
             out.insert(name.to_owned(), number);
         };
         match self.restoring {
-            Restoring::PerInertia { stiffness: None, .. } => {}
-            Restoring::PerInertia { stiffness: Some(c), .. } => {
+            Restoring::PerInertia { known: None, .. } => {}
+            Restoring::PerInertia { known: Some(known), .. } => {
                 let [_, damping, of_square] = self.axis.decay_names();
-                let per = format!("stiffness/{omega}^2");
+                let (declared, number) = known.named();
+                let is_inertia = matches!(known, Known::MovingInertia(_));
+                let per = if is_inertia { declared.to_owned() } else { format!("{declared}/{omega}^2") };
                 let all: [(&str, String, &dyn Fn([f64; 3]) -> f64); 3] = [
                     ("moving_inertia", per.clone(), &|_| 1.0),
                     (&damping, format!("{linear}*{per}"), &|x| x[1]),
                     (&of_square, format!("{quadratic}*{per}"), &|x| x[2]),
                 ];
-                for ((name, formula, factor), unit) in all.into_iter().zip(self.axis.decay_units()) {
-                    let of = |x: [f64; 3]| factor(x) * c.value / (x[0] * x[0]);
-                    let standard = (of(rates.values) * c.relative()).abs();
-                    put(name, formula, unit, &of, vec![part_of("stiffness", standard, c.dof)]);
+                // An inertia that is declared is no result.
+                let found = all.into_iter().zip(self.axis.decay_units()).skip(usize::from(is_inertia));
+                for ((name, formula, factor), unit) in found {
+                    let of =
+                        |x: [f64; 3]| factor(x) * number.value * if is_inertia { 1.0 } else { (x[0] * x[0]).recip() };
+                    let standard = (of(rates.values) * number.relative()).abs();
+                    put(name, formula, unit, &of, vec![part_of(declared, standard, number.dof)]);
                 }
             }
             _ => {

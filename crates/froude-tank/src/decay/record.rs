@@ -12,7 +12,7 @@ use froude_records::units::{Dimension, Unit};
 use indexmap::IndexMap;
 
 use super::fit::{DecayFit, HalfCycle};
-use super::run::Restoring;
+use super::run::{Known, Restoring};
 use crate::findings::warning;
 use crate::joint::DeclaredError;
 use crate::joint::record::{about, by_part, errors, type_a};
@@ -81,11 +81,11 @@ pub fn result(
 fn as_exact(fit: &DecayFit) -> Vec<Finding> {
     let restoring = fit.restoring.parts().into_iter().map(|(name, number, _)| (name, number));
     let inertia = (!fit.restoring.is_per_inertia()).then_some(("inertia", fit.inertia));
-    let stiffness = match fit.restoring {
-        Restoring::PerInertia { stiffness, .. } => stiffness.map(|c| ("stiffness", c)),
+    let known = match fit.restoring {
+        Restoring::PerInertia { known, .. } => known.map(Known::named),
         _ => None,
     };
-    let all = inertia.into_iter().chain(restoring).chain(stiffness);
+    let all = inertia.into_iter().chain(restoring).chain(known);
     let exact = all.filter(|(_, number)| number.standard == 0.0);
     let said = |(name, _)| {
         let text = format!(

@@ -74,6 +74,26 @@ impl Default for DecayWindow {
     }
 }
 
+/// What is declared of a body beside its logs, and turns rates into forces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Known {
+    /// C, N/m or N m/rad: the moving inertia is C/ω².
+    Stiffness(Uncertain),
+    /// All that moves, added mass included, kg or kg m².
+    MovingInertia(Uncertain),
+}
+
+impl Known {
+    /// Its key and its number.
+    #[must_use]
+    pub const fn named(self) -> (&'static str, Uncertain) {
+        match self {
+            Self::Stiffness(c) => ("stiffness", c),
+            Self::MovingInertia(inertia) => ("moving_inertia", inertia),
+        }
+    }
+}
+
 /// What drives a displaced body back.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Restoring {
@@ -90,8 +110,8 @@ pub enum Restoring {
     PerInertia {
         /// ω², 1/s².
         omega2: f64,
-        /// C, N/m or N m/rad, where it is declared: the moving inertia is C/ω².
-        stiffness: Option<Uncertain>,
+        /// What turns them into forces, where it is declared.
+        known: Option<Known>,
     },
 }
 
@@ -157,10 +177,10 @@ impl DecaySetup {
         Self { axis, inertia, restoring: Restoring::Spring(stiffness), window: DecayWindow::default() }
     }
 
-    /// Of a body of which the log alone is known, with its stiffness where that is declared: coefficients are per moving inertia.
+    /// Of a body of which the log is known and little else: coefficients are per moving inertia.
     #[must_use]
-    pub fn per_inertia(axis: Motion, stiffness: Option<Uncertain>) -> Self {
-        let restoring = Restoring::PerInertia { omega2: 1.0, stiffness };
+    pub fn per_inertia(axis: Motion, known: Option<Known>) -> Self {
+        let restoring = Restoring::PerInertia { omega2: 1.0, known };
         Self { restoring, ..Self::new(axis, Uncertain::new(0.0, 0.0), Uncertain::new(1.0, 0.0)) }
     }
 

@@ -27,7 +27,7 @@ use froude_records::section::Section;
 use froude_records::units::Dimension;
 use froude_rig::decay::Release;
 
-use super::run::{DecaySetup, DecayWindow, Restoring};
+use super::run::{DecaySetup, DecayWindow, Known, Restoring};
 use crate::declared::{INERTIA, RATE, REPEATS, STIFFNESS, uncertain};
 use crate::matrix::Plan;
 
@@ -60,6 +60,13 @@ pub const KEYS: &[Key] = &[
         Kind::By("axis", &by_axis(Kind::Constant(STIFFNESS), Kind::Constant(Dimension::MOMENT))),
         "required with `inertia` and without `buoyancy`",
         "all that restores the position: springs, and ρ g times the waterplane area",
+    )
+    .within(Range::Positive),
+    optional(
+        "moving_inertia",
+        Kind::By("axis", &by_axis(Kind::Constant(Dimension::MASS), Kind::Constant(INERTIA))),
+        "damping is per moving inertia",
+        "in the place of `inertia` and `stiffness`: all that moves, its added mass included",
     )
     .within(Range::Positive),
     optional(
@@ -125,6 +132,10 @@ pub(super) fn decay(s: &Section<'_>) -> Result<DecaySetup, RecordError> {
     let values = Values::read(s, KEYS)?;
     let axis = values.need("axis", values.word("axis", &Motion::ALL))?;
     let constant = |key: &str| values.constant(key).map(uncertain);
+    if constant("moving_inertia").is_some() && constant("inertia").or(constant("buoyancy")).is_some() {
+        let problem = "contains the added inertia: leave out inertia, buoyancy and radius, which are for finding that";
+        return Err(values.wrong("moving_inertia", problem));
+    }
     let setup = match constant("inertia") {
         Some(inertia) => DecaySetup { restoring: restoring(&values, axis)?, ..DecaySetup::new(axis, inertia, inertia) },
         None if constant("buoyancy").or(constant("radius")).is_some() => {
@@ -132,7 +143,15 @@ pub(super) fn decay(s: &Section<'_>) -> Result<DecaySetup, RecordError> {
                          swings per moving inertia";
             return Err(values.missing("inertia", write));
         }
-        None => DecaySetup::per_inertia(axis, constant("stiffness")),
+        None => {
+            let [stiffness, moving] = ["stiffness", "moving_inertia"].map(constant);
+            if stiffness.is_some() && moving.is_some() {
+                return Err(
+                    values.wrong("moving_inertia", "stands beside stiffness: with one of them the other is found")
+                );
+            }
+            DecaySetup::per_inertia(axis, stiffness.map(Known::Stiffness).or(moving.map(Known::MovingInertia)))
+        }
     };
     Ok(DecaySetup {
         window: DecayWindow {
@@ -158,11 +177,14 @@ fn restoring(values: &Values, axis: Motion) -> Result<Restoring, RecordError> {
         }
         let [like, instead] = if axis.is_rotation() {
             [
-                "12 N m",
-                "; or, of a buoyancy that acts at a radius, buoyancy and radius; or leave out inertia, for results per moving inertia",
+                "… N m",
+                "; or, of a buoyancy that acts at a radius, buoyancy and radius; or call it moving_inertia if it contains the added inertia; or leave out inertia, for results per moving inertia",
             ]
         } else {
-            ["180 N/m", "; or leave out inertia, for results per moving inertia"]
+            [
+                "… N/m",
+                "; or call it moving_inertia if it contains the added mass; or leave out inertia, for results per moving inertia",
+            ]
         };
         let stiffness = constant("stiffness").ok_or_else(|| missing("stiffness", like, instead))?;
         return Ok(Restoring::Spring(stiffness));

@@ -18,7 +18,7 @@ use crate::names::FREE_DECAY;
 use froude_identify::method::{Declares, Found, MethodError, Need};
 use froude_records::block::{Section, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
-use froude_records::page::{ChartPanel, Mark};
+use froude_records::page::{Chart, ChartPanel, Mark, Series};
 use froude_records::run::{Channel, Role};
 use froude_records::units::Dimension;
 
@@ -206,9 +206,40 @@ fn decrements(fit: &DecayFit) -> Section {
         t.number("period_s", "period [s]", |s| s.period_s).significant(4),
         t.number("decrement", "decrement [1]", |s| s.decrement).significant(4),
         t.number("law", "of the law [1]", |s| s.law).significant(4),
-        t.interval("interval_95", "95 % interval", |s| s.interval_95),
+        t.interval("interval_95", "95 % interval of the law", |s| s.interval_95),
     ]);
-    Section::new("Decrement by amplitude", [table.into()])
+    let is_angle = fit.axis.is_rotation();
+    let shown = |amplitude: f64| if is_angle { amplitude.to_degrees() } else { amplitude };
+    let (x, y) =
+        swings.iter().filter_map(|s| Some((shown(s.amplitude), s.decrement?))).unzip::<f64, f64, Vec<_>, Vec<_>>();
+    let mut law: Vec<(f64, f64, [f64; 2])> =
+        swings.iter().filter_map(|s| Some((shown(s.amplitude), s.law?, s.interval_95?))).collect();
+    law.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let end = |k: usize| law.iter().map(|(.., ends)| ends[k]).collect::<Vec<f64>>();
+    let of_law = Series {
+        low: end(0),
+        high: end(1),
+        ..series(
+            "law, with its 95 % interval",
+            Mark::Line,
+            law.iter().map(|(x, ..)| *x).collect::<Vec<_>>(),
+            law.iter().map(|(_, y, _)| *y).collect::<Vec<_>>(),
+        )
+    };
+    let panel =
+        drawn::panel("logarithmic decrement [1]".to_owned(), vec![series("each swing", Mark::Points, x, y), of_law]);
+    let chart = Chart {
+        name: "decrements".to_owned(),
+        title: "Decrement by amplitude".to_owned(),
+        caption: format!(
+            "Logarithmic decrement of each swing over the amplitude that it begins at, and that of the law of {}.",
+            fit.method.name()
+        ),
+        x_label: head.to_owned(),
+        panels: vec![panel],
+        ..Chart::default()
+    };
+    Section::new("Decrement by amplitude", [chart.into(), table.into()])
 }
 
 /// A log as a release: its time and the channel that moves.

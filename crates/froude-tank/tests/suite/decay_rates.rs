@@ -7,7 +7,7 @@ use froude_fit::coverage::{Count, z_limit};
 use froude_tank::decay::axis::Motion;
 use froude_tank::decay::rates::fitted_by;
 use froude_tank::decay::releases::Logged;
-use froude_tank::decay::{DecayFit, DecayRun, DecaySetup, Method};
+use froude_tank::decay::{DecayFit, DecayRun, DecaySetup, Known, Method};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
@@ -141,12 +141,22 @@ fn what_is_declared_of_the_body_does_not_change_the_rates() {
         }
         // C alone: the moving inertia is C/ω², and has the uncertainty of C.
         let stiffness = Uncertain::new(2.0, 0.02);
-        let third = fitted(method, &logged, &DecaySetup::per_inertia(Motion::Roll, Some(stiffness)));
+        let third = fitted(method, &logged, &DecaySetup::per_inertia(Motion::Roll, Some(Known::Stiffness(stiffness))));
         let (inertia, [low, high]) = derived(&third, "moving_inertia");
         assert!((inertia / (2.0 / own.values[0].powi(2)) - 1.0).abs() < 1e-9);
         assert!(((high - low) / (2.0 * 1.96 * 0.01 * inertia) - 1.0).abs() < 0.1, "{low} {high}");
         let (linear, _) = derived(&third, "D_rx_I");
         assert!((linear / (own.values[1] * inertia) - 1.0).abs() < 1e-9);
+        // I alone: damping is I d, and has the uncertainties of both.
+        let [exact, rough] = [0.0, 0.004].map(|standard| {
+            let moving = Known::MovingInertia(Uncertain::new(0.4, standard));
+            let fit = fitted(method, &logged, &DecaySetup::per_inertia(Motion::Roll, Some(moving)));
+            let all = fit.derived();
+            assert!(!all.contains_key("moving_inertia"));
+            (all["D_rx_I"].value.unwrap(), all["D_rx_I"].standard_uncertainty.unwrap())
+        });
+        assert!((exact.0 / (0.4 * own.values[1]) - 1.0).abs() < 1e-9 && (exact.0 / rough.0 - 1.0).abs() < 1e-12);
+        assert!((rough.1 / f64::hypot(exact.1, 0.01 * exact.0) - 1.0).abs() < 1e-9, "{exact:?} {rough:?}");
     }
 }
 
