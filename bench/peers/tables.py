@@ -74,7 +74,7 @@ with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     # The peak of a child is at least that of the process that started it, so that this one stays small.
     subprocess.run([sys.executable, SCRIPT, "--write"], check=True)
-    print("| file | froude convert to Parquet | peer | ratio of times |\n| --- | --- | --- | --- |")
+    print("| file | froude convert to Parquet | peer | peer time / Froude time |\n| --- | --- | --- | --- |")
     for kind, script in READERS.items():
         file = f"t.{kind}"
         sidecar = ["--sidecar", "columns.toml"] if kind in ("mat", "german.csv") else []

@@ -210,8 +210,7 @@ fn panels(text: &str) -> Result<usize, String> {
 /// Metres for a unit (`mm`, `0.5 m`) and the scale of a model (`1:50`, `1:50 mm`).
 fn unit(text: &str) -> Result<(Option<f64>, Option<f64>), String> {
     let wrong = || {
-        "write the unit of the mesh: mm, cm, m, in, ft, or a length, \"0.5 m\"; or the scale of a model, 1:50, of which the mesh has the full \
-         size (\"1:50 mm\": in millimetres), or 50:1 where it has the size of the model and the body the full one"
+        "write the unit of the mesh: mm, cm, m, in, ft, or a length, \"0.5 m\"; or a scale: 1:50 if the mesh is full-size and the body is a model (\"1:50 mm\": mesh in millimetres), 50:1 if the mesh is model-size and the body is full-size"
             .to_owned()
     };
     let length = |text: &str| {

@@ -424,7 +424,7 @@ impl Attributes {
         let factor = FACTORS.iter().find(|name| self.number(name).is_some_and(|factor| factor != 1.0));
         if let Some(factor) = factor {
             return Some(format!(
-                "has the attribute {factor}, which may turn its numbers into values; write the values"
+                "has the attribute {factor}, which may be a factor still to be applied to its numbers; store the converted values"
             ));
         }
         let raw = self.0.iter().map(|(name, _)| name).find(of_raw).filter(|_| is_whole)?;

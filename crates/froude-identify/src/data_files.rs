@@ -100,3 +100,24 @@ impl<'a> DataFiles<'a> {
         keyed(self.files.into_iter().map(|(_, file)| file).collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use froude_records::run::step::Step;
+
+    use super::*;
+
+    #[test]
+    fn two_sheets_are_different_data_and_two_readings_of_one_are_not() {
+        let file = |parts: &[&str]| DataFile {
+            sha256: "1".to_owned(),
+            steps: parts.iter().map(|words| Step::new(PART, "", *words)).collect(),
+            ..DataFile::default()
+        };
+        assert!(!is_same_data(&file(&["sheet a"]), &file(&["sheet b"])));
+        assert!(is_same_data(&file(&["sheet a"]), &file(&["sheet a"])));
+        assert!(is_same_data(&file(&["sheet a"]), &file(&[])));
+        assert!(is_same_data(&file(&["sheet a", "sheet b"]), &file(&["sheet b"])));
+        assert!(!is_same_data(&file(&[]), &DataFile { sha256: "2".to_owned(), ..file(&[]) }));
+    }
+}

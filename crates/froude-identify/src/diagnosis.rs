@@ -238,7 +238,7 @@ fn dead_bands(model: &ModelFit) -> impl Iterator<Item = Finding> {
         all.filter(|(spec, value)| model.law.is_thruster() && spec.name.starts_with("dead_band") && **value < 0.0);
     below.map(|(spec, _)| {
         let text = format!(
-            "{} is below zero, which no thruster has; a load whose zero is not taken off, or that does not grow with the square of the command, looks like that. Small loads have no command in the inverse",
+            "{} is below zero, which is impossible for a thruster; possible causes are a zero load that was not subtracted, or a load that does not grow with the square of the command. The inverse has no command for small loads",
             spec.name
         );
         Finding::new(Severity::Note, "negative-dead-band", text)

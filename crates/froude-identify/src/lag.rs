@@ -82,8 +82,7 @@ pub(crate) fn findings(campaign: &Campaign, model: &ModelFit, data: &Dataset) ->
         }
         lag_s.is_finite().then(|| {
             let text = format!(
-                "{}, {load}: the load {} the motion by {} ± {} s (95 %, {}): drag and added mass are biased by this. A filter in one channel or separate clocks can cause this: shift the load by that time in the \
-                 table",
+                "{}, {load}: the load {} the motion by {} ± {} s (95 %, {}): drag and added mass are biased by this. A filter in one channel or separate clocks can cause this: shift the load by the delay that they are known to have, not by one found from these rows",
                 model.law.name,
                 if lag_s > 0.0 { "lags" } else { "leads" },
                 significant(lag_s.abs(), 2),

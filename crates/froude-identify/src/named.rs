@@ -116,7 +116,7 @@ impl NamedLaw {
 
     fn ambiguous(&self, several: &[&str], what: &str) -> IdentifyError {
         self.refused(&format!(
-            "the columns {} may both be its {what}; remove the others from the table or the sidecar",
+            "the columns {} may both be its {what}; keep only one of them in the table or the sidecar",
             several.join(" and ")
         ))
     }

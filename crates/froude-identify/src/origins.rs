@@ -3,7 +3,7 @@
 //! A prior, a known coefficient and a tare are evidence beside the observations only if they were not made of them. The data of each such record,
 //! and the data that it inherited in the same way, are listed in the new record as [`INHERITED`], so that a loop through several campaigns is found:
 //! a fitted file among them is counted twice, and the job is rejected. Files are the same if their SHA-256 is, unless two
-//! different parts of one were read (`sheet`, `range` or `part` of their sidecars).
+//! different parts of one were read (`sheet` or `part` of their sidecars).
 
 use std::path::Path;
 

@@ -170,7 +170,7 @@ fn guarded(solids: [Arrays; 2]) -> Result<[Mesh; 2], String> {
         });
         // Nobody waits for an answer that comes too late.
         let said = |why: String| format!("the union failed ({why})");
-        let _ = answer.send(result.unwrap_or_else(|_| Err("it stopped".to_owned())).map_err(said));
+        let _ = answer.send(result.unwrap_or_else(|_| Err("boolmesh panicked".to_owned())).map_err(said));
     };
     Builder::new().stack_size(STACK).spawn(work).map_err(|e| format!("the system gives no thread ({e})"))?;
     match answered.recv_timeout(LONGEST) {

@@ -277,13 +277,12 @@ pub(crate) fn not_a_number(cell: &str, header: &str, place: Place) -> RecordErro
     let behind = found.split_once(' ').filter(|(number, _)| number.parse::<f64>().is_ok()).map(|(_, behind)| behind);
     let advice = match behind {
         Some("shown in thousands") => {
-            "; the sheet leaves out the last three digits of what it holds: give its cells a plain number format, and name the unit of the \
-             whole numbers in the header"
+            "; the sheet displays its numbers in thousands: give the cells a plain number format, and state the unit of the full numbers in the header"
                 .to_owned()
         }
-        Some("%") => "; the sheet shows parts of one in percent: give its cells a plain number format, and the header the unit 1".to_owned(),
+        Some("%") => "; the sheet displays fractions as percentages: give the cells a plain number format, and the header the unit 1".to_owned(),
         Some(unit) if parse_unit(unit).is_ok() => {
-            format!("; the unit `{unit}` belongs into the header, once for the whole column")
+            format!("; the unit `{unit}` belongs in the header, once for the whole column")
         }
         _ => decimal_comma(&found).to_owned(),
     };

@@ -32,7 +32,7 @@ pub fn convert(input: &Path, sidecar: Option<&Path>, out: &Path) -> Result<Outco
     let beside = out.with_extension("toml");
     if beside.is_file() && is_sidecar(&beside) {
         let why = format!(
-            "{} would be read through {}, which is of another file; name another file",
+            "{} would be read with the sidecar {}, which belongs to another file; choose another output name",
             out.display(),
             beside.display()
         );

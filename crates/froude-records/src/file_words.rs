@@ -96,7 +96,8 @@ impl FileWords {
     /// Which part of its file the table is, in words; `None` where it is the whole.
     #[must_use]
     pub fn part_words(&self) -> Option<String> {
-        let words = [("sheet", &self.sheet), ("cells", &self.range), ("part", &self.part)];
+        // Two ranges of one sheet may share rows.
+        let words = [("sheet", &self.sheet), ("part", &self.part)];
         let said = words.into_iter().filter_map(|(what, name)| Some(format!("{what} {}", name.as_ref()?)));
         Some(said.collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
     }

@@ -342,7 +342,7 @@ pub(crate) fn advice(path: &Path, word: &str, odd: Option<Odd>) -> String {
         None => "if it is not an observation (a sum, a tare, a scale), leave it out",
     };
     format!(
-        "the row begins with `{word}`: {why}; write in {}:\n  schema = 1\n  [file]\n  leave_out = [\"{word}\"]\nor leave_out = [] where it is one",
+        "the row begins with `{word}`: {why}; write in {}:\n  schema = 1\n  [file]\n  leave_out = [\"{word}\"]\nor leave_out = [] if it is an observation",
         sidecar_name(path)
     )
 }
@@ -411,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_that_all_rows_begin_with_is_none_that_sums_them_up() {
+    fn a_word_that_begins_every_row_does_not_mark_a_summary() {
         let asked = |labels: &[&str]| {
             let mut rows = OddRows::default();
             let found: Vec<_> =

@@ -39,7 +39,8 @@ pub fn problem(name: &str, si: f64, unit: &Unit) -> Option<String> {
         ("density", Dimension::DENSITY) if !AIR_KG_M3.contains(&si) => density(si, None),
         // A heavy oil has 1e-3 m²/s; water in cSt has 1.
         ("kinematic_viscosity", Dimension::KINEMATIC_VISCOSITY) if si > 0.01 => Some(
-            "is that of no liquid that bodies are towed in: water has 1e-6 m^2/s, which is 1 cSt (mm^2/s)".to_owned(),
+            "is far above that of any liquid in which bodies are towed: water has 1e-6 m^2/s, which is 1 cSt (mm^2/s)"
+                .to_owned(),
         ),
         _ => None,
     }

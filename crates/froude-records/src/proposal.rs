@@ -57,7 +57,7 @@ pub fn write_sidecar(table: &Path, sidecar: Option<&Path>) -> Result<PathBuf, Re
     if path.exists() {
         let own = read_sidecar(&path)?;
         if !own.columns.is_empty() {
-            let problem = "is there already and names columns; move it away, or correct it by hand";
+            let problem = "already exists and names columns; move it away, or correct it by hand";
             return Err(RecordError::Refused(format!("{}: {problem}", path.display())));
         }
         text = read::text(&path, 1 << 20, "a sidecar")?;
@@ -74,7 +74,7 @@ fn with_columns(text: &str, proposal: &str) -> String {
     let (head, columns) = proposal.split_once("\n[columns]\n").unwrap_or(("", proposal));
     let words = head.split_once("\n[file]\n").map_or("", |(_, words)| words);
     let words: String = words.lines().map(|line| format!("# {}\n", line.trim_start_matches("# "))).collect();
-    let said = if words.is_empty() { words } else { format!("# Perhaps for [file] above:\n{words}") };
+    let said = if words.is_empty() { words } else { format!("# Suggested for [file] above:\n{words}") };
     format!("{}\n\n{said}[columns]\n{columns}", text.trim_end())
 }
 

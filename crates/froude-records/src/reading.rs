@@ -197,7 +197,7 @@ fn named_numbers(heads: &[Head]) -> Option<String> {
     };
     let head = heads.first().filter(|_| heads.iter().all(is_named))?;
     Some(format!(
-        "`{}` states a number with its name, as all cells do: write the names and units once, in a first line as `speed [m/s],f_x [N]`, and the numbers alone below",
+        "`{}` states a number with its name, and so does every other cell: write names and units once, in the first line (`speed [m/s],f_x [N]`), and only numbers below",
         head.name
     ))
 }
@@ -227,7 +227,7 @@ fn refuse_scales(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), R
     let above = || layout.titles.iter().find(is_scale_above).map(|line| (line, "above the names"));
     if let Some((line, place)) = below.or_else(above) {
         let problem = format!(
-            "`{}` stands {place}: where it scales, shifts or turns them, nothing applies it. Apply it, by a unit or a sign in the sidecar, and pass over the line by:\n  schema = 1\n  [file]\n  leave_out = [\"{}\"]",
+            "`{}` stands {place}: if it scales, shifts or reverses the numbers, nothing applies it. Apply it by a unit or a sign in the sidecar, and skip the line with:\n  schema = 1\n  [file]\n  leave_out = [\"{}\"]",
             joined(line),
             first(line)
         );
@@ -236,7 +236,7 @@ fn refuse_scales(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), R
     let is_statistic = |head: &&Head| odd(&head.above) == Some(Odd::Sum) && !head.name.starts_with(&head.above);
     if let (Some(head), None) = (layout.heads.iter().find(is_statistic), file.stated.names_line) {
         let problem = format!(
-            "`{}` stands above `{}`: where the numbers are no single readings, say so by the name in the sidecar, and write the line of the names in {}:\n  schema = 1\n  [file]\n  names = {}",
+            "`{}` stands above `{}`: if the numbers are statistics and not single readings, give the column a name that says so in the sidecar. Then state which line holds the names, in {}:\n  schema = 1\n  [file]\n  names = {}",
             head.above,
             head.name,
             sidecar_name(path),
@@ -253,7 +253,7 @@ fn refuse_scales(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), R
     });
     if let (Some(scale), None) = (scale, file.stated.names_line) {
         let problem = format!(
-            "`{scale}` stands among the names and the units: where it scales the numbers, nothing applies it. If it does, state the scale by the unit of the column (`kN`); then, or where it is a name, write the line of the names in {}:\n  schema = 1\n  [file]\n  names = {}",
+            "`{scale}` stands among the names and the units: if it scales the numbers, nothing applies it; state the scale by the unit of the column (`kN`). In that case, and also if it is a name, state which line holds the names, in {}:\n  schema = 1\n  [file]\n  names = {}",
             sidecar_name(path),
             layout.names_line
         );

@@ -338,7 +338,7 @@ impl Mapping {
             && parse_unit(stated).is_ok_and(|unit| unit.factor != 1.0)
         {
             let problem = format!(
-                "takes the numbers as they stand, and the table states {stated}; write unit = \"{stated}\" beside it, so that it multiplies values in that unit"
+                "would multiply the numbers as written, but the table states {stated}; add unit = \"{stated}\", so that it multiplies values in that unit"
             );
             return Err(RecordError::value(self.place.clone(), "scale", problem));
         }

@@ -94,7 +94,7 @@ pub fn to_be_named(folder: &Path) -> String {
     let Some(first) = files.first() else { return String::new() };
     let sidecar = folder.join("logs.toml");
     format!(
-        ". Its {} files become logs by a sidecar that names their columns: froude inspect {} --sidecar {} --write-sidecar proposes it; then write files = \"*.{}\" at its head",
+        ". To read its {} files as logs, name their columns in a sidecar: froude inspect {} --sidecar {} --write-sidecar proposes one; then add files = \"*.{}\" at its top",
         ending(first),
         first.display(),
         sidecar.display(),

@@ -374,7 +374,7 @@ fn at_axis(table: &Table, axis: &Axis, measured: Coordinate) -> Result<(Coordina
     let is_line = dimension != Dimension::ONE;
     if is_line && measured == Coordinate::Linear {
         let what = format!(
-            "is \"motor\", and the position of {} is a length, and that of a motor is an angle; write encoder = \"axis\"",
+            "is \"motor\", but the position of {} is a length and that of a motor is an angle; write encoder = \"axis\"",
             table.path.display()
         );
         return Err(axis.values.wrong("encoder", what).into());

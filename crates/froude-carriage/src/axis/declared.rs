@@ -251,7 +251,7 @@ impl Axis {
             let taken: Vec<&str> = own.map(|(name, _)| name.as_str()).chain(RESERVED).chain(of_motion).collect();
             if let Some((name, _)) = formula.coefficients.iter().find(|(name, _)| name.starts_with("F_")) {
                 return Err(wrong(format!(
-                    "{text:?} names the coefficient {name}; names that begin with F_ belong to friction; rename it"
+                    "{text:?} names the coefficient {name}; names that begin with F_ are reserved for friction: rename it"
                 )));
             }
             if let Some((name, _)) = formula.coefficients.iter().find(|(name, _)| taken.contains(&name.as_str())) {

@@ -167,7 +167,7 @@ impl<'r, 'a> Tows<'r, 'a> {
         let Some((b, scatter)) = known else {
             if is_said {
                 let text = format!(
-                    "mcd: {differ}, and dry runs at one speed do not show how friction changes with it: the drag includes this difference. Add dry runs at other speeds"
+                    "mcd: {differ}, and dry runs at one speed do not show how friction changes with speed: the drag includes that change. Add dry runs at other speeds"
                 );
                 reported.findings.push(Finding::new(Severity::Warning, "speeds-differ", text));
             }
@@ -179,7 +179,7 @@ impl<'r, 'a> Tows<'r, 'a> {
         }
         if is_said {
             let text = format!(
-                "mcd: {differ}; friction changes by {} N s/m with the speed (dry runs), and the differences are corrected for it",
+                "mcd: {differ}; friction changes with speed by {} N s/m (dry runs), and the drag is corrected for it",
                 short_form(k * b, k * standard)
             );
             reported.findings.push(Finding::new(Severity::Note, "speeds-differ", text));
@@ -249,8 +249,13 @@ impl<'r, 'a> Tows<'r, 'a> {
         };
         // The runs of the friction that stand or fall with no pair, each left out in turn; and how many they are.
         let alone = |clusters: &[Cluster]| {
-            let mut alone: Vec<Cluster> = clusters.iter().copied().filter(|c| !matches!(c, Cluster::Pair(_))).collect();
-            alone.dedup();
+            let mut alone: Vec<Cluster> = Vec::new();
+            for cluster in clusters {
+                let is_of_pair = matches!(cluster, Cluster::Pair(pair) if groups.contains(pair));
+                if !is_of_pair && !alone.contains(cluster) {
+                    alone.push(*cluster);
+                }
+            }
             let set = Replicates::leaving_out("friction run", alone.len(), |g| slope_without(clusters, alone[g]));
             (set, alone.len())
         };
@@ -315,8 +320,8 @@ impl Observed {
     }
 }
 
-/// Pairs left out in turn, where there are two; else the runs, which err alike: all points have one weight, and the fastest decide the slope, so that a jackknife of
-/// them would have fewer degrees of freedom than runs.
+/// Pairs left out in turn, where there are two; else the runs. All points have one weight, and the fastest decide the slope, so that a jackknife of runs that err
+/// alike has fewer degrees of freedom than runs: their variance is no smaller than s²/Σ v⁴.
 fn repeats(points: &[Point]) -> Option<Replicates> {
     let pairs = pairs(points);
     if pairs.len() >= 2 {
@@ -331,7 +336,9 @@ fn repeats(points: &[Point]) -> Option<Replicates> {
         (squares + x * x, left + (p.force_n - d * x).powi(2))
     });
     let dof = points.len() as f64 - 1.0;
-    Some(Replicates { variance: Some(vec![left / (dof * squares)]), ..runs })
+    // Where the scatter grows with the speed the jackknife shows it, and is the larger one.
+    let left_out = together("", std::slice::from_ref(&runs)).map_or(0.0, |part| part.standard(0).powi(2));
+    Some(Replicates { variance: Some(vec![f64::max(left / (dof * squares), left_out)]), ..runs })
 }
 
 /// Sets of replicates under their name.

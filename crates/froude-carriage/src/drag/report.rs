@@ -101,7 +101,7 @@ fn judge(
     let promised = tows.filter(|tows| !tows.dry.is_empty()).and_then(|tows| tows.promised(differences, setup));
     let agrees = promised.as_ref().and_then(|d| agreement(differences, d, setup));
     let detectability = promised.map(|d| Detectability { zero_change_n: zero_change(runs, setup), ..d });
-    let recommended = recommended(coefficients.iter().filter(|c| unphysical(c, setup).is_none()));
+    let recommended = recommended(coefficients.iter().filter(|c| !is_impossible(c, setup)));
     findings.extend(doubts(runs, setup, &coefficients, detectability.as_ref(), agrees));
     let added_mass = added_mass(runs, setup);
     findings.extend(added_mass.as_ref().filter(|m| m.interval_95[1] < 0.0).map(|m| {
@@ -242,6 +242,12 @@ fn wheel_load(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<Finding> {
 fn unphysical(c: &Coefficient, setup: &DragSetup) -> Option<Finding> {
     let name = format!("D_d ({})", c.method.name());
     froude_identify::lint::drag_coefficient(&name, c.value, setup.density_kg_m3, setup.reference_area_m2?)
+}
+
+/// Whether no body has such a drag coefficient: neither its estimate nor an end of its interval.
+fn is_impossible(c: &Coefficient, setup: &DragSetup) -> bool {
+    let ends = c.interval_95.into_iter().flatten().map(|value| Coefficient { value, ..c.clone() });
+    unphysical(c, setup).is_some() && ends.into_iter().all(|end| unphysical(&end, setup).is_some())
 }
 
 fn few_pairs(c: &Coefficient) -> Option<Finding> {

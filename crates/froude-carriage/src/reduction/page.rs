@@ -54,7 +54,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
         let is_unphysical = report.findings.iter().any(|f| f.code == "unphysical-drag-coefficient");
         let has_interval = report.coefficients.iter().any(|c| c.interval_95.is_some());
         let why = if is_unphysical {
-            "C_D is one that no body has; check which runs are listed as wet and as dry, the units and the reference area"
+            "C_D is outside the range of real bodies; check the reference area, the units, and which runs are listed as wet and as dry"
         } else if has_interval {
             "neither the force sensor nor the difference of wet and dry runs gives an interval here, and those of the models depend on \
              their own friction"

@@ -266,7 +266,7 @@ pub(crate) fn not_applied(
         ("[frames]", !frames.is_empty()),
         ("[cell]", cell.is_some()),
         ("[[marks]]", !marks.is_empty()),
-        ("[[segments]] of this kind", segments.iter().any(|segment| !is_used(segment))),
+        ("one of the [[segments]]", segments.iter().any(|segment| !is_used(segment))),
     ];
     let sections = sections.into_iter().find(|(_, is)| *is).map(|(section, _)| section.to_owned());
     let sensor = || {
@@ -457,7 +457,7 @@ fn speed_drifts(logs: &[RunLog]) -> Result<Option<Finding>, MethodError> {
     let worst = drifting.iter().max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     Ok(worst.map(|(part, id)| {
         let text = format!(
-            "in {} of {} the speed still changes over the steady window, by up to {} ({id}); the force that accelerates the carriage is in the drag. Tow further, or hold the \
+            "in {} of {} the speed still changes over the steady window, by up to {} ({id}); the drag is off by the difference of the forces that accelerate wet and dry (too small where the dry run accelerates more). Tow further, or hold the \
              speed with a loop",
             drifting.len(),
             counted(logs.len(), "run", "runs"),

@@ -65,7 +65,7 @@ pub struct Scale {
     pub errs: Errs,
 }
 
-/// What a factor that errs scales.
+/// What an uncertain factor scales.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Errs {
     /// The force.

@@ -1307,8 +1307,7 @@ fn a_link_of_a_robot_as_collada_is_read_in_its_unit_and_united() {
     );
 }
 
-const UNITS: &str = "write the unit of the mesh: mm, cm, m, in, ft, or a length, \"0.5 m\"; or the scale of a model, 1:50, of which the mesh has \
-                     the full size (\"1:50 mm\": in millimetres), or 50:1 where it has the size of the model and the body the full one";
+const UNITS: &str = "write the unit of the mesh: mm, cm, m, in, ft, or a length, \"0.5 m\"; or a scale: 1:50 if the mesh is full-size and the body is a model (\"1:50 mm\": mesh in millimetres), 50:1 if the mesh is model-size and the body is full-size";
 
 /// Added mass grows with the third power of lengths.
 #[test]

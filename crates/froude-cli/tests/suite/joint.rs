@@ -149,7 +149,7 @@ fn what_is_not_declared_or_does_not_fit_is_refused_with_the_line_to_write() {
         (
             log,
             "drive_gain = \"0.35 N m/A\"\nloads = [\"F_c*sin(angle)\"]\n",
-            "names the coefficient F_c; names that begin with F_ belong to friction; rename it",
+            "names the coefficient F_c; names that begin with F_ are reserved for friction: rename it",
         ),
         (
             log,

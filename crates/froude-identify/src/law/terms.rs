@@ -45,7 +45,7 @@ pub(crate) static LAWS: [NamedLaw; 8] = [
         name: "fossen_3dof",
         words: "added mass, linear and quadratic damping in surge, sway and yaw",
         source: "Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control, 6.4 and 7.1",
-        range: "one forward speed, or low speed: the products of u with v and r are in Y_v, Y_r, N_v and N_r; X_vr is -Y_v_dot and X_rr is -Y_r_dot of the added mass",
+        range: "one forward speed, or low speed: the products of u with v and r are in Y_v, Y_r, N_v and N_r; X_vr and X_rr are the Coriolis force of the added mass: X_vr = -Y_v_dot, X_rr = -Y_r_dot",
         needs: &[],
         loads: &[
             ("f_x", "", "X_u_dot*v_x_dot + X_u*v_x + X_uu*v_x*abs(v_x) + X_vr*v_y*w_z + X_rr*w_z^2"),
@@ -80,7 +80,7 @@ pub(crate) static LAWS: [NamedLaw; 8] = [
         name: "abkowitz",
         words: "third-order polynomial of a ship, by the speed of each row",
         source: "Abkowitz (1964), HyA report Hy-5; Chislett & Strøm-Tejsen (1965), HyA report Hy-6",
-        range: "ahead near the approach speed, drift and rate small enough for a third order; rows at rest are left out with `keep`; published Y_r, N_r, X_vr and X_rr include the ship's own mass, these do not",
+        range: "ahead near the approach speed, drift and rate small enough for a third order; rows at rest are left out with `keep`; published Y_r, N_r, X_vr and X_rr include the ship's own mass, but these do not",
         needs: &[],
         loads: &[
             (

@@ -195,7 +195,7 @@ pub(crate) fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> Ident
     let own = own.copied().or_else(|| ["thrust", "torque"].into_iter().find(|load| data.values(load).is_some()));
     let lacks = if let Some(load) = own.filter(|_| loads.iter().all(|load| !data.is_of_water(load))) {
         let of_motion = if data.channels.contains_key("time") && data.values("v_x_dot").is_none() && has_motion {
-            "mass*v_x_dot + d_1*v_x + d_2*v_x*abs(v_x)\", with the acceleration in a column v_x_dot [m/s^2] of your own, and the rows shifted by the lag between the two where there is one"
+            "mass*v_x_dot + d_1*v_x + d_2*v_x*abs(v_x)\", with the acceleration in an added column v_x_dot [m/s^2]; if filters or clocks delay one of them, shift it by their delay first; the mass includes the added mass"
         } else {
             "…\""
         };

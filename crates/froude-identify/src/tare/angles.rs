@@ -66,8 +66,7 @@ pub(super) fn beyond_its_angles(
             let stays_n = |i: usize| -drag_n[i] * angle[i].sin();
             left.extend(size(&rows, &stays_n, side).map(|(most_n, percent)| {
                 format!(
-                    "its side force stays in f_y: for a strut whose drag is the same from all sides, up to {most_n:.3} N, {percent:.1} % of the \
-                     measured f_y, of which Y_uv takes the most; for a streamlined one several times that"
+                    "its side force stays in f_y, mostly in a coefficient of u v: up to {most_n:.3} N ({percent:.1} % of the measured f_y) for a strut whose drag is the same from all sides, several times that for a streamlined one"
                 )
             }));
         }

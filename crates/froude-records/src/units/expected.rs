@@ -210,29 +210,29 @@ pub fn question(name: &str, unit: &Unit) -> Option<String> {
             ))
         }
         Dimension::MASS if matches!(text, "g" | "mg") && has_word(plain, &ACCELERATIONS) => {
-            let milli = if text == "mg" { ", and take the numbers times 0.001," } else { "" };
+            let milli = if text == "mg" { " and multiply the numbers by 0.001" } else { "" };
             Some(format!(
-                "`{text}` is a mass here; write `g0` (9.80665 m/s^2){milli} where it is the acceleration of gravity"
+                "`{text}` is a mass here; if the numbers are multiples of the acceleration of gravity, write `g0` (9.80665 m/s^2){milli}"
             ))
         }
         Dimension::MASS if has_word(plain, &FORCES) => {
             let weight = as_weight(unit, Dimension::FORCE).map_or_else(|| "N".to_owned(), |weight| weight.text);
             Some(format!(
-                "`{text}` is a mass, and the name one of a force; write `{weight}` where it is a weight, or call the column mass or payload"
+                "`{text}` is a unit of mass, but the name is that of a force; write `{weight}` if it is a weight, or name the column mass or payload"
             ))
         }
         Dimension::TIME | Dimension::LENGTH | Dimension::VOLTAGE | Dimension::CURRENT
             if matches!(text, "Ms" | "Mm" | "MV" | "MA") =>
         {
             let meant = text.replacen('M', "m", 1);
-            Some(format!("`{text}` is a million; write `{meant}` where it is a thousandth"))
+            Some(format!("`{text}` has the prefix mega (10^6); write `{meant}` if milli (10^-3) is meant"))
         }
         of if has_word(plain, &PRESSURES)
             && as_weight(unit, Dimension::PRESSURE).is_some()
             && of != Dimension::PRESSURE =>
         {
             let weight = as_weight(unit, Dimension::PRESSURE).map_or_else(String::new, |weight| weight.text);
-            Some(format!("`{text}` is a mass on an area, and the name one of a pressure; write `{weight}`"))
+            Some(format!("`{text}` is mass per area, but the name is that of a pressure; write `{weight}`"))
         }
         Dimension::SPEED if text == "nm/h" => {
             Some("`nm/h` is nanometres an hour; write `kn` where it is nautical miles an hour".to_owned())

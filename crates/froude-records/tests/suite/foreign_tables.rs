@@ -114,7 +114,7 @@ fn sums_and_numbers_that_were_not_measured_are_named_and_asked() {
     let sums = b"run,speed [m/s],f_x [N]\n1,0.5,-2\n2,1.25,-12.5\nMean,0.9,-7\nStd,0.5,5\n";
     let said = read(sums, "").unwrap_err();
     assert!(
-        said.starts_with("t.csv:4: the row begins with `Mean`: where it sums up others it is no observation; write in t.toml:\n  schema = 1\n  [file]\n  leave_out = [\"Mean\"]\nor leave_out = [] where it is one\n1 more thing keeps this table from being read:\n  - line 5: the row begins with `Std`"),
+        said.starts_with("t.csv:4: the row begins with `Mean`: where it sums up others it is no observation; write in t.toml:\n  schema = 1\n  [file]\n  leave_out = [\"Mean\"]\nor leave_out = [] if it is an observation\n1 more thing keeps this table from being read:\n  - line 5: the row begins with `Std`"),
         "{said}"
     );
     let table = read(sums, "schema = 1\n[file]\nleave_out = [\"mean\", \"std\"]\n").unwrap();
@@ -204,7 +204,7 @@ fn what_may_scale_or_sum_up_others_is_never_taken_for_data() {
             "schema = 1\n[constants]\nk = \"50 kN\"\n[columns]\n\"speed (m/s)\" = {{ name = \"speed\" }}\n\"bridge (mV/V)\" = {{ name = \"f_x\", scale = \"k\"{unit} }}\n"
         )
     };
-    assert!(refused(bridge, &scaled("")).contains("write unit = \"mV/V\" beside it"));
+    assert!(refused(bridge, &scaled("")).contains("add unit = \"mV/V\""));
     let force = si(&read(bridge.as_bytes(), &scaled(", unit = \"mV/V\"")).unwrap(), "f_x")[0];
     assert!((force + 0.81).abs() < 1e-12, "{force}");
     let mixed = "schema = 1\n[columns]\n\"speed [m/s]\" = { name = \"speed\" }\n\"F (kN)\" = { name = \"f_x\", unit = \"N\" }\n";
@@ -294,14 +294,14 @@ fn a_proposed_sidecar_reads_the_table_that_it_was_made_for() {
     assert!((si(&table, "f_x")[0] + 2.0015).abs() < 1e-3);
     assert_eq!((table.n_rows, table.blank.len()), (2, 1));
     let again = proposal::write_sidecar(&path, None).unwrap_err().to_string();
-    assert!(again.contains("drift.toml: is there already and names columns"), "{again}");
+    assert!(again.contains("drift.toml: already exists and names columns"), "{again}");
     // What is stated of the file stays; another sidecar is named.
     let other = folder.path().join("other.toml");
     std::fs::write(&other, "schema = 1\n[file]\nseparator = \";\"  # as I said\n").unwrap();
     assert_eq!(proposal::write_sidecar(&path, Some(&other)).unwrap(), other);
     let kept = std::fs::read_to_string(&other).unwrap();
     assert!(
-        kept.starts_with("schema = 1\n[file]\nseparator = \";\"  # as I said\n\n# Perhaps for [file] above:"),
+        kept.starts_with("schema = 1\n[file]\nseparator = \";\"  # as I said\n\n# Suggested for [file] above:"),
         "{kept}"
     );
     assert!(
@@ -312,7 +312,9 @@ fn a_proposed_sidecar_reads_the_table_that_it_was_made_for() {
     );
     // A converted table must not be read through a sidecar that is of another.
     let said = convert(&path, None, &folder.path().join("other.csv")).unwrap().exit;
-    assert!(matches!(said, Exit::Refused(why) if why.contains("which is of another file; name another file")));
+    assert!(
+        matches!(said, Exit::Refused(why) if why.contains("which belongs to another file; choose another output name"))
+    );
 }
 
 #[test]
@@ -482,7 +484,7 @@ fn a_unit_that_a_number_format_shows_agrees_with_the_header() {
     let mapped = "schema = 1\n[columns]\ndrag = { name = \"f_y\", unit = \"N\" }\n";
     std::fs::write(folder.path().join("t.toml"), mapped).unwrap();
     let said = read_table(&path, None).unwrap_err().to_string();
-    assert!(said.contains("`-2 kN` is not a number; the unit `kN` belongs into the header"), "{said}");
+    assert!(said.contains("`-2 kN` is not a number; the unit `kN` belongs in the header"), "{said}");
 }
 
 /// What was not measured is so in every format.

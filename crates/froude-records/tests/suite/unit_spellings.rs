@@ -208,7 +208,10 @@ fn a_rate_of_turning_says_what_it_counts() {
         }
     }
     assert_eq!(asked("frequency", "Hz"), None);
-    assert_eq!(asked("time", "Ms").as_deref(), Some("`Ms` is a million; write `ms` where it is a thousandth"));
+    assert_eq!(
+        asked("time", "Ms").as_deref(),
+        Some("`Ms` has the prefix mega (10^6); write `ms` if milli (10^-3) is meant")
+    );
     assert_eq!(asked("shear", "1/s"), None);
     let without_size = "`cts` is not a unit of angle; convert the numbers and write `deg` or `rad`";
     assert_eq!(asked("angle", "cts").as_deref(), Some(without_size));

@@ -22,7 +22,7 @@ pub(super) fn finding(campaign: &Campaign, reduced: &Reduced, setup: &Setup, mod
     let p = t_two_sided(lag_s / standard_s, dof);
     (p < ALARM && lag_s.is_finite()).then(|| {
         let text = format!(
-            "{}: the force {} the motion by {} s beyond the declared delay of {} ms ({}): drag and added mass are biased by this. A filter in one channel or separate clocks can cause this: declare the delay that the filters and clocks have; a value found from these runs must not be used with them",
+            "{}: the force {} the motion by {} s beyond the declared delay of {} ms ({}): drag and added mass are biased by this. A filter in one channel or separate clocks can cause this. Declare the delay known of the filters and clocks, not one found from these same runs",
             model.law.name,
             if lag_s > 0.0 { "lags" } else { "leads" },
             significant(lag_s.abs(), 2),

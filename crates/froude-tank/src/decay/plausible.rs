@@ -21,7 +21,7 @@ use crate::log::TankLog;
 /// Least swing of a rotation that nobody is asked about, rad; most and least of a translation, m.
 const LEAST_RAD: f64 = 0.017_453;
 const ALONG_M: [f64; 2] = [1e-3, 1.0];
-/// No body in water swings faster.
+/// A period below which the unit of the time is asked about, s: water moves with bodies that people release at 10 Hz at most.
 const LEAST_PERIOD_S: f64 = 5e-3;
 /// m/s².
 const GRAVITY: f64 = 9.81;
@@ -79,7 +79,7 @@ pub(super) fn check(
     }
     if seen_s.is_none() && period_s < LEAST_PERIOD_S {
         let what = format!(
-            "the period comes out as {period_s:.1e} s: state the unit of the time, `time [ms]` as its header, for example (MATLAB's datenum counts days: multiply by 86400); if it is right, write period = \"{period_s:e} s\" in [source.decay]"
+            "the period comes out as {period_s:.1e} s, too short for a body in water. The times are probably in a larger unit than stated: seconds under a header in ms, or MATLAB's datenum, which counts days (multiply by 86400); if the period is right, write period = \"{period_s:e} s\" in [source.decay]"
         );
         return refused(&logs[0], what);
     }

@@ -66,7 +66,7 @@ pub const KEYS: &[Key] = &[
         "moving_inertia",
         Kind::By("axis", &by_axis(Kind::Constant(Dimension::MASS), Kind::Constant(INERTIA))),
         "damping is per moving inertia",
-        "in the place of `inertia` and `stiffness`: all that moves, its added mass included",
+        "instead of `inertia` and `stiffness`: the inertia of all that moves, added mass included",
     )
     .within(Range::Positive),
     optional(
@@ -133,7 +133,8 @@ pub(super) fn decay(s: &Section<'_>) -> Result<DecaySetup, RecordError> {
     let axis = values.need("axis", values.word("axis", &Motion::ALL))?;
     let constant = |key: &str| values.constant(key).map(uncertain);
     if constant("moving_inertia").is_some() && constant("inertia").or(constant("buoyancy")).is_some() {
-        let problem = "contains the added inertia: leave out inertia, buoyancy and radius, which are for finding that";
+        let problem =
+            "already includes the added inertia; leave out inertia, buoyancy and radius, which serve to find it";
         return Err(values.wrong("moving_inertia", problem));
     }
     let setup = match constant("inertia") {
@@ -146,9 +147,10 @@ pub(super) fn decay(s: &Section<'_>) -> Result<DecaySetup, RecordError> {
         None => {
             let [stiffness, moving] = ["stiffness", "moving_inertia"].map(constant);
             if stiffness.is_some() && moving.is_some() {
-                return Err(
-                    values.wrong("moving_inertia", "stands beside stiffness: with one of them the other is found")
-                );
+                return Err(values.wrong(
+                    "moving_inertia",
+                    "is declared together with stiffness, which the frequency makes one too many; declare one of them",
+                ));
             }
             DecaySetup::per_inertia(axis, stiffness.map(Known::Stiffness).or(moving.map(Known::MovingInertia)))
         }
@@ -178,12 +180,12 @@ fn restoring(values: &Values, axis: Motion) -> Result<Restoring, RecordError> {
         let [like, instead] = if axis.is_rotation() {
             [
                 "… N m",
-                "; or, of a buoyancy that acts at a radius, buoyancy and radius; or call it moving_inertia if it contains the added inertia; or leave out inertia, for results per moving inertia",
+                "; or, of a buoyancy that acts at a radius, buoyancy and radius; or, if inertia includes the added inertia, rename it moving_inertia; or leave out inertia, for results per moving inertia",
             ]
         } else {
             [
                 "… N/m",
-                "; or call it moving_inertia if it contains the added mass; or leave out inertia, for results per moving inertia",
+                "; or, if inertia includes the added mass, rename it moving_inertia; or leave out inertia, for results per moving inertia",
             ]
         };
         let stiffness = constant("stiffness").ok_or_else(|| missing("stiffness", like, instead))?;

@@ -232,7 +232,7 @@ fn decrements(fit: &DecayFit) -> Section {
         name: "decrements".to_owned(),
         title: "Decrement by amplitude".to_owned(),
         caption: format!(
-            "Logarithmic decrement of each swing over the amplitude that it begins at, and that of the law of {}.",
+            "Logarithmic decrement of each swing, and of the law fitted by {}, against the amplitude at which the swing begins.",
             fit.method.name()
         ),
         x_label: head.to_owned(),

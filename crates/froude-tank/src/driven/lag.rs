@@ -48,7 +48,7 @@ pub fn undeclared<M: MotorDriven>(fitted: &Fitted<'_, M>) -> Option<Finding> {
         Some(known) => (
             Severity::Warning,
             format!(
-                "where delay is declared as {} ms, exact: added mass and damping are biased by the difference. A filter in one channel or separate clocks can cause this: leave delay out of [source.{}], and it is fitted with the coefficients",
+                "where delay is declared as {} ms, exact: added mass and damping are biased by the difference. A filter in one channel or separate clocks can cause this. Leave delay out of [source.{}] to have it fitted with the coefficients",
                 plain(1e3 * known.value, 4),
                 spec.name
             ),
