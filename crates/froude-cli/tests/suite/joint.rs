@@ -154,7 +154,7 @@ fn what_is_not_declared_or_does_not_fit_is_refused_with_the_line_to_write() {
         (
             log,
             "drive_gain = \"0.35 N m/A\"\nloads = [\"angle_dot*sin(angle)\"]\n",
-            "names the coefficient angle_dot, which is there already",
+            "angle_dot is the name of a column, which the table does not have",
         ),
         (log, "drive_gain = \"0.35 N m/A\"\nload = \"k*angle\"\n", "did you mean `loads`"),
         (log, "drive_gain = \"0.35 N m/A\"\ncount = \"1 deg\"\n", "is of a position in counts, and angle"),
@@ -195,7 +195,7 @@ fn a_delay_of_the_position_is_refused() {
     let output = froude(folder.path(), &["identify", "joint.toml"]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.code() == Some(2), "{said}");
-    assert!(said.contains("range, resolution, filter or delay of angle is not applied by the method servo"), "{said}");
+    assert!(said.contains("`range, resolution, filter or delay` is of the log of a run"), "{said}");
 }
 
 /// Numbers that look like noise, between −1 and 1.

@@ -411,7 +411,7 @@ fn no_column_is_dropped_in_silence() {
     assert_eq!(
         warned[1],
         "w_z goes from 0.2000 to 0.2000 1/s and appears in no law: the fit of f_x treats it as zero; write a law with it \
-         ([[identify.model]]), name one that has it (abkowitz, mmg, torpedo), or keep the rows where it is zero"
+         ([[identify.model]]), name one that has it (fossen_3dof, abkowitz, mmg, torpedo), or keep the rows where it is zero"
     );
     let noted: Vec<&str> = told.iter().filter(|f| f.0 == "note").map(|f| f.1).collect();
     assert_eq!(
