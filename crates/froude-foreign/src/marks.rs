@@ -56,8 +56,10 @@ fn body(cell: &str) -> Option<&str> {
 /// Whether a cell has digits, a sign before them and at most one comma among them: what nearly all with a decimal comma have.
 fn is_simple(cell: &str) -> bool {
     let digits = cell.strip_prefix(['+', '-']).unwrap_or(cell).as_bytes();
-    let commas = digits.iter().filter(|b| **b == b',').count();
-    commas <= 1 && digits.len() > commas && digits.iter().all(|b| b.is_ascii_digit() || *b == b',')
+    let mut parts = digits.split(|b| *b == b',');
+    let are_digits = |part: &[u8]| part.iter().all(u8::is_ascii_digit);
+    let [whole, part] = [parts.next(), parts.next()].map(Option::unwrap_or_default);
+    parts.next().is_none() && are_digits(whole) && are_digits(part) && !(whole.is_empty() && part.is_empty())
 }
 
 /// What a cell says about the marks; `None` where it is no number under any.

@@ -620,7 +620,7 @@ fn a_tare_taken_straight_ahead_is_a_warning_at_drift_and_a_strut_law_mends_it() 
         told[0].0 == "warning"
             && told[0].1.starts_with(
                 "the tare tare.csv/quadratic was taken straight ahead and is used at angles up to 20.0 deg, in 64 of 72 rows; its side \
-                 force stays in f_y: for a strut whose drag is the same from all sides, up to 2.4"
+                 force stays in f_y, mostly in a coefficient of u v: up to 2.4"
             )
             && told[0].1.ends_with(
                 "tow the strut alone at the angles of the test, fit these runs with models = [\"strut\"] (f_x and f_y) and subtract that record"
@@ -628,7 +628,7 @@ fn a_tare_taken_straight_ahead_is_a_warning_at_drift_and_a_strut_law_mends_it() 
         "{told:?}"
     );
     // The stated size is what the coefficients are off by.
-    let stated: f64 = told[0].1.split(" N, ").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
+    let stated: f64 = told[0].1.split(" N (").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
     let off = 100.0 * (value(estimate(&wrong, "whole"), "Y_uv") / -Y_UV - 1.0);
     assert!((off - 6.0).abs() < 0.5 && (stated - off).abs() < 1.5, "stated {stated} %, found {off} %");
 
@@ -673,7 +673,7 @@ fn a_tare_without_side_force_is_a_warning_at_drift_whichever_way_it_was_towed() 
         let told = findings(&out, "tare-straight-ahead");
         let wanted = format!(
             "the tare tare.csv/{model} was taken {taken} and is used at angles up to 20.0 deg, in 64 of 72 rows; its side force \
-             stays in f_y: "
+             stays in f_y, mostly in a coefficient of u v: "
         );
         assert!(told.len() == 1 && told[0].1.starts_with(&wanted), "{told:?}");
         assert_eq!(told[0].1.contains("of the measured f_x"), is_f_x_named, "{told:?}");
@@ -755,7 +755,7 @@ fn a_side_force_that_does_not_matter_is_no_warning() {
         let told = findings(&out, "tare-straight-ahead");
         assert_eq!(told.iter().any(|f| f.1.contains("its side force stays in f_y")), is_told, "{share}: {told:?}");
         if is_told {
-            let stated: f64 = told[0].1.split(" N, ").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
+            let stated: f64 = told[0].1.split(" N (").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
             // Y_vv carries a part of the side force, so that its share is a little less than that of Y_uv.
             assert!((stated - 100.0 * share).abs() < 0.5, "{told:?}");
         }
