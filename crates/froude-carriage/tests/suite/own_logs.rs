@@ -48,7 +48,8 @@ fn c_d(reduction: &Reduction, method: Method) -> (f64, [f64; 2]) {
 
 /// 40 tanks, whose force per volt and count err by what is declared of them: 38 are to be expected in the interval, 36 are one and a half binomial deviations fewer. The
 /// scatter of a run is 0.019 N, and the slope of 12 differences has √2 · 0.019 N/√(Σ v⁴) = 0.04 N s²/m², 2.3 % of the drag; with 0.5 % of the force and twice
-/// 0.05 % of a length and Student's t of 11 degrees of freedom that is ± 5.1 %, of which the mean of 40 s scatters by 1/√(2 · 11 · 40) = 3 %: three.
+/// 0.05 % of a length and Student's t of 11 degrees of freedom that is ± 5.1 %. The larger of s² and of the jackknife is 14 % wider in the mean (20,000 draws of twelve
+/// normal errors, 96.5 % of them covered): ± 5.8 %, of which the mean of 40 s scatters by 1/√(2 · 11 · 40) = 3 %: three.
 #[test]
 fn the_interval_of_c_d_covers_over_many_tanks() {
     let seeds = std::env::var("FROUDE_SEEDS").ok().and_then(|n| n.parse().ok()).unwrap_or(40_u64);
@@ -65,7 +66,7 @@ fn the_interval_of_c_d_covers_over_many_tanks() {
         }
     }
     assert!(covered.iter().all(|covered| 10 * covered >= 9 * seeds), "{covered:?} of {seeds}");
-    assert!((width[0] / 0.051 - 1.0).abs() < 0.09, "{width:?}");
+    assert!((width[0] / 0.058 - 1.0).abs() < 0.09, "{width:?}");
 }
 
 /// What noise of 0.02 V leaves of the drag where runs repeat: 0.095 N a sample, 6.4 mN in a tapered window of 270 samples at the fastest, √2 · 6.4 mN/√(Σ v⁴) of a
