@@ -48,8 +48,8 @@ fn c_d(reduction: &Reduction, method: Method) -> (f64, [f64; 2]) {
 
 /// 40 tanks, whose force per volt and count err by what is declared of them: 38 are to be expected in the interval, 36 are one and a half binomial deviations fewer. The
 /// scatter of a run is 0.019 N, and the slope of 12 differences has √2 · 0.019 N/√(Σ v⁴) = 0.04 N s²/m², 2.3 % of the drag; with 0.5 % of the force and twice
-/// 0.05 % of a length and Student's t of 11 degrees of freedom that is ± 5.1 %. The larger of s² and of the jackknife is 14 % wider in the mean (20,000 draws of twelve
-/// normal errors, 96.5 % of them covered): ± 5.8 %, of which the mean of 40 s scatters by 1/√(2 · 11 · 40) = 3 %: three.
+/// 0.05 % of a length and Student's t of 11 degrees of freedom that is ± 5.1 %. The larger of s² and of the jackknife is 11 % wider in the mean (20,000 draws of twelve
+/// normal errors, 96.5 % of them covered): ± 5.65 %, of which the mean of 40 s scatters by 1/√(2 · 11 · 40) = 3 %: three.
 #[test]
 fn the_interval_of_c_d_covers_over_many_tanks() {
     let seeds = std::env::var("FROUDE_SEEDS").ok().and_then(|n| n.parse().ok()).unwrap_or(40_u64);
@@ -66,7 +66,8 @@ fn the_interval_of_c_d_covers_over_many_tanks() {
         }
     }
     assert!(covered.iter().all(|covered| 10 * covered >= 9 * seeds), "{covered:?} of {seeds}");
-    assert!((width[0] / 0.058 - 1.0).abs() < 0.09, "{width:?}");
+    println!("C_D in the interval: {covered:?} of {seeds}, mean half-widths {width:?}");
+    assert!((width[0] / 0.0565 - 1.0).abs() < 0.09, "{width:?}");
 }
 
 /// What noise of 0.02 V leaves of the drag where runs repeat: 0.095 N a sample, 6.4 mN in a tapered window of 270 samples at the fastest, √2 · 6.4 mN/√(Σ v⁴) of a
@@ -94,7 +95,8 @@ fn wet_runs_that_are_slower_are_corrected_and_said_to_be() {
     assert!(0.5 * (interval[1] - interval[0]) < 2.0 * 2.20 * (NOISE / 3.0).hypot(0.005) * C_D, "{interval:?}");
     let said = reduction.report.findings.iter().find(|f| f.code == "speeds-differ").unwrap();
     assert!(
-        said.message.starts_with("mcd: wet and dry runs differ in speed by up to 3.1 %; friction changes by 1.89"),
+        said.message
+            .starts_with("mcd: wet and dry runs differ in speed by up to 3.1 %; friction changes with speed by 1.89"),
         "{}",
         said.message
     );
@@ -322,9 +324,10 @@ fn a_current_and_a_gap() {
     assert!((record.law.constants["force_per_ampere"].value - 4.77).abs() < 1e-12);
     let (_, [low, high]) = c_d(&reduction, Method::Mcd);
     assert!(low <= C_D && C_D <= high, "{low} {high}");
-    // The gap leaves the fast runs no window. A difference scatters by √2 · 0.019 N, D_d = 3.919 C_D; Student's t of five degrees of freedom, and as much again by chance.
+    // The gap leaves the fast runs no window. A difference scatters by √2 · 0.019 N, D_d = 3.919 C_D; Student's t of five degrees of freedom, and the larger of s² and of the jackknife, which is
+    // 2.9 of the true scatter in one of 200 cases at three speeds (20,000 draws).
     assert!(mcd.points.len() >= 6);
     let quartic: f64 = mcd.points.iter().map(|p| p.speed_m_s.powi(4)).sum();
-    assert!(0.5 * (high - low) < 2.0 * 2.57 * 0.027 / quartic.sqrt() / 3.919, "{low} {high}");
+    assert!(0.5 * (high - low) < 2.9 * 2.57 * 0.027 / quartic.sqrt() / 3.919, "{low} {high}");
     assert!(reduction.report.findings.iter().any(|f| f.code == "time-gaps"));
 }
