@@ -488,7 +488,11 @@ fn a_dead_band_below_zero_is_noted() {
     }
     let found = result(&table, &source("thruster")).unwrap();
     let note = found.findings.iter().find(|f| f.code == "negative-dead-band").unwrap();
-    assert!(note.message.starts_with("dead_band_ahead is below zero, which no thruster has; "), "{}", note.message);
+    assert!(
+        note.message.starts_with("dead_band_ahead is below zero, which is impossible for a thruster; "),
+        "{}",
+        note.message
+    );
 }
 
 #[test]

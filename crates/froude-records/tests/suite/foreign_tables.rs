@@ -179,7 +179,10 @@ fn what_may_scale_or_sum_up_others_is_never_taken_for_data() {
     assert!(refused(factors, "").starts_with("t.csv:1: `Faktor; 1; 1000` stands above the names"));
     assert!(is_the_table(&read(factors.as_bytes(), "schema = 1\n[file]\nleave_out = [\"Faktor\"]\n").unwrap()));
     let names = "x10;x20\n0.5;-2\n1.25;-12.5\n";
-    assert!(refused(names, "").contains("write the line of the names in t.toml:\n  schema = 1\n  [file]\n  names = 1"));
+    assert!(
+        refused(names, "")
+            .contains("state which line holds the names, in t.toml:\n  schema = 1\n  [file]\n  names = 1")
+    );
     assert!(refused(names, "schema = 1\n[file]\nnames = 1\n").contains("has no unit"));
     let blank = below.replace("x1;x1000", ";x1000");
     assert!(refused(&blank, "").starts_with("t.csv:3: "));

@@ -304,7 +304,7 @@ fn a_delay_beside_one_declared_as_exact_is_reported_with_sign_and_size() {
         let delayed = ("delay    = \"0 s\"", delayed.as_str());
         let said = lag(&[NO_DELAY, delayed], &noise(1e-4, None), 1).unwrap();
         assert!(said.severity == Severity::Warning && said.message.contains(words), "{said:?}");
-        let advice = "A filter in one channel or separate clocks can cause this: leave delay out of [source.forced_oscillation], and it is fitted with the coefficients";
+        let advice = "A filter in one channel or separate clocks can cause this. Leave delay out of [source.forced_oscillation] to have it fitted with the coefficients";
         assert!(said.message.ends_with(advice), "{said:?}");
         let said = lag(&[EXACT[4], delayed], &noise(1e-4, None), 1).unwrap();
         assert!(said.severity == Severity::Note && said.message.contains(words), "{said:?}");
