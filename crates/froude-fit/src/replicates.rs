@@ -20,9 +20,6 @@ pub struct Replicates {
     pub left_out: &'static str,
     /// The coefficients without each of them; a number that all have in common does not matter.
     pub without: Vec<Vec<f64>>,
-    /// Variances by coefficient in the place of the jackknife's, where a law says what each replicate should be and all err alike: `σ²(XᵀX)⁻¹` with `G − 1` degrees of
-    /// freedom. Where few replicates have most of the leverage the jackknife has fewer of them.
-    pub variance: Option<Vec<f64>>,
     /// What they must scatter by at least.
     pub floor: Option<Floor>,
 }
@@ -58,12 +55,7 @@ impl Replicates {
         if count < 2 {
             return None;
         }
-        (0..count).map(without).collect::<Option<_>>().map(|without| Self {
-            left_out,
-            without,
-            variance: None,
-            floor: None,
-        })
+        (0..count).map(without).collect::<Option<_>>().map(|without| Self { left_out, without, floor: None })
     }
 
     /// The same, not to be believed below a floor.
@@ -80,32 +72,24 @@ impl Replicates {
             return None;
         }
         let (mut covariance, dof) = jackknife(self.without.len(), |g| Some(self.without[g].clone()))?;
-        for (j, &variance) in self.variance.iter().flatten().enumerate().take(p) {
-            set_variance(&mut covariance, j, variance);
-        }
         let mut dofs = vec![dof; p];
         let mut is_held = false;
         for (j, &least) in self.floor.iter().flat_map(|floor| &floor.variance).enumerate().take(p) {
-            if least <= covariance[(j, j)] {
+            let seen = covariance[(j, j)];
+            if least <= seen {
                 continue;
             }
-            set_variance(&mut covariance, j, least);
+            let stretch = if seen > 0.0 { (least / seen).sqrt() } else { 0.0 };
+            for k in (0..p).filter(|k| *k != j) {
+                covariance[(j, k)] *= stretch;
+                covariance[(k, j)] *= stretch;
+            }
+            covariance[(j, j)] = least;
             dofs[j] = self.floor.as_ref().map_or(dof, |floor| floor.dof);
             is_held = true;
         }
         Some((covariance, dofs, is_held))
     }
-}
-
-/// Gives a coefficient this variance; its correlations stay.
-fn set_variance(covariance: &mut Mat<f64>, j: usize, variance: f64) {
-    let before = covariance[(j, j)];
-    let stretch = if before > 0.0 { (variance / before).sqrt() } else { 0.0 };
-    for k in (0..covariance.nrows()).filter(|k| *k != j) {
-        covariance[(j, k)] *= stretch;
-        covariance[(k, j)] *= stretch;
-    }
-    covariance[(j, j)] = variance;
 }
 
 /// Independent sets of replicates as the first line of a budget, called `name`, or as the floor of the only set is where that counts.
@@ -197,21 +181,11 @@ mod tests {
     }
 
     #[test]
-    fn a_variance_takes_the_place_of_the_jackknifes() {
-        let part =
-            together("scatter", &[Replicates { variance: Some(vec![9.0 * of_means(0, 0)]), ..means(&ROWS) }]).unwrap();
-        for (a, b, factor) in [(0, 0, 9.0), (0, 1, 3.0), (1, 1, 1.0)] {
-            assert!((part.covariance[(a, b)] - factor * of_means(a, b)).abs() < 1e-12);
-        }
-        assert_eq!(part.dof, vec![3.0; 2]);
-    }
-
-    #[test]
     fn one_replicate_or_one_that_decides_tells_no_scatter() {
         assert!(Replicates::leaving_out("run", 1, |_| Some(vec![1.0])).is_none());
         assert!(Replicates::leaving_out("run", 3, |g| (g != 1).then(|| vec![1.0])).is_none());
         assert!(together("none", &[]).is_none());
-        let ragged = Replicates { left_out: "run", without: vec![vec![1.0], vec![]], variance: None, floor: None };
+        let ragged = Replicates { left_out: "run", without: vec![vec![1.0], vec![]], floor: None };
         assert!(together("ragged", &[ragged]).is_none());
     }
 

@@ -284,6 +284,9 @@ pub(crate) fn not_a_number(cell: &str, header: &str, place: Place) -> RecordErro
         Some(unit) if parse_unit(unit).is_ok() => {
             format!("; the unit `{unit}` belongs in the header, once for the whole column")
         }
+        Some(word) if word.starts_with(char::is_alphabetic) => {
+            format!("; if `{word}` does not change the number, take it out of the cells or of their number format")
+        }
         _ => decimal_comma(&found).to_owned(),
     };
     RecordError::column(place, header, format!(": `{found}` is not a number{advice}"))

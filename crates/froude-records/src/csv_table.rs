@@ -18,7 +18,7 @@ use crate::assemble::{Room, Want, assemble, not_a_number, number, plan};
 use crate::error::{Place, RecordError};
 use crate::file_words::FileWords;
 use crate::guard::{guarded, unguarded};
-use crate::label_rows::{Labels, OddRows, advice, is_sum_in_note, odd};
+use crate::label_rows::{Labels, OddRows, advice, is_sum_in_note, label, odd};
 use crate::memory;
 use crate::obstacles;
 use crate::raw_column::Raw;
@@ -206,7 +206,7 @@ impl<'a, 's> Head<'a, 's> {
                     odd_notes.get_mut(at)?.see(if is_sum_in_note(word) { word } else { "" }, line)
                 })
             };
-            if is_asked && let Some((line, word)) = odd_rows.see(first(&cells), line).or_else(&mut in_notes) {
+            if is_asked && let Some((line, word)) = odd_rows.see(label(&cells), line).or_else(&mut in_notes) {
                 return refuse(line, &word);
             }
             // Cells without content beyond the last column.
@@ -289,7 +289,7 @@ impl<'a, 's> Head<'a, 's> {
 
     /// Whether a row is declared to be left out because it is no observation.
     fn is_left_out(&self, cells: &[Cow<'_, str>]) -> bool {
-        std::iter::once(first(cells))
+        std::iter::once(label(cells))
             .chain(self.texts(cells).map(|(_, cell)| cell))
             .any(|word| self.file.leaves_out(word))
     }
@@ -304,11 +304,6 @@ impl<'a, 's> Head<'a, 's> {
     pub(crate) fn table(&self, rows: Rows) -> Result<Table, RecordError> {
         assemble(self.path, &self.header, &self.wants, rows.raws, (self.sidecar, self.file), &self.place, rows.lines)
     }
-}
-
-/// The first cell of a row with content.
-fn first<'c>(cells: &'c [Cow<'_, str>]) -> &'c str {
-    cells.iter().map(|cell| cell.trim()).find(|cell| !cell.is_empty()).unwrap_or_default()
 }
 
 /// A table as CSV, for a file that lies among others: numbers in the units of their columns, in full precision.

@@ -7,6 +7,9 @@ use crate::known_columns::{is_text_column, known_dimension};
 use crate::label_rows::odd;
 use crate::units::{Dimension, Unit, parse_unit};
 
+/// Most letters of a symbol.
+const MOST_OF_SYMBOL: usize = 3;
+
 /// What stands above a column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Heading {
@@ -38,14 +41,17 @@ impl Heading {
         let dimension = self.dimension();
         let own = meant(&self.name, dimension);
         let above = if self.above == self.name { None } else { meant(&self.above, dimension) };
-        // `std` below `drag` is no drag, and `R` below `Rudder force` no resistance: only a symbol takes what stands above it.
-        let is_symbol = self.name.chars().count() <= 3 && odd(&self.name).is_none();
+        let letters = self.name.chars().count();
         match (own, above) {
-            (Some(own), None) if !self.above.is_empty() && self.above != self.name && is_symbol => {
-                let says_nothing = meant_without_unit(&self.above).is_none() && self.above.chars().count() > 3;
-                (!says_nothing).then_some(own)
+            // `R` below `Rudder force` is no resistance, `U` below `Mean speed` a speed, and `Fx` below anything a force.
+            (Some(own), None) => {
+                let is_open = letters == 1 && self.above != self.name && self.above.chars().count() > MOST_OF_SYMBOL;
+                let mut words = self.above.split_whitespace();
+                let agrees = words.any(|word| meant(word, dimension) == Some(own));
+                (!is_open || agrees || meant_without_unit(&self.above).is_some()).then_some(own)
             }
-            (None, Some(above)) => is_symbol.then_some(above),
+            // `F` below `drag` is one, and `std` is not.
+            (None, Some(above)) => (letters <= MOST_OF_SYMBOL && odd(&self.name).is_none()).then_some(above),
             (own, _) => own,
         }
     }

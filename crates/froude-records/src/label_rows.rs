@@ -205,7 +205,6 @@ pub(crate) fn odd(cell: &str) -> Option<Odd> {
         return None;
     }
     let lower = cell.trim().to_lowercase();
-    let whole = bare(&lower);
     let words =
         || lower.split(|c: char| !c.is_alphanumeric()).map(|word| word.trim_end_matches(|c: char| c.is_ascii_digit()));
     let is_part = lower.ends_with('%') && lower.trim_end_matches('%').trim_end().parse::<f64>().is_ok();
@@ -213,8 +212,7 @@ pub(crate) fn odd(cell: &str) -> Option<Odd> {
         Some(Odd::Scale)
     } else if is_part
         || matches!(lower.trim(), "+/-" | "+-")
-        || SUMS.contains(&whole.as_str())
-        || LAST_SUMS.contains(&whole.as_str())
+        || is_statistic(&lower)
         || words().any(|word| SUM_WORDS.contains(&word))
         || has_count(&lower)
     {
@@ -234,6 +232,17 @@ pub(crate) fn is_sum_in_note(note: &str) -> bool {
                 || word.starts_with(|c: char| c.is_ascii_digit())
         });
     odd(note) == Some(Odd::Sum) && !LAST_SUMS.contains(&bare(&lower).as_str()) && (begins || !note.contains(' '))
+}
+
+/// Whether a text is a statistic alone, `Mean`, `Std. dev.`, and not one among other words, as `Total resistance` is.
+pub(crate) fn is_statistic(text: &str) -> bool {
+    let whole = bare(&text.to_lowercase());
+    SUMS.contains(&whole.as_str()) || LAST_SUMS.contains(&whole.as_str())
+}
+
+/// The first cell of a row with content.
+pub(crate) fn label<C: AsRef<str>>(cells: &[C]) -> &str {
+    cells.iter().map(|cell| cell.as_ref().trim()).find(|cell| !cell.is_empty()).unwrap_or_default()
 }
 
 /// Letters and digits of a label in small letters.

@@ -15,7 +15,7 @@ use crate::file_words::{FileWords, of_sentinel, sentinel};
 use crate::foreign_names::meant_without_unit;
 use crate::heading::{Heading, passed_over};
 use crate::known_columns::is_text_column;
-use crate::label_rows::OddRows;
+use crate::label_rows::{OddRows, label};
 use crate::reading::Reading;
 use crate::records::Skipped;
 use crate::sidecar::Sidecar;
@@ -160,19 +160,17 @@ fn of_rows(reading: &Reading, file: &FileWords, data: &[&Row<'_>]) -> Vec<Obstac
     let mut out = Vec::new();
     let mut add = |line: usize, text: String| out.push(Obstacle { line: Some(line), column: None, text });
     let width = reading.headings.len();
-    let first =
-        |row: &Row<'_>| row.cells.iter().find(|cell| !cell.is_empty()).map_or_else(String::new, ToString::to_string);
     let mut sums = IndexMap::new();
     if file.leave_out.is_none() {
         let mut odd_rows = OddRows::default();
-        sums.extend(data.iter().filter_map(|row| odd_rows.see(&first(row), row.line)));
+        sums.extend(data.iter().filter_map(|row| odd_rows.see(label(&row.cells), row.line)));
         sums.extend(odd_rows.end());
     }
     for (line, word) in &sums {
         add(*line, format!("the row begins with `{word}`; where it sums up others, declare it in leave_out"));
     }
     let rest: Vec<&&Row<'_>> =
-        data.iter().filter(|row| !file.leaves_out(&first(row)) && !sums.contains_key(&row.line)).collect();
+        data.iter().filter(|row| !file.leaves_out(label(&row.cells)) && !sums.contains_key(&row.line)).collect();
     let is_ragged =
         |row: &&&&Row<'_>| row.cells.len() < width || row.cells[width..].iter().any(|cell| !cell.is_empty());
     if let Some(row) = rest.iter().find(is_ragged) {

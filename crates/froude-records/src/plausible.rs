@@ -37,7 +37,7 @@ pub fn problem(name: &str, si: f64, unit: &Unit) -> Option<String> {
     match (name, unit.dimension) {
         ("angle" | "misalignment", Dimension::ANGLE) => angle(si, unit),
         ("density", Dimension::DENSITY) if !AIR_KG_M3.contains(&si) => density(si, None),
-        // A heavy oil has 1e-3 m²/s; water in cSt has 1.
+        // Glycerine at 20 °C has 1.2e-3 m²/s (CRC Handbook), eight times less; water in cSt has 1.
         ("kinematic_viscosity", Dimension::KINEMATIC_VISCOSITY) if si > 0.01 => Some(
             "is far above that of any liquid in which bodies are towed: water has 1e-6 m^2/s, which is 1 cSt (mm^2/s)"
                 .to_owned(),
@@ -171,6 +171,9 @@ mod tests {
         );
         assert_eq!(density_of_displaced_water(1.025e6).unwrap(), meant);
         assert!(density(11_340.0, None).unwrap().ends_with("fresh water has 1000 kg/m^3, sea water 1025"));
+        let viscosity = |si: f64| problem("kinematic_viscosity", si, &parse_unit("m^2/s").unwrap());
+        assert_eq!((viscosity(1.2e-3), viscosity(1.0e-6)), (None, None), "glycerine and water");
+        assert!(viscosity(1.004).unwrap().contains("which is 1 cSt"));
         assert_eq!(unit_for(1.025, Dimension::DENSITY, "kg/m^3"), "g/cm^3");
         assert_eq!(unit_for(1025.0, Dimension::DENSITY, "kg/m^3"), "kg/m^3");
         assert_eq!(unit_for(1.025, Dimension::SPEED, "m/s"), "m/s");

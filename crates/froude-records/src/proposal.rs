@@ -12,7 +12,7 @@ use crate::file_words::{FileWords, sentinel, sentinel_word};
 use crate::foreign_names::meant_without_unit;
 use crate::heading::Heading;
 use crate::known_columns::{is_text_column, usual_unit};
-use crate::label_rows::{Labels, Odd, OddRows, odd};
+use crate::label_rows::{Labels, Odd, OddRows, label, odd};
 use crate::outcome::Outcome;
 use crate::reading::Reading;
 use crate::records::Skipped;
@@ -131,13 +131,11 @@ fn of_file(reading: &Reading, rows: &[Row<'_>]) -> String {
     let data = || rows.iter().filter(|row| !row.is_comment && row.line >= reading.line);
     let (mut missing, mut sums, mut scales) = (Vec::<String>::new(), Vec::<String>::new(), Vec::<String>::new());
     let mut labels = Labels::default();
-    let first =
-        |row: &Row<'_>| row.cells.iter().find(|cell| !cell.is_empty()).map(ToString::to_string).unwrap_or_default();
     let mut odd_rows = OddRows::default();
     let mut found: Vec<(usize, String)> = Vec::new();
     for row in data() {
         labels.see(row.cells.first().map_or("", |cell| cell.trim()), row.line);
-        found.extend(odd_rows.see(&first(row), row.line));
+        found.extend(odd_rows.see(label(&row.cells), row.line));
     }
     found.extend(odd_rows.end());
     let top = data().next().map(|row| row.line);
@@ -151,7 +149,8 @@ fn of_file(reading: &Reading, rows: &[Row<'_>]) -> String {
         }
     }
     scales.extend(labels.words().map(|(_, word)| word.clone()).filter(|word| odd(word).is_none()));
-    let is_odd = |row: &Row<'_>| [&sums, &scales].iter().any(|words| words.contains(&first(row)));
+    let is_odd =
+        |row: &Row<'_>| [&sums, &scales].iter().any(|words| words.iter().any(|word| word == label(&row.cells)));
     for at in (0..reading.headings.len()).filter(|at| reading.is_number.get(*at) == Some(&true)) {
         let cells: Vec<_> = data().filter(|row| !is_odd(row)).filter_map(|row| row.cells.get(at)).collect();
         let words = cells.iter().filter(|cell| !cell.is_empty() && is_missing(cell)).map(ToString::to_string);

@@ -10,7 +10,7 @@ use crate::error::{Place, Position, RecordError};
 use crate::file_words::{FileWords, sidecar_name};
 use crate::guard::unguarded;
 use crate::heading::{Heading, headings, rename_sname, split_header};
-use crate::label_rows::{Odd, is_scale, odd};
+use crate::label_rows::{Odd, is_scale, is_statistic, label, odd};
 use crate::question::{Answer, Question};
 use crate::records::{Dialect, NextRow as _, Records, Skipped};
 use crate::text::counted;
@@ -202,11 +202,6 @@ fn named_numbers(heads: &[Head]) -> Option<String> {
     ))
 }
 
-/// The first cell with content.
-fn first(line: &Line) -> &str {
-    line.cells.iter().map(String::as_str).find(|cell| !cell.is_empty()).unwrap_or_default()
-}
-
 fn joined(line: &Line) -> String {
     line.cells.join("; ").trim_end_matches("; ").to_owned()
 }
@@ -215,13 +210,13 @@ fn joined(line: &Line) -> String {
 fn refuse_scales(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), RecordError> {
     let is_open = |line: &&Line| {
         let is_known = |cell: &String| cell.is_empty() || MADE_BY.contains(&cell.to_lowercase().as_str());
-        !line.cells.iter().all(is_known) && !file.leaves_out(first(line))
+        !line.cells.iter().all(is_known) && !file.leaves_out(label(&line.cells))
     };
     // `Faktor; 1; 1000` above the names; a sentence is a title.
     let is_scale_above = |line: &&Line| {
-        odd(first(line)) == Some(Odd::Scale)
+        odd(label(&line.cells)) == Some(Odd::Scale)
             && line.cells.iter().any(|cell| shape(cell).is_some())
-            && !file.leaves_out(first(line))
+            && !file.leaves_out(label(&line.cells))
     };
     let below = layout.below.iter().find(is_open).map(|line| (line, "between the units and the numbers"));
     let above = || layout.titles.iter().find(is_scale_above).map(|line| (line, "above the names"));
@@ -229,12 +224,12 @@ fn refuse_scales(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), R
         let problem = format!(
             "`{}` stands {place}: if it scales, shifts or reverses the numbers, nothing applies it. Apply it by a unit or a sign in the sidecar, and skip the line with:\n  schema = 1\n  [file]\n  leave_out = [\"{}\"]",
             joined(line),
-            first(line)
+            label(&line.cells)
         );
         return Err(RecordError::syntax(Place::in_table(path, line.number), problem));
     }
-    let is_statistic = |head: &&Head| odd(&head.above) == Some(Odd::Sum) && !head.name.starts_with(&head.above);
-    if let (Some(head), None) = (layout.heads.iter().find(is_statistic), file.stated.names_line) {
+    let of_statistic = |head: &&Head| is_statistic(&head.above) && !head.name.starts_with(&head.above);
+    if let (Some(head), None) = (layout.heads.iter().find(of_statistic), file.stated.names_line) {
         let problem = format!(
             "`{}` stands above `{}`: if the numbers are statistics and not single readings, give the column a name that says so in the sidecar. Then state which line holds the names, in {}:\n  schema = 1\n  [file]\n  names = {}",
             head.above,
@@ -312,7 +307,7 @@ fn told(
         heads.iter().filter(|head| !head.name.starts_with(&head.above)).map(|head| head.above.as_str()).collect();
     above.dedup();
     if !above.is_empty() {
-        words.push(format!("`{}` above names passed over", above.join("; ")));
+        words.push(format!("`{}` above the names", above.join("; ")));
     }
     if *names_line > 1 {
         words.push(format!("names in {noun} {names_line}"));

@@ -97,11 +97,11 @@ fn rows(sheet: &Sheet, file: &FileWords) -> (Vec<Row<'static>>, Result<Marks, Un
     let decimal = marks.as_ref().map_or('.', |marks| marks.decimal);
     let of_number = |x: f64| x.to_string().replace('.', &decimal.to_string());
     let units: Vec<Vec<Unit>> = (0..width).map(|j| units_above(sheet, j)).collect();
-    // A unit behind a number is left out where the head says the same, and a word that is no unit, `ok`, everywhere.
+    // A unit behind a number is left out where the head says the same. Any other word may scale the number: `Mio`, `x10³`.
     let is_known = |j: usize, word: &str| {
         let is_own =
             |unit: &Unit| units[j].iter().any(|own| (own.dimension, own.factor) == (unit.dimension, unit.factor));
-        parse_unit(word).map_or(true, |unit| is_own(&unit))
+        parse_unit(word).is_ok_and(|unit| is_own(&unit))
     };
     let text = |i: usize, j: usize| -> Cow<'static, str> {
         // A head over several columns is that of each of them.

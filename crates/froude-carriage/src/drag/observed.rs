@@ -276,9 +276,13 @@ impl<'r, 'a> Tows<'r, 'a> {
         };
         if !(is_known || points.is_empty()) {
             let text = format!(
-                "{}: the interval does not include the uncertainty of the friction, which {} not show; add dry runs",
+                "{}: the interval does not include the uncertainty of the friction, which {}; add dry runs",
                 method.name(),
-                if frictional.len() == 1 { "one dry run does" } else { "the dry runs, left out in turn, do" }
+                if frictional.len() == 1 {
+                    "a single dry run does not show"
+                } else {
+                    "leaving out each dry run in turn does not determine"
+                }
             );
             reported.findings.push(Finding::new(Severity::Warning, "friction-uncertain", text));
         }
@@ -337,14 +341,16 @@ fn repeats(points: &[Point]) -> Option<Replicates> {
     });
     let dof = points.len() as f64 - 1.0;
     // Where the scatter grows with the speed the jackknife shows it, and is the larger one.
-    let left_out = together("", std::slice::from_ref(&runs)).map_or(0.0, |part| part.standard(0).powi(2));
-    Some(Replicates { variance: Some(vec![f64::max(left / (dof * squares), left_out)]), ..runs })
+    Some(runs.above(Floor { name: OF_RUNS.to_owned(), variance: vec![left / (dof * squares)], dof }))
 }
+
+/// Scatter of the only pair.
+const OF_RUNS: &str = "scatter of the runs about the law";
 
 /// Sets of replicates under their name.
 fn scatter(sets: Vec<Replicates>) -> Scatter {
     let name = match sets.as_slice() {
-        [one] if one.left_out == "run" => "scatter of the runs about the law",
+        [one] if one.left_out == "run" => OF_RUNS,
         [wet, _] if wet.left_out == "run" => "scatter of wet runs about the law and of dry runs",
         [_, _] => "scatter of pairs and of friction runs",
         _ => "scatter between pairs",

@@ -222,7 +222,7 @@ pub(crate) fn of_logs(logs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, Ser
     let unfit: Vec<String> = (1..).zip(&alone).filter(|(_, fit)| fit.is_none()).map(|(k, _)| k.to_string()).collect();
     if !unfit.is_empty() {
         report.fit.findings.push(format!(
-            "{} {} of {} alone {} not determine all coefficients: {}; record logs that each do",
+            "{} {} of {}, fitted alone, {} not determine all coefficients: {}; record logs each of which does",
             if unfit.len() == 1 { "log" } else { "logs" },
             unfit.join(", "),
             alone.len(),

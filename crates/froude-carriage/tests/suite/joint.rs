@@ -216,12 +216,12 @@ fn a_log_that_does_not_determine_all_is_named() {
     (logs[1].position_m, logs[1].command_v) = (position_m, command_v);
     let report = identify_logs(&logs, &chain(Friction::symmetric(), TWIN.rate_hz)).unwrap();
     assert_eq!((report.fit.runs, report.fit.pieces.as_str()), (Some(2), "fits of 2 single logs"));
-    let said = "log 2 of 3 alone does not determine all coefficients: the scatter between logs is that of the others; record logs that each do";
+    let said = "log 2 of 3, fitted alone, does not determine all coefficients: the scatter between logs is that of the others; record logs each of which does";
     assert!(report.fit.findings.iter().any(|text| text == said), "{:?}", report.fit.findings);
     // Of five, where one alone decides, nothing shows what changes between them.
     let five = [0, 1, 1, 1, 1].map(|i| logs[i].clone());
     let report = identify_logs(&five, &chain(Friction::symmetric(), TWIN.rate_hz)).unwrap();
     assert_eq!((report.fit.runs, report.fit.pieces.as_str()), (None, "blocks of 1.0 s"));
-    let said = "logs 2, 3, 4, 5 of 5 alone do not determine all coefficients: the intervals do not include what changes from log to log; record logs that each do";
+    let said = "logs 2, 3, 4, 5 of 5, fitted alone, do not determine all coefficients: the intervals do not include what changes from log to log; record logs each of which does";
     assert!(report.fit.findings.iter().any(|text| text == said), "{:?}", report.fit.findings);
 }

@@ -65,7 +65,8 @@ fn the_interval_of_c_d_covers_over_many_tanks() {
             width[k] += 0.5 * (high - low) / C_D / seeds as f64;
         }
     }
-    assert!(covered.iter().all(|covered| 10 * covered >= 9 * seeds), "{covered:?} of {seeds}");
+    let least = 0.95 - 1.5 * (0.95 * 0.05 / seeds as f64).sqrt();
+    assert!(covered.iter().all(|covered| *covered as f64 >= least * seeds as f64), "{covered:?} of {seeds}");
     println!("C_D in the interval: {covered:?} of {seeds}, mean half-widths {width:?}");
     assert!((width[0] / 0.0565 - 1.0).abs() < 0.09, "{width:?}");
 }
@@ -169,7 +170,7 @@ fn friction_of_several_repeats_is_in_the_interval_of_one_wet_pair() {
     keep(folder.path(), |line| line.contains(",wet,") || line.contains("dry,0.1,out"));
     let reduction = reduced(folder.path()).unwrap();
     let said: Vec<&str> = reduction.report.findings.iter().map(|f| f.message.as_str()).collect();
-    let expected = "mbdp_mapped: the interval does not include the uncertainty of the friction, which one dry run does not show; add dry runs";
+    let expected = "mbdp_mapped: the interval does not include the uncertainty of the friction, which a single dry run does not show; add dry runs";
     assert!(said.contains(&expected), "{said:?}");
 }
 

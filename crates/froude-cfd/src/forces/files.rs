@@ -214,13 +214,14 @@ fn no_second(start: &Path, first: &str) -> Result<(), MethodError> {
     }
 }
 
-/// The density that the forces of a case are of, where its dictionary states one, and the file; `None` where it states several, or has no function object `forces`: one of coefficients divides by its own.
+/// The density that the `forces` function object of a case multiplies by, with the file that states it; `None` if several are stated, or there is no `forces`
+/// object: a `forceCoeffs` object divides by its own.
 pub(super) fn stated_rho_inf(case: &Path) -> Option<(f64, PathBuf)> {
     let path = case.join("system/controlDict");
     let text = input::text(&path).ok()?;
     let code = || text.lines().map(|line| line.split_once("//").map_or(line, |(code, _)| code).trim());
     let value = |line: &'_ str, key: &str| Some(line.strip_prefix(key)?.strip_suffix(';')?.trim().to_owned());
-    if !code().any(|line| value(line, "type ").is_some_and(|kind| kind == "forces")) {
+    if !code().any(|line| value(line, "type").is_some_and(|kind| kind == "forces")) {
         return None;
     }
     // `rhoInf 998;` and, in old files, `rhoInf rhoInf [1 -3 0 0 0 0 0] 998;`.

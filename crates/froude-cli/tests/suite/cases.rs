@@ -108,8 +108,8 @@ fn laws_by_name_have_the_terms_of_the_table() {
     }
 }
 
-/// Both directions, dead bands and the inverse, without a law being named; the load drives the body and is none of the water. A miss: of this table the interval of the dead band ahead begins at
-/// 0.611 V, where 0.6 V was put in. How often the intervals of such tables hold it is counted in `named_laws` of `froude-identify`.
+/// The thruster law is chosen by the columns alone and gives both directions, both dead bands and the inverse; a thrust that drives the body is no error. A miss: the interval of the dead band
+/// ahead begins at 0.611 V for this table, and 0.6 V was put in. `named_laws` in `froude-identify` counts how often such intervals hold the truth.
 #[test]
 fn a_thruster_over_volts_gives_both_directions_and_the_command_for_a_thrust() {
     let (_folder, paths) = copied(&["thruster.csv"]);

@@ -453,6 +453,10 @@ fn releases_in_another_unit_than_their_header_says_are_asked_about() {
     rewritten(["time [s]", "position [m]"], [20.0, 0.01]);
     let said = refusal(&["identify", text(&campaign(folder.path(), "\"decay\"", heave))]);
     assert!(said.contains("as numbers of frames are") && said.contains("write period = \"55.9"), "{said}");
+    // Seconds under a header in milliseconds.
+    rewritten(["time [ms]", "position [m]"], [1.0, 0.01]);
+    let said = refusal(&["identify", text(&campaign(folder.path(), "\"decay\"", heave))]);
+    assert!(said.contains("times are probably in a larger unit than stated: seconds under a header in ms"), "{said}");
 }
 
 /// What only one of inertia and stiffness gives, and what needs both.

@@ -139,6 +139,6 @@ fn where_no_replicate_tells_the_scatter_the_value_has_no_interval() {
     assert!(estimate.type_a.is_none() && estimate.errors.is_empty() && estimate.clusters.is_none());
     assert_eq!(result.models[0].covariance[(1, 1)], 0.0);
     // Replicates of another law are no scatter of this one.
-    let other = Replicates { left_out: "run", without: vec![vec![1.0], vec![2.0]], variance: None, floor: None };
+    let other = Replicates { left_out: "run", without: vec![vec![1.0], vec![2.0]], floor: None };
     assert!(fitted(Weight::One, by_runs(vec![other])).estimates[0].type_a.is_none());
 }

@@ -70,8 +70,8 @@ const RATES: &[&str] = &[
 ];
 
 /// Parts of names of accelerations, in small letters.
-const ACCELERATIONS: [&str; 10] =
-    ["a", "acc", "accel", "acceleration", "ax", "ay", "az", "beschleunigung", "accélération", "加速度"];
+const ACCELERATIONS: [&str; 9] =
+    ["acc", "accel", "acceleration", "ax", "ay", "az", "beschleunigung", "accélération", "加速度"];
 
 /// Parts of names of forces, in small letters.
 const FORCES: [&str; 14] = [
@@ -209,7 +209,10 @@ pub fn question(name: &str, unit: &Unit) -> Option<String> {
                 "`{text}` is ambiguous for a rate of rotation; write `{turns}` where turns are counted, or `{radians}`"
             ))
         }
-        Dimension::MASS if matches!(text, "g" | "mg") && has_word(plain, &ACCELERATIONS) => {
+        Dimension::MASS
+            if matches!(text, "g" | "mg")
+                && (has_word(plain, &ACCELERATIONS) || matches!(plain, "a" | "a_x" | "a_y" | "a_z")) =>
+        {
             let milli = if text == "mg" { " and multiply the numbers by 0.001" } else { "" };
             Some(format!(
                 "`{text}` is a mass here; if the numbers are multiples of the acceleration of gravity, write `g0` (9.80665 m/s^2){milli}"

@@ -199,7 +199,10 @@ fn what_may_scale_or_sum_up_others_is_never_taken_for_data() {
     }
     let above = "speed [m/s];f_x [N];f_y [N]\n0.5;-2;1\n1.25;-12.5;2\n";
     let understood = read(format!(";Experiment;CFD\n{above}").as_bytes(), "").unwrap().understood.unwrap();
-    assert!(understood.contains("`Experiment; CFD` above names passed over"), "{understood}");
+    assert!(understood.contains("`Experiment; CFD` above the names"), "{understood}");
+    // A long name over its symbol is none, whatever word is in it.
+    let long = "Mean speed;Total resistance\nU;R_T\nm/s;N\n0.5;2\n1.25;12.5\n";
+    assert!(refused(long, "").contains("column `U [m/s]` would not be used; is it speed?"));
     // The unit that the table states holds, whatever brackets it stands in, and a scale multiplies values in it.
     let bridge = "speed (m/s),bridge (mV/V)\n0.4,-0.0162\n";
     let scaled = |unit: &str| {
@@ -484,6 +487,8 @@ fn a_unit_that_a_number_format_shows_agrees_with_the_header() {
     std::fs::write(&path, include_bytes!("../golden/shown.xlsx")).unwrap();
     let table = read_table(&path, None).unwrap();
     assert_eq!((si(&table, "speed"), si(&table, "f_x")), (vec![0.5, 1.25], vec![-2.0, -12.5]));
+    let text = "speed [m/s];f_x [N]\n0.5;-2 Mio\n1.25;-12.5 Mio\n";
+    assert!(read(text.as_bytes(), "").unwrap_err().contains("if `Mio` does not change the number, take it out"));
     let mapped = "schema = 1\n[columns]\ndrag = { name = \"f_y\", unit = \"N\" }\n";
     std::fs::write(folder.path().join("t.toml"), mapped).unwrap();
     let said = read_table(&path, None).unwrap_err().to_string();

@@ -8,6 +8,7 @@
 //! | a rotation  | above 90°, or below 1°                                              | degrees as rad, rad as degrees |
 //! | along       | above 1 m, below 1 mm, or with an acceleration above that of gravity | mm or pixels as m, m as mm    |
 //! | the time    | in whole numbers one after the other                                | numbers of frames as seconds   |
+//! |             | with a period below 5 ms                                            | days, or seconds under `[ms]`  |
 //!
 //! Not found: cm under `[mm]`, mm under `[cm]` of a slow body, and pixels that come out between.
 
@@ -21,7 +22,7 @@ use crate::log::TankLog;
 /// Least swing of a rotation that nobody is asked about, rad; most and least of a translation, m.
 const LEAST_RAD: f64 = 0.017_453;
 const ALONG_M: [f64; 2] = [1e-3, 1.0];
-/// A period below which the unit of the time is asked about, s: water moves with bodies that people release at 10 Hz at most.
+/// Bodies that are released in water swing at some 10 Hz at most; below a twentieth of that period, s, the unit of the time is asked about.
 const LEAST_PERIOD_S: f64 = 5e-3;
 /// m/s².
 const GRAVITY: f64 = 9.81;
