@@ -53,6 +53,13 @@ pub(super) fn check(
     } else {
         "state the unit of the column: `position [mm]` as its header, for example, or unit = \"mm\" in a sidecar"
     };
+    // First: a wrong unit of time also makes an absurd acceleration.
+    if seen_s.is_none() && period_s < LEAST_PERIOD_S {
+        let what = format!(
+            "the period comes out as {period_s:.1e} s, too short for a body in water. The times are probably in a larger unit than stated: seconds under a header in ms, or MATLAB's datenum, which counts days (multiply by 86400); if the period is right, write period = \"{period_s:e} s\" in [source.decay]"
+        );
+        return refused(&logs[0], what);
+    }
     match (seen, doubt(swing, is_angle, period_s)) {
         (Some(seen), _) if apart(seen, swing) => {
             let [declared, found] = [seen, swing].map(shown);
@@ -77,12 +84,6 @@ pub(super) fn check(
             "period = \"{seen_s:.4} s\" is declared, and the logs swing with {period_s:.4} s: state the unit of the time, `time [ms]` as its header, for example"
         );
         return refused(log, what);
-    }
-    if seen_s.is_none() && period_s < LEAST_PERIOD_S {
-        let what = format!(
-            "the period comes out as {period_s:.1e} s, too short for a body in water. The times are probably in a larger unit than stated: seconds under a header in ms, or MATLAB's datenum, which counts days (multiply by 86400); if the period is right, write period = \"{period_s:e} s\" in [source.decay]"
-        );
-        return refused(&logs[0], what);
     }
     let is_counted = |run: &DecayRun<'_>| {
         let is_whole = run.time_s.iter().all(|t| t.fract() == 0.0);
