@@ -107,7 +107,7 @@ pub struct SourceFacts {
 /// What is in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inspection {
-    /// `table`, `campaign`, `estimate`, `run`, `runs` for a folder of them, or `logs` for one of other programs' logs.
+    /// `table`, `list` of logs, `campaign`, `estimate`, `run`, `runs` for a folder of them, or `logs` for one of other programs' logs.
     pub kind: String,
     /// Facts in words, `(name, value)`.
     pub facts: Vec<(String, String)>,
@@ -139,6 +139,13 @@ pub fn table(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Identify
     let table = read_table_with_blanks(path, sidecar)?;
     let campaign = Campaign::of_table(path, sidecar.map(Path::to_owned));
     let reduced = reduce(&campaign, &campaign.sources[0])?;
+    if let Some(files) = table.text("file").ok().filter(|_| reduced.data.loads().is_empty()) {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let next = format!("write list = \"{name}\" in the sidecar of these logs: each row then describes one log");
+        let facts = [("files", files.len().to_string()), ("next", next)];
+        let facts = facts.map(|(name, value)| (name.to_owned(), value)).into();
+        return Ok(Inspection { columns: columns(&table), ..Inspection::new("list", facts, Vec::new()) });
+    }
     let findings = doubts(&campaign, &campaign.sources[0], &reduced);
     let configurations = reduced.data.configurations();
     let mut facts = vec![("rows".to_owned(), table.n_rows.to_string())];

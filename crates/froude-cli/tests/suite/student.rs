@@ -84,6 +84,8 @@ fn tows_of_the_twin_give_the_same_drag_as_logs_of_another_program() {
         }
     }
     std::fs::write(lab.join("runs.csv"), list).unwrap();
+    let seen = done(lab, &["inspect", "runs.csv"]);
+    assert!(seen.contains("write list = \"runs.csv\"") && !seen.contains("identical-copies"), "{seen}");
     let volts = own["law"]["constants"]["force_per_volt"]["value"].as_f64().unwrap();
     replace_in(&lab.join("campaign.toml"), "4.77 N/V", &format!("{volts} N/V"));
     let sidecar = lab.join("logs/logs.toml");

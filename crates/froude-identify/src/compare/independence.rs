@@ -1,13 +1,13 @@
 //! Whether two estimates come from the same observations.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use froude_records::estimate::{DataFile, Estimate, EstimateFile, Status};
 use froude_records::finding::{Finding, Severity};
 
 use crate::compare::named::Named;
-use crate::data_files::INHERITED;
+use crate::data_files::{INHERITED, is_same_data};
 
 /// What is read as something else than observations: it is the same error under its own key, or no error at all.
 const NOT_OBSERVED: [&str; 4] = ["campaign", "sidecar", "record", INHERITED];
@@ -32,9 +32,26 @@ pub(crate) fn data_of<'a>(file: &'a EstimateFile, estimate: &'a Estimate) -> imp
     estimate.data.iter().filter_map(|key| file.data.get(key))
 }
 
-/// Fingerprints of the observations of an estimate among files.
-fn fingerprints<'a>(estimate: &Estimate, files: impl Iterator<Item = &'a DataFile>) -> BTreeSet<&'a str> {
-    files.filter(|data| is_observed(estimate, data)).map(|data| data.sha256.as_str()).collect()
+/// By fingerprint.
+type Files<'a> = BTreeMap<&'a str, Vec<&'a DataFile>>;
+
+fn by_fingerprint<'a>(files: impl Iterator<Item = &'a DataFile>) -> Files<'a> {
+    let mut out = Files::new();
+    files.for_each(|file| out.entry(file.sha256.as_str()).or_default().push(file));
+    out
+}
+
+/// The observations of an estimate among files.
+fn observed<'a>(estimate: &Estimate, files: impl Iterator<Item = &'a DataFile>) -> Files<'a> {
+    by_fingerprint(files.filter(|data| is_observed(estimate, data)))
+}
+
+/// Whether any data are in both; different sheets of one workbook are different data.
+fn share(a: &Files<'_>, b: &Files<'_>) -> bool {
+    let is_in = |(sha, files): (&&str, &Vec<&DataFile>)| {
+        b.get(sha).is_some_and(|others| files.iter().any(|x| others.iter().any(|y| is_same_data(x, y))))
+    };
+    a.iter().any(is_in)
 }
 
 /// The files that hold observations of an estimate; of an old record, which does not say whose they are, all of them.
@@ -46,10 +63,10 @@ pub fn observations<'a>(file: &'a EstimateFile, estimate: &'a Estimate) -> Vec<&
 
 /// Where an estimate comes from, as far as its record shows.
 pub(super) struct Origin<'a> {
-    /// Fingerprints of its tables or runs.
-    tables: BTreeSet<&'a str>,
+    /// Its tables or runs.
+    tables: Files<'a>,
     /// Those behind its priors.
-    inherited: BTreeSet<&'a str>,
+    inherited: Files<'a>,
     /// Whether these are its own, and not those of all estimates of its record.
     is_exact: bool,
     /// Whether all estimates of the record are of this one's source.
@@ -59,24 +76,18 @@ pub(super) struct Origin<'a> {
 /// The origin of each estimate.
 pub(super) fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
     let of = |n: &Named<'a>| {
-        let own = fingerprints(n.estimate, data_of(n.record, n.estimate));
+        let own = observed(n.estimate, data_of(n.record, n.estimate));
         // What is behind a known coefficient or a tare is an error with a key of its own.
         let has_prior = n.estimate.coefficients.values().any(|c| c.status == Status::Prior);
         let is_inherited = |data: &&DataFile| has_prior && data.role.as_deref() == Some(INHERITED);
-        let inherited = n.record.data.values().filter(is_inherited);
-        let inherited = inherited.map(|data| data.sha256.as_str()).collect();
+        let inherited = by_fingerprint(n.record.data.values().filter(is_inherited));
         let is_exact = !own.is_empty();
         let first = n.record.estimates.first().map(|e| &e.source);
         let is_alone = || n.record.estimates.iter().all(|e| Some(&e.source) == first);
         if is_exact {
             Origin { tables: own, inherited, is_exact, is_alone: true }
         } else {
-            Origin {
-                tables: fingerprints(n.estimate, n.record.data.values()),
-                inherited,
-                is_exact,
-                is_alone: is_alone(),
-            }
+            Origin { tables: observed(n.estimate, n.record.data.values()), inherited, is_exact, is_alone: is_alone() }
         }
     };
     all.iter().map(of).collect()
@@ -103,7 +114,7 @@ pub(super) fn has_likes(all: &[Named<'_>], a: &Named<'_>, b: &Named<'_>) -> bool
 
 /// True where both records name their tables and none of them is the same.
 pub(super) fn have_other_tables([a, b]: [&Origin<'_>; 2]) -> bool {
-    !a.tables.is_empty() && !b.tables.is_empty() && a.tables.is_disjoint(&b.tables)
+    !a.tables.is_empty() && !b.tables.is_empty() && !share(&a.tables, &b.tables)
 }
 
 /// True where two estimates come from the same observations, as far as their records show.
@@ -123,15 +134,15 @@ pub(super) fn same_data([a, b]: [&Named<'_>; 2], [first, second]: [&Origin<'_>; 
     }
     if first.is_exact && second.is_exact {
         // A prior that was fitted to the other's rows, too.
-        let is_taken = |own: &Origin<'_>, other: &Origin<'_>| !own.tables.is_disjoint(&other.inherited);
-        return !first.tables.is_disjoint(&second.tables) || is_taken(first, second) || is_taken(second, first);
+        let is_taken = |own: &Origin<'_>, other: &Origin<'_>| share(&own.tables, &other.inherited);
+        return share(&first.tables, &second.tables) || is_taken(first, second) || is_taken(second, first);
     }
     if std::ptr::eq(a.record, b.record) {
         // Fitted sources read tables; a published one beside them does not.
         return first.tables.len() == 1 && x.n_observations > 0 && y.n_observations > 0;
     }
     let is_plain = |own: &Origin<'_>| own.tables.len() == 1 || own.is_alone;
-    !first.tables.is_disjoint(&second.tables)
+    share(&first.tables, &second.tables)
         && ((is_plain(first) && is_plain(second)) || x.source == y.source || same_observations)
 }
 

@@ -1,9 +1,11 @@
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Clusters, DataFile, ErrorKind, EstimateFile, Range, SharedError, keyed};
+use froude_records::run::step::Step;
 
 use super::coefficients::SAME_DATA;
 use super::*;
 use crate::compare::stated::NORMAL_COVERAGE;
+use crate::data_files::PART;
 
 fn file(path: &str, sha256: &str) -> DataFile {
     DataFile { path: path.to_owned(), sha256: sha256.to_owned(), ..DataFile::default() }
@@ -96,7 +98,11 @@ fn a_record_that_names_the_data_of_each_estimate_is_believed() {
     let mut both = record("all", "t1", 47.8, 0.4, Some(9.0));
     both.estimates.extend(record("slow runs", "t2", 46.9, 0.7, Some(4.0)).estimates);
     both.data.insert("d3".to_owned(), file("slow.csv", "t2"));
-    for (second, is_same) in [("d2", true), ("d3", false)] {
+    // Another sheet of the same workbook.
+    let sheet = |name: &str| DataFile { steps: vec![Step::new(PART, "", name)], ..file("all.csv", "t1") };
+    both.data.insert("d2".to_owned(), sheet("hull"));
+    both.data.insert("d4".to_owned(), sheet("strut"));
+    for (second, is_same) in [("d2", true), ("d3", false), ("d4", false)] {
         both.estimates[0].data = vec!["d2".to_owned()];
         both.estimates[1].data = vec![second.to_owned()];
         let c = compare(&named(&[("a.json".to_owned(), both.clone())]));
