@@ -39,6 +39,7 @@ pub(super) const WORDS: &[(&str, &[&str])] = &[
     ("N", &["newton", "newtons", "Newton", "Newtons"]),
     ("Nm", &["Newtonmeter"]),
     ("lbf", &["LBF"]),
+    ("kip", &["kips", "klbf"]),
     ("kgf", &["kp", "Kgf", "KGF", "kilopond"]),
     ("psi", &["PSI", "psig", "PSIG", "psid", "psia", "PSIA"]),
     ("bar", &["barg", "bara"]),

@@ -52,6 +52,8 @@ pub(super) const PLAIN: &[(&str, f64, f64, Dimension)] = &[
     ("oz", 0.028349523125, 1.0, Dimension::MASS),
     ("ton_short", 907.18474, 1.0, Dimension::MASS),
     ("ton_long", 1016.0469088, 1.0, Dimension::MASS),
+    ("daN", 10.0, 1.0, Dimension::FORCE),
+    ("dyn", 1.0, 1e5, Dimension::FORCE),
     ("lbf", 4.4482216152605, 1.0, Dimension::FORCE),
     ("kip", 4448.2216152605, 1.0, Dimension::FORCE),
     ("ozf", 4.4482216152605, 16.0, Dimension::FORCE),

@@ -46,7 +46,7 @@ fn read() -> Vec<(&'static str, f64, &'static str)> {
         // Masses and forces.
         ("lbs", 0.45359237, "kg"), ("lbm", 0.45359237, "kg"), ("Kg", 1.0, "kg"), ("kgs", 1.0, "kg"), ("te", 1000.0, "kg"), ("tonnes", 1000.0, "kg"),
         ("oz", 0.028349523125, "kg"), ("ton_short", 907.18474, "kg"), ("newtons", 1.0, "N"), ("kN", 1000.0, "N"), ("kp", 9.80665, "N"),
-        ("kgf", 9.80665, "N"), ("KGF", 9.80665, "N"), ("lbf", POUND_N, "N"), ("ozf", POUND_N / 16.0, "N"), ("kip", 1000.0 * POUND_N, "N"),
+        ("kgf", 9.80665, "N"), ("KGF", 9.80665, "N"), ("lbf", POUND_N, "N"), ("ozf", POUND_N / 16.0, "N"), ("kip", 1000.0 * POUND_N, "N"), ("kips", 1000.0 * POUND_N, "N"), ("daN", 10.0, "N"), ("dyn", 1e-5, "N"),
         ("tf", 9806.65, "N"),
         // Moments.
         ("N-m", 1.0, "N m"), ("N.m", 1.0, "N m"), ("Nm", 1.0, "N m"), ("N*m", 1.0, "N m"), ("N·m", 1.0, "N m"), ("N•m", 1.0, "N m"),
