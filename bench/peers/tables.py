@@ -1,6 +1,10 @@
 """Reads large tables with froude and with pandas, in turn: wall time and peak memory of each, as processes of their own.
 
+    cargo build --release --bin froude
+    cargo build --release --package froude-foreign --example calamine
     target/oracles/bin/python bench/peers/tables.py target/release/froude
+
+The workbook is also read by calamine alone, where its example lies beside the program.
 """
 
 import os
@@ -14,6 +18,7 @@ READERS = {
     "csv": "import pandas as pd; pd.read_csv('t.csv')",
     "german.csv": "import pandas as pd; pd.read_csv('t.german.csv', sep=';', decimal=',', encoding='cp1252', skiprows=[1])",
     "xlsx": "import pandas as pd; pd.read_excel('t.xlsx')",
+    "xlsx, calamine alone": None,
     "parquet": "import pandas as pd; pd.read_parquet('t.parquet')",
     "mat": "import scipy.io; scipy.io.loadmat('t.mat')",
     "h5": "import h5py; f = h5py.File('t.h5'); [f[k][:] for k in f]",
@@ -68,6 +73,7 @@ if sys.argv[1] == "--write":
     sys.exit()
 
 FROUDE = os.path.abspath(sys.argv[1])
+CALAMINE = os.path.join(os.path.dirname(FROUDE), "examples", "calamine")
 SCRIPT = os.path.abspath(__file__)
 
 with tempfile.TemporaryDirectory() as folder:
@@ -76,12 +82,15 @@ with tempfile.TemporaryDirectory() as folder:
     subprocess.run([sys.executable, SCRIPT, "--write"], check=True)
     print("| file | froude convert to Parquet | peer | peer time / Froude time |\n| --- | --- | --- | --- |")
     for kind, script in READERS.items():
-        file = f"t.{kind}"
+        file = f"t.{kind.split(',')[0]}"
+        peer_command = [sys.executable, "-c", script] if script else [CALAMINE, file]
+        if not os.path.exists(peer_command[0]):
+            continue
         sidecar = ["--sidecar", "columns.toml"] if kind in ("mat", "german.csv") else []
         best = {}
         for k in range(ROUNDS):
-            out = f"out-{kind}-{k}.parquet"
-            for who, command in [("ours", [FROUDE, "convert", file, out, *sidecar]), ("peer", [sys.executable, "-c", script])]:
+            out = f"out-{k}.parquet"
+            for who, command in [("ours", [FROUDE, "convert", file, out, *sidecar]), ("peer", peer_command)]:
                 best[who] = min(best.get(who, (1e9, 0)), measured(command))
             os.remove(out)
         (ours, memory), (peer, of_peer) = best["ours"], best["peer"]
