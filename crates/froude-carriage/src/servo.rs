@@ -5,6 +5,7 @@
 //!
 //! | model                 | module           | equation                                                             |
 //! |-----------------------|------------------|----------------------------------------------------------------------|
+//! | rigid, a speed alone  | [`simulated`]     | the same without dry friction                                         |
 //! | rigid, the chain      | [`chain`], [`friction`] | `M q̈ + F_v q̇ + F_c sgn q̇ + offset = g u`, asymmetric, Stribeck, over position |
 //! | two masses and a chain | [`two_mass`]    | MCD eq. 2a, 2b from motor-side signals                                |
 //!
@@ -38,6 +39,7 @@ pub mod report;
 pub(crate) mod rows;
 pub mod scale;
 pub mod settle;
+pub mod simulated;
 pub mod two_mass;
 
 pub use crate::servo::two_mass::{FlexibleOptions, FlexibleReport, Gear};
@@ -50,4 +52,5 @@ pub use long::LongServo;
 pub use motor::MotorSide;
 pub use report::{RigidFit, ServoCoefficient, ServoReport};
 pub use settle::{identify_logs, identify_servo};
+pub use simulated::{SpeedLog, identify_speeds};
 pub use two_mass::identify_flexible;

@@ -15,19 +15,22 @@ use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::estimate::{Estimate, OWN};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::plain;
+use froude_records::run::stamps::{parts, usual_step_s};
 use froude_records::run::{channel_name, run_of_table};
 use froude_records::sidecar_file::sidecar_of;
 use froude_records::table::{ColumnData, Table};
 use froude_records::table_file::read_table;
+use froude_records::text::counted;
 use froude_records::units::Dimension;
 
-use super::declared::{Axis, KEYS, SERVO};
+use super::declared::{Axis, KEYS, SERVO, VISCOUS};
 use super::page::sections;
 use super::{ASYMMETRIC, AxisModels, Model, SLOWEST_HZ, by_direction, doubts, files_of_table, one_excitation};
 use crate::runs::{implausible, not_applied};
+use crate::servo::log::is_even;
 use crate::servo::scale::{Errs, ForcePerVolt, Scale};
 use crate::servo::settle::uncertain;
-use crate::servo::{Chain, Coordinate, Delay, ServoError, ServoLog, identify_logs, record};
+use crate::servo::{Chain, Coordinate, Delay, ServoError, ServoLog, SpeedLog, identify_logs, identify_speeds, record};
 
 /// The method `servo`.
 #[derive(Debug)]
@@ -115,8 +118,10 @@ pub(super) fn declared(source: &Source) -> Result<Axis, MethodError> {
 /// Logs as the fit takes them.
 struct Read {
     paths: Vec<PathBuf>,
+    /// With speeds in the place of the positions where `is_speed`.
     logs: Vec<ServoLog>,
     coordinate: Coordinate,
+    is_speed: bool,
     gain: ForcePerVolt<'static>,
     files: Vec<ReadFile>,
     findings: Vec<Finding>,
@@ -146,7 +151,8 @@ fn read(source: &Source, axis: &Axis) -> Result<Read, MethodError> {
                 "its sidecar marks parts of it, which the method servo does not leave out; cut the log there",
             ));
         }
-        let (position, scale, coordinate) = position(&table, axis)?;
+        let is_speed = is_speed(&table, axis);
+        let (position, scale, coordinate) = if is_speed { speed(&table, axis)? } else { position(&table, axis)? };
         let (command, dimension) = command(&table, axis)?;
         let channels = [&position, &command].map(|name| channel_name(name));
         if let Some(what) = not_applied(&imported, &|name| channels.iter().any(|own| own == name), &|_| false) {
@@ -182,9 +188,9 @@ fn read(source: &Source, axis: &Axis) -> Result<Read, MethodError> {
             position_m: values(&position, scale / motor)?,
             command_v: values(&command, 1.0)?,
         };
-        if let Some(what) =
-            wild::sample_of(&position, coordinate.names().position[1], &log.time_s, &log.position_m, &[])
-        {
+        let names = coordinate.names();
+        let [_, unit] = if is_speed { names.speed } else { names.position };
+        if let Some(what) = wild::sample_of(&position, unit, &log.time_s, &log.position_m, &[]) {
             return Err(MethodError::input(&path, format!("{what}; correct the sample, or cut the log there")));
         }
         let even = log.evenly().map_err(|error| MethodError::input(&path, error.to_string()))?;
@@ -193,19 +199,21 @@ fn read(source: &Source, axis: &Axis) -> Result<Read, MethodError> {
         findings.retain(|finding| finding.code != "time-steps");
         findings.extend(table.findings());
         let name = path.display();
-        findings.extend(
-            even.done.map(|done| Finding::new(Severity::Warning, "uneven-time-steps", format!("{name}: {done}"))),
-        );
+        let done = if is_speed { simulated_over(&log.time_s) } else { even.done };
+        findings
+            .extend(done.map(|done| Finding::new(Severity::Warning, "uneven-time-steps", format!("{name}: {done}"))));
         findings.extend(
             wild::times(&log.time_s, SLOWEST_HZ)
                 .map(|what| Finding::new(Severity::Warning, "implausible-times", format!("{name}: {what}"))),
         );
         let files = files_of_table(&path, sidecar);
         match &mut out {
-            None => out = Some(Read { paths: vec![path], logs: vec![log], coordinate, gain, files, findings }),
+            None => {
+                out = Some(Read { paths: vec![path], logs: vec![log], coordinate, is_speed, gain, files, findings });
+            }
             Some(all) => {
                 let first = all.paths[0].display().to_string();
-                if coordinate != all.coordinate || gain.unit != all.gain.unit {
+                if (coordinate, is_speed) != (all.coordinate, all.is_speed) || gain.unit != all.gain.unit {
                     return Err(MethodError::input(
                         &path,
                         format!(
@@ -248,6 +256,21 @@ fn read(source: &Source, axis: &Axis) -> Result<Read, MethodError> {
         MethodError::input(
             source.input.path(),
             "no logs: put them there as CSV with `time [s]`, `angle [rad]` and `current [A]`, for example",
+        )
+    })
+}
+
+/// What a simulation makes of uneven steps and gaps.
+fn simulated_over(time_s: &[f64]) -> Option<String> {
+    let step_s = usual_step_s(time_s)?;
+    let gaps = parts(time_s).len() - 1;
+    let uneven = time_s.windows(2).filter(|w| !is_even(w[1] - w[0], step_s)).count();
+    (uneven > 0).then(|| {
+        let parts = if gaps > 0 { "; each stretch between gaps starts at a speed of its own" } else { "" };
+        format!(
+            "{} from {} ms: the speed is simulated at the stamps as they are, with commands in straight lines between them{parts}",
+            counted(uneven, "step differs", "steps differ"),
+            plain(1e3 * step_s, 6)
         )
     })
 }
@@ -323,7 +346,7 @@ const ANGLES: [&str; 16] = [
 
 /// The column of the position, its factor to m or rad, and along what it is.
 fn position(table: &Table, axis: &Axis) -> Result<(String, f64, Coordinate), MethodError> {
-    let name = column(table, axis, "position", &["position", "angle"])?;
+    let name = column(table, axis, "position", &POSITIONS)?;
     let found = table.columns.iter().find(|column| column.name == name).map(|column| &column.data);
     let Some(ColumnData::Number { unit, dimension, .. }) = found else {
         return Err(MethodError::input(&table.path, format!("{name} holds no numbers")));
@@ -365,6 +388,36 @@ fn position(table: &Table, axis: &Axis) -> Result<(String, f64, Coordinate), Met
     }
 }
 
+/// Usual names of a column with the speed of an axis.
+const SPEEDS: [&str; 3] = ["speed", "angular_speed", "angle_dot"];
+const POSITIONS: [&str; 2] = ["position", "angle"];
+
+/// Whether `speed` is declared, or the log has a speed and no position.
+fn is_speed(table: &Table, axis: &Axis) -> bool {
+    let has = |names: &[&str]| table.columns.iter().any(|c| names.contains(&c.name.trim_start_matches("y/")));
+    axis.values.is_stated("speed") || !axis.values.is_stated("position") && !has(&POSITIONS) && has(&SPEEDS)
+}
+
+/// The column of the speed, and along what it is.
+fn speed(table: &Table, axis: &Axis) -> Result<(String, f64, Coordinate), MethodError> {
+    let name = column(table, axis, "speed", &SPEEDS)?;
+    let found = table.columns.iter().find(|column| column.name == name).map(|column| &column.data);
+    let coordinate = match found {
+        Some(ColumnData::Number { dimension: Dimension::SPEED, .. }) => Coordinate::Linear,
+        Some(ColumnData::Number { dimension: Dimension::ANGULAR_SPEED, .. }) => Coordinate::Rotary,
+        Some(ColumnData::Number { dimension, .. }) => {
+            let what = format!("{name} is {}; expected a speed, m/s or rad/s", dimension.describe());
+            return Err(MethodError::input(&table.path, what));
+        }
+        _ => return Err(MethodError::input(&table.path, format!("{name} holds no numbers"))),
+    };
+    if axis.values.is_stated("count") {
+        let what = format!("applies to a position in counts, but {} records a speed; delete it", table.path.display());
+        return Err(axis.values.wrong("count", what).into());
+    }
+    Ok((name.to_owned(), 1.0, coordinate))
+}
+
 /// Along what the axis moves, and by what its position is divided: a motor's angle by the gear.
 fn at_axis(table: &Table, axis: &Axis, measured: Coordinate) -> Result<(Coordinate, f64), MethodError> {
     let Some((gear, dimension)) = axis.gear.filter(|_| axis.values.word("encoder", &[true, false]) == Some(true))
@@ -384,7 +437,7 @@ fn at_axis(table: &Table, axis: &Axis, measured: Coordinate) -> Result<(Coordina
 
 /// The column of the command and its dimension.
 fn command(table: &Table, axis: &Axis) -> Result<(String, Dimension), MethodError> {
-    let name = column(table, axis, "command", &["command", "current", "voltage", "torque", "force"])?;
+    let name = column(table, axis, "command", &["command", "current", "voltage", "torque", "force", "thrust"])?;
     let found = table.columns.iter().find(|column| column.name == name).map(|column| &column.data);
     match found {
         Some(ColumnData::Number { dimension, .. }) => Ok((name.to_owned(), *dimension)),
@@ -455,10 +508,11 @@ fn gain(
 
 /// One fit of all logs.
 fn fitted(campaign: &Campaign, source: &Source, axis: &Axis, read: Read) -> Result<Found, MethodError> {
-    let Read { paths, logs, coordinate, gain, files, mut findings } = read;
+    let Read { paths, logs, coordinate, is_speed, gain, files, mut findings } = read;
     let positions = || logs.iter().flat_map(|log| log.position_m.iter().copied());
     let range = [positions().fold(f64::INFINITY, f64::min), positions().fold(f64::NEG_INFINITY, f64::max)];
-    if coordinate == Coordinate::Rotary && axis.count.is_none() && range.iter().any(|end| end.abs() > TAU) {
+    if coordinate == Coordinate::Rotary && !is_speed && axis.count.is_none() && range.iter().any(|end| end.abs() > TAU)
+    {
         let text = format!(
             "the angle goes from {} to {} rad, beyond a whole turn: a joint that turns on may; degrees under a header in radians would make inertia and viscous friction 57 times too small",
             plain(range[0], 4),
@@ -467,23 +521,35 @@ fn fitted(campaign: &Campaign, source: &Source, axis: &Axis, read: Read) -> Resu
         findings.push(Finding::new(Severity::Note, "angle-beyond-a-turn", text));
     }
     let rate_hz = logs[0].evenly().map_err(MethodError::refused)?.rate_hz;
+    if is_speed && axis.law() != VISCOUS {
+        let what = "takes no dry friction here: the logs have a speed but no position, from which dry friction is not told; write friction = \"viscous\", or record the position";
+        return Err(axis.values.wrong("friction", what).into());
+    }
     let mut chain = Chain {
         coordinate,
-        load: axis.load(campaign, coordinate, range)?,
+        load: axis.load(campaign, coordinate, (!is_speed).then_some(range))?,
         ..Chain::of_log(gain.n_v, rate_hz, axis.friction(coordinate)?)
     };
-    // Each by itself first: its error names it.
-    for (path, log) in paths.iter().zip(&logs) {
-        chain.rows(log).map_err(|error| MethodError::input(path, error.to_string()))?;
-    }
     let refused = |error: ServoError| MethodError::input(source.input.path(), error.to_string());
-    if let Some(delay) = axis.values.constant("delay") {
+    let delay = axis.values.constant("delay");
+    if let Some(delay) = &delay {
         chain.delay = Delay { at_s: delay.value, is_estimated: false, changes: Vec::new() };
-        if delay.standard_uncertainty > 0.0 {
-            chain = uncertain(&logs, &chain, delay.standard_uncertainty).map_err(refused)?;
-        }
     }
-    let report = identify_logs(&logs, &chain).map_err(refused)?;
+    let delay_standard_s = delay.map_or(0.0, |delay| delay.standard_uncertainty);
+    let report = if is_speed {
+        let of = |log: ServoLog| SpeedLog { time_s: log.time_s, speed: log.position_m, command_v: log.command_v };
+        let logs: Vec<SpeedLog> = logs.into_iter().map(of).collect();
+        identify_speeds(&logs, &chain, delay_standard_s).map_err(refused)?
+    } else {
+        // Each by itself first: its error names it.
+        for (path, log) in paths.iter().zip(&logs) {
+            chain.rows(log).map_err(|error| MethodError::input(path, error.to_string()))?;
+        }
+        if delay_standard_s > 0.0 {
+            chain = uncertain(&logs, &chain, delay_standard_s).map_err(refused)?;
+        }
+        identify_logs(&logs, &chain).map_err(refused)?
+    };
     let model = Model { name: axis.law().to_owned(), report };
     findings.extend(doubts(&model.name, &model.report.fit));
     let estimate = record::rigid(&source.name, &model.name, &model.report.fit, &gain);
@@ -498,7 +564,7 @@ fn fitted(campaign: &Campaign, source: &Source, axis: &Axis, read: Read) -> Resu
         let text = "no difference of friction between the directions is detected: friction = \"coulomb\" has fewer coefficients";
         findings.push(Finding::new(Severity::Note, "servo", text.to_owned()));
     }
-    if logs.len() == 1 {
+    if paths.len() == 1 {
         findings.push(one_excitation());
     }
     let models = AxisModels { models, estimates: vec![(estimate, files)], ..AxisModels::default() };

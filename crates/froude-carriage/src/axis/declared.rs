@@ -31,8 +31,11 @@ pub const SERVO: &str = "servo";
 /// Laws of friction, by their words in a campaign.
 pub(super) const FRICTIONS: [&str; 5] = ["coulomb", "viscous", "asymmetric", "stribeck", "load_dependent"];
 
+/// Viscous friction alone.
+pub(super) const VISCOUS: &str = "viscous";
+
 /// What records call them.
-const LAWS: [&str; 5] = ["symmetric", "viscous", "asymmetric", "stribeck", "load dependent"];
+const LAWS: [&str; 5] = ["symmetric", VISCOUS, "asymmetric", "stribeck", "load dependent"];
 
 /// The keys of `[source.servo]`.
 pub const KEYS: &[Key] = &[
@@ -56,9 +59,15 @@ pub const KEYS: &[Key] = &[
     ),
     optional("position", Kind::Text, "`position` or `angle`", "the column with the position"),
     optional(
+        "speed",
+        Kind::Text,
+        "`speed`, `angular_speed` or `angle_dot`",
+        "the column with the speed of a log without a position",
+    ),
+    optional(
         "command",
         Kind::Text,
-        "`command`, `current`, `voltage`, `torque` or `force`",
+        "`command`, `current`, `voltage`, `torque`, `force` or `thrust`",
         "the column with what the drive gets or gives",
     ),
     optional(
@@ -78,7 +87,7 @@ pub const KEYS: &[Key] = &[
         "loads",
         Kind::Texts,
         "none",
-        "formulas over `angle` or `position`, linear in their coefficients: `\"m_g_l*sin(angle)\"`, `\"k*position\"`; known numbers are those of `[constants]`",
+        "formulas over `angle` or `position` and `speed`, linear in their coefficients: `\"m_g_l*sin(angle)\"`, `\"k*position\"`, `\"D_II*speed*abs(speed)\"`; known numbers are those of `[constants]`",
     ),
     optional(
         "load_table",
@@ -159,6 +168,9 @@ impl Axis {
         if self.gear.is_some() && values.word("encoder", &[0, 1]).is_none() {
             return Err(values.missing("encoder", "write encoder = \"motor\" or encoder = \"axis\": where the position is measured, before or behind the gear"));
         }
+        if values.is_stated("speed") && values.is_stated("position") {
+            return Err(values.wrong("speed", "is for a log without a position; delete speed or position"));
+        }
         if self.gear.is_none() && values.is_stated("encoder") {
             return Err(values.wrong("encoder", "is of a gear, which is not declared; write gear = 50, for example"));
         }
@@ -190,10 +202,7 @@ impl Axis {
     ///
     /// Stribeck's speed in the unit of another axis.
     pub fn friction(&self, coordinate: Coordinate) -> Result<Friction, RecordError> {
-        let of_speed = match coordinate {
-            Coordinate::Linear => Dimension::SPEED,
-            Coordinate::Rotary => Dimension::ANGULAR_SPEED,
-        };
+        let of_speed = coordinate.speed_dimension();
         if let Some(speed) = &self.stribeck_speed
             && (speed.unit.dimension != of_speed || speed.value_si <= 0.0)
         {
@@ -217,12 +226,17 @@ impl Axis {
         })
     }
 
-    /// The loads, over positions from `least` to `most`.
+    /// The loads, over the range of positions; `None` where only a speed was recorded.
     ///
     /// # Errors
     ///
-    /// A formula that cannot be read or names a coefficient of the axis; a table that does not reach as far as the motion.
-    pub fn load(&self, campaign: &Campaign, coordinate: Coordinate, range: [f64; 2]) -> Result<Load, MethodError> {
+    /// A formula that cannot be read, reads a position that was not recorded or names a coefficient of the axis; a table that does not reach as far as the motion.
+    pub fn load(
+        &self,
+        campaign: &Campaign,
+        coordinate: Coordinate,
+        range: Option<[f64; 2]>,
+    ) -> Result<Load, MethodError> {
         let exponents = |d: Dimension| [d.m, d.kg, d.s, d.k, d.a];
         let wrong = |what: String| MethodError::from(self.values.wrong("loads", what));
         let (of_load, of_position) = match coordinate {
@@ -230,7 +244,14 @@ impl Axis {
             Coordinate::Rotary => (Dimension::MOMENT, Dimension::ONE),
         };
         let is_position = |name: &str| name == "position" || name == "angle" && coordinate == Coordinate::Rotary;
-        let channels = |name: &str| is_position(name).then(|| exponents(of_position));
+        let names = coordinate.names();
+        let of_speed = coordinate.speed_dimension();
+        let channels = |name: &str| match name {
+            _ if is_position(name) => Some(exponents(of_position)),
+            _ if name == names.speed[0] => Some(exponents(of_speed)),
+            _ => None,
+        };
+        let no_position = "the logs have a speed but no position, which this load needs";
         let known: Vec<Constant> = campaign
             .constants
             .iter()
@@ -238,15 +259,29 @@ impl Axis {
             .collect();
         let mut load = Load::default();
         for text in self.values.texts("loads") {
-            let formula = Formula::parse("drive", text, &channels, exponents(of_load), &known)
-                .map_err(|error| wrong(format!("{text:?} cannot be read: {error}")))?;
+            let formula = Formula::parse(
+                "drive",
+                &with_word(text, "speed", names.speed[0]),
+                &channels,
+                exponents(of_load),
+                &known,
+            )
+            .map_err(|error| wrong(format!("{text:?} cannot be read: {error}")))?;
             if formula.offset {
                 return Err(wrong(format!(
-                    "{text:?} has a term without position: `offset` is fitted anyway; leave it out"
+                    "{text:?} has a term without position or speed: `offset` is fitted anyway; leave it out"
+                )));
+            }
+            let is_of_motion = |formula: &Formula| formula.channels.iter().any(|name| name == names.speed[0]);
+            if range.is_none() && formula.channels.iter().any(|name| is_position(name)) {
+                return Err(wrong(format!("{text:?}: {no_position}")));
+            }
+            if self.law() == LAWS[4] && is_of_motion(&formula) {
+                return Err(wrong(format!(
+                    "{text:?} depends on the speed, and friction = \"load_dependent\" is that of a bearing under its load, not under drag; choose another friction law"
                 )));
             }
             let own = load.terms.iter().flat_map(|(formula, _): &(Formula, _)| &formula.coefficients);
-            let names = coordinate.names();
             let of_motion = [names.speed[0], names.acceleration[0]];
             let taken: Vec<&str> = own.map(|(name, _)| name.as_str()).chain(RESERVED).chain(of_motion).collect();
             if let Some((name, _)) = formula.coefficients.iter().find(|(name, _)| name.starts_with("F_")) {
@@ -264,11 +299,24 @@ impl Axis {
             load.terms.push((formula, units));
         }
         if let Some(path) = &self.load_table {
+            let Some(range) = range else { return Err(self.values.wrong("load_table", no_position).into()) };
             let table = read_table(path, None)?;
             load.known = Some(curve(&table, (of_position, of_load), range)?);
         }
         Ok(load)
     }
+}
+
+/// `text` with the name `other` in the place of the name `word`.
+fn with_word(text: &str, word: &str, other: &str) -> String {
+    let is_of_name = |c: char| c.is_alphanumeric() || c == '_';
+    let mut out = String::new();
+    for part in text.split_inclusive(|c| !is_of_name(c)) {
+        let name = part.trim_end_matches(|c| !is_of_name(c));
+        out.push_str(if name == word { other } else { name });
+        out.push_str(&part[name.len()..]);
+    }
+    out
 }
 
 /// Names that the law of an axis has itself.

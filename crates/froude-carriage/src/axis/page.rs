@@ -10,6 +10,7 @@ use froude_records::page::{Chart, ChartPanel, Mark, Series};
 use super::{AxisModels, CONSTANT, Model, Repeatability};
 use crate::runs::mounted;
 use crate::servo::ServoCoefficient;
+use crate::servo::load::Shape;
 use crate::servo::record::{TWO_MASS, in_formulas, law_of};
 use crate::servo::report::effective;
 use crate::servo::two_mass::FlexibleReport;
@@ -21,8 +22,13 @@ pub fn sections(outcome: &AxisModels) -> (Section, Vec<Section>) {
     for model in &outcome.models {
         let (r, law) = (&model.report.fit, law_of(&model.name));
         let (body, error) = (mounted(&outcome.rigid_mounts), number::percent(r.relative_force_error));
-        let caption = format!("Rigid model, friction {}{body} (relative force error {error}).", model.name);
-        let pieces = if r.runs.is_some() { Pieces::Clusters } else { Pieces::Blocks };
+        let caption =
+            format!("Rigid model, friction {}{body} (relative {} error {error}).", model.name, fitted(&r.shape));
+        let pieces = match r.runs {
+            Some(_) => Pieces::Clusters,
+            None if r.shape.is_simulated => Pieces::Stretches,
+            None => Pieces::Blocks,
+        };
         let estimate = outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.law.name == law);
         let table = coefficient_table(&law, caption, &r.coefficients, pieces);
         blocks.push(with_declared(table, &r.coefficients, estimate).into());
@@ -44,14 +50,20 @@ pub fn sections(outcome: &AxisModels) -> (Section, Vec<Section>) {
     (Section::new("Axis by every model", blocks), outcome.models.iter().map(fit).collect())
 }
 
+/// What the residuals are of.
+fn fitted(shape: &Shape) -> &'static str {
+    if shape.is_simulated { "speed" } else { "force" }
+}
+
 /// How a rigid model was fitted, and what its residuals say.
 fn of_fit(model: &Model) -> Vec<String> {
     let (r, fit) = (&model.report, &model.report.fit);
     let mut out = vec![format!(
-        "{} rows at {} Hz ({}); relative force error {}.",
+        "{} rows at {} Hz ({}); relative {} error {}.",
         number::count(fit.n_rows),
         number::plain(fit.rate_hz, 4),
         fit.preparation,
+        fitted(&fit.shape),
         number::percent(fit.relative_force_error)
     )];
     out.extend(r.whiteness.as_ref().map(|w| {
@@ -85,8 +97,10 @@ fn splits(f: &FlexibleReport) -> impl Iterator<Item = String> {
 pub(super) enum Pieces {
     /// Whole runs.
     Clusters,
-    /// Stretches of one excitation.
+    /// Blocks of one excitation.
     Blocks,
+    /// Long stretches of one excitation.
+    Stretches,
     /// Scatter within one excitation, and declared errors.
     All,
     /// Autocovariances within one excitation.
@@ -99,6 +113,7 @@ impl Pieces {
         match self {
             Self::Clusters => ["", "clusters"],
             Self::Blocks => [" for this excitation", "blocks"],
+            Self::Stretches => [" for this excitation", "stretches"],
             Self::All => [" for this excitation", "scatter and declared"],
             Self::Hac => [" for this excitation", "HAC"],
         }
@@ -192,23 +207,33 @@ fn force_chart(model: &Model) -> Chart {
         };
         r.runs.iter().map(of_run).collect()
     };
+    let (words, unit, title, caption, names) = if r.fit.shape.is_simulated {
+        (
+            "speed",
+            axis.speed[1],
+            "Speed".to_owned(),
+            "Measured and simulated speed".to_owned(),
+            ["measured", "simulated"],
+        )
+    } else {
+        let (title, caption) =
+            (format!("Drive {}", axis.words), format!("Drive {} of the command and of the model", axis.words));
+        (axis.words, axis.load, title, caption, ["command", "model"])
+    };
     Chart {
-        name: format!("{}-{}", axis.words, model.name.replace(' ', "-")),
-        title: format!("Drive {} and model, friction {}", axis.words, model.name),
-        caption: format!(
-            "Drive {} of the command and of the model, and the residual: one line per run, each against its own time.",
-            axis.words
-        ),
+        name: format!("{words}-{}", model.name.replace(' ', "-")),
+        title: format!("{title} and model, friction {}", model.name),
+        caption: format!("{caption}, and the residual: one line per run, each against its own time."),
         x_label: "time [s]".to_owned(),
         panels: vec![
             ChartPanel {
-                y_label: format!("{} [{}]", axis.words, axis.load),
-                series: [series("command", &r.rows.force_n, Mark::Line), series("model", &predicted, Mark::Dashed)]
+                y_label: format!("{words} [{unit}]"),
+                series: [series(names[0], &r.rows.force_n, Mark::Line), series(names[1], &predicted, Mark::Dashed)]
                     .concat(),
                 ..ChartPanel::default()
             },
             ChartPanel {
-                y_label: format!("residual [{}]", axis.load),
+                y_label: format!("residual [{unit}]"),
                 series: series("residual", &r.residuals_n, Mark::Line),
                 ..ChartPanel::default()
             },

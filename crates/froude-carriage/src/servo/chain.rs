@@ -41,8 +41,8 @@ pub struct Delay {
     pub at_s: f64,
     /// Whether it is fitted: a column `delay` then says by how much it is longer than `at_s`.
     pub is_estimated: bool,
-    /// What one standard uncertainty of a delay that is not fitted changes in each coefficient; empty for none.
-    pub changes: Vec<f64>,
+    /// What one standard uncertainty of a delay that is not fitted, or of the command between its stamps, changes in each coefficient; none where that is known.
+    pub changes: Vec<Vec<f64>>,
 }
 
 /// Where a model that is not linear in its coefficients is linearised.
@@ -73,6 +73,8 @@ pub struct Chain {
     pub delay: Delay,
     /// Whether samples near rest and reversal are left out, because the direction of friction is unknown there: they are set to zero on both sides before decimation, and rows with too many of them are dropped.
     pub is_moving: bool,
+    /// Whether rows are those of a simulation, whose residuals are correlated as the motion is.
+    pub is_simulated: bool,
     /// What moves along what.
     pub coordinate: Coordinate,
     /// Friction law.
@@ -98,6 +100,7 @@ impl Chain {
             is_held: false,
             delay: Delay::default(),
             is_moving: false,
+            is_simulated: false,
             coordinate: Coordinate::default(),
             friction,
             load: Load::default(),
@@ -129,6 +132,7 @@ impl Chain {
             loads: self.load.terms.iter().map(|(formula, _)| formula.clone()).collect(),
             stribeck_speed: self.friction.stribeck_speed_m_s,
             is_tabled: self.load.known.is_some(),
+            is_simulated: self.is_simulated,
         }
     }
 
@@ -265,7 +269,7 @@ impl Chain {
         let inertia = Regressor { name: name.to_owned(), unit: unit.into(), values: motion.acceleration_m_s2.clone() };
         let mut out = vec![inertia];
         out.extend(self.friction.regressors(&motion.velocity_m_s, &motion.position_m, self.coordinate)?);
-        let mut terms = self.load.columns(&motion.position_m);
+        let mut terms = self.load.columns(motion, self.coordinate);
         if self.friction.is_of_load && !self.at.load.is_empty() {
             let load = self.load_at(&terms, motion);
             let sign = motion.velocity_m_s.iter().map(|v| signum(*v));
@@ -298,7 +302,7 @@ impl Chain {
         let known = self.load.known(&motion.position_m);
         force_n.iter_mut().zip(&known).for_each(|(force, load)| *force -= load);
         if self.friction.is_of_load && !self.at.load.is_empty() {
-            let load = self.load_at(&self.load.columns(&motion.position_m), motion);
+            let load = self.load_at(&self.load.columns(motion, self.coordinate), motion);
             for (((force, load), known), v) in force_n.iter_mut().zip(&load).zip(&known).zip(&motion.velocity_m_s) {
                 *force += self.at.of_load * signum(*v) * signum(*load) * (load - known);
             }
@@ -371,6 +375,14 @@ pub(crate) struct Prepared {
     pub rate_hz: f64,
     /// Its motion; an error where it is too short for the filter.
     pub motion: Result<Motion, ServoError>,
+}
+
+impl Motion {
+    /// Speeds alone, for laws that read nothing else.
+    pub(crate) fn at_speeds(velocity_m_s: Vec<f64>) -> Self {
+        let none = vec![0.0; velocity_m_s.len()];
+        Self { position_m: none.clone(), velocity_m_s, acceleration_m_s2: none }
+    }
 }
 
 /// Filtered motion at the full rate.

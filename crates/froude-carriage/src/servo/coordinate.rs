@@ -1,5 +1,7 @@
 //! Linear or rotary axes: the equations are the same; names and units differ.
 
+use froude_records::units::Dimension;
+
 /// The coordinate of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Coordinate {
@@ -60,6 +62,15 @@ impl Coordinate {
         match self {
             Self::Linear => &LINEAR,
             Self::Rotary => &ROTARY,
+        }
+    }
+
+    /// m/s or rad/s.
+    #[must_use]
+    pub const fn speed_dimension(self) -> Dimension {
+        match self {
+            Self::Linear => Dimension::SPEED,
+            Self::Rotary => Dimension::ANGULAR_SPEED,
         }
     }
 }

@@ -20,9 +20,11 @@ use froude_fit::diagnostics::ljung_box;
 use froude_fit::faer::Mat;
 use froude_fit::long_run::{self, automatic_lag};
 use froude_fit::stream::Solution;
+use froude_records::number::significant;
 use froude_signal::blocks::MovingBlocks;
 use rayon::prelude::*;
 
+use crate::servo::chain::Chain;
 use crate::servo::cluster::{Clustered, Enlarged};
 use crate::servo::error::ServoError;
 use crate::servo::regression::{inverse_gram, solve};
@@ -33,6 +35,9 @@ const LAGS: usize = 25;
 
 /// Length of a block, s: shorter ones do not contain the correlation of a servo.
 pub(crate) const BLOCK_S: f64 = 1.0;
+
+/// Fewest and most stretches of a record of simulated speeds: a disturbance lasts as long as the motion, beneath a noise that hides how long.
+const STRETCHES: [f64; 2] = [8.0, 20.0];
 
 /// Probability of the intervals.
 pub(crate) const CONFIDENCE: f64 = 0.95;
@@ -97,14 +102,17 @@ pub struct Spread {
 /// # Errors
 ///
 /// [`ServoError::TooFewRows`] where the record has too few blocks.
-pub fn spread(rows: &Rows, solution: &Solution, hac_lag_s: Option<f64>) -> Result<Spread, ServoError> {
+pub fn spread(rows: &Rows, solution: &Solution, chain: &Chain) -> Result<Spread, ServoError> {
     let residuals = rows.residuals_n(&solution.coefficients);
+    if chain.is_simulated {
+        return over_stretches(rows, solution, &residuals);
+    }
     let refit = |chosen: &[usize]| {
         let pick = |column: &[f64]| chosen.iter().map(|&i| column[i]).collect::<Vec<f64>>();
         let columns: Vec<Vec<f64>> = rows.columns.iter().map(|c| pick(c)).collect();
         solve(&columns, &pick(&rows.force_n)).ok().map(|s| s.coefficients)
     };
-    let (hac, hac_lag_s) = hac(&rows.columns, &residuals, &inverse_gram(solution), rows.rate_hz, hac_lag_s);
+    let (hac, hac_lag_s) = hac(&rows.columns, &residuals, &inverse_gram(solution), rows.rate_hz, chain.hac_lag_s);
     let over = over_blocks(residuals.len(), rows.rate_hz, solution.coefficients.len(), refit)?;
     let dof = vec![over.dof; solution.coefficients.len()];
     let pieces = format!("blocks of {:.1} s", over.block_s);
@@ -127,6 +135,18 @@ pub(crate) fn over_runs(
     let pieces = format!("{} clusters, one per run", runs.len());
     let covariance = clustered.covariance;
     Ok(Spread { hac, hac_lag_s, block_s: BLOCK_S, runs: Some(runs.len()), pieces, dof, covariance })
+}
+
+/// As [`spread`], stretches of the record being the clusters: twenty, or fewer that hold five correlation times each.
+fn over_stretches(rows: &Rows, solution: &Solution, residuals: &[f64]) -> Result<Spread, ServoError> {
+    let n = residuals.len();
+    let [fewest, most] = STRETCHES;
+    let times = integrated_time(residuals).unwrap_or(0.0);
+    let count = (n as f64 / (TIMES_IN_LAG * times)).clamp(fewest, most) as usize;
+    let ranges: Vec<_> = (0..count).map(|k| k * n / count..(k + 1) * n / count).collect();
+    let block_s = (n / count) as f64 / rows.rate_hz;
+    let pieces = format!("{count} stretches of {} s", significant(block_s, 2));
+    Ok(Spread { runs: None, pieces, block_s, ..over_runs(rows, solution, &ranges, None)? })
 }
 
 /// HAC standard deviations, and the lag used, s.

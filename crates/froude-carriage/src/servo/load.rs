@@ -1,9 +1,9 @@
-//! Loads that depend on the position: gravity on a pendulum, springs, cables.
+//! Loads that depend on position and speed: gravity on a pendulum, springs, cables, the drag of a body.
 //!
-//! | load   | what the drive gives for it                                   |
-//! |--------|---------------------------------------------------------------|
-//! | terms  | `Σ k_j φ_j(q)`, formulas that are linear in their coefficients |
-//! | table  | a known load over position, by straight lines                  |
+//! | load   | what the drive gives for it                                      |
+//! |--------|------------------------------------------------------------------|
+//! | terms  | `Σ k_j φ_j(q, v)`, formulas that are linear in their coefficients |
+//! | table  | a known load over position, by straight lines                     |
 //!
 //! Friction in proportion to the load is that of these loads; the torque of the inertia is not included, unlike Hamon et al.
 //!
@@ -11,13 +11,14 @@
 
 use froude_identify::formula::Formula;
 
+use crate::servo::chain::Motion;
 use crate::servo::coordinate::Coordinate;
 use crate::servo::friction::Regressor;
 
 /// What loads an axis beside its inertia and friction.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Load {
-    /// Formulas over the position, with the units of their coefficients.
+    /// Formulas over position and speed, by the names of the coordinate, with the units of their coefficients.
     pub terms: Vec<(Formula, Vec<String>)>,
     /// A load that is known.
     pub known: Option<Curve>,
@@ -34,6 +35,8 @@ pub struct Shape {
     pub stribeck_speed: Option<f64>,
     /// Whether a known load is in the fit that no formula gives.
     pub is_tabled: bool,
+    /// Whether the fit is that of a simulated speed, and its residuals are speeds.
+    pub is_simulated: bool,
 }
 
 /// A load over position, by straight lines between its points.
@@ -66,17 +69,21 @@ impl Load {
     }
 
     /// A column for each coefficient.
-    pub(crate) fn columns(&self, position: &[f64]) -> Vec<Regressor> {
+    pub(crate) fn columns(&self, motion: &Motion, coordinate: Coordinate) -> Vec<Regressor> {
+        let speed = coordinate.names().speed[0];
+        let n = motion.position_m.len();
         let mut out = Vec::new();
         for (formula, units) in &self.terms {
             let first = out.len();
             for ((name, _), unit) in formula.coefficients.iter().zip(units) {
-                let values = Vec::with_capacity(position.len());
+                let values = Vec::with_capacity(n);
                 out.push(Regressor { name: name.clone(), unit: unit.clone().into(), values });
             }
             let (mut row, mut channels) = (vec![0.0; units.len()], vec![0.0; formula.channels.len()]);
-            for q in position {
-                channels.fill(*q);
+            for (q, v) in motion.position_m.iter().zip(&motion.velocity_m_s) {
+                for (x, name) in channels.iter_mut().zip(&formula.channels) {
+                    *x = if name == speed { *v } else { *q };
+                }
                 formula.regressor(&channels, &mut row);
                 out[first..].iter_mut().zip(&row).for_each(|(column, x)| column.values.push(*x));
             }

@@ -80,16 +80,22 @@ pub fn rigid(source: &str, friction: &str, fit: &RigidFit, gain: &ForcePerVolt<'
     let fewest = finite(dof.iter().copied().reduce(f64::min));
     let errors = errors_of(&gain.scales, &of_law, &radii);
     let pieces = if gain.drive.is_none() { with_bias(&fit.pieces) } else { fit.pieces.clone() };
+    // Of a simulated speed the scatter is that of speeds, not of the load that the law gives.
+    let (by, of, scatter) = if fit.shape.is_simulated {
+        ("output error", axis.speed[0], None)
+    } else {
+        ("linear least squares", axis.drive, Some((axis.drive.to_owned(), Measured::of(fit.sigma_n, axis.load))))
+    };
     let exact = errors.is_empty().then(|| gain.exact.to_owned());
     Estimate {
         id: format!("{source}/{method}"),
         source: source.to_owned(),
-        method: MethodUsed::of(&method, format!("linear least squares; friction {friction}; {}", fit.preparation)),
+        method: MethodUsed::of(&method, format!("{by}; friction {friction}; {}", fit.preparation)),
         law: Law { constants, ..law_along(&method, formula, &fit.shape) },
         coefficients: coefficients.collect(),
         type_a: type_a(names, &covariance, &dof, format!("scatter of the residuals ({pieces})")),
         errors,
-        sigma: IndexMap::from([(axis.drive.to_owned(), Measured::of(fit.sigma_n, axis.load))]),
+        sigma: scatter.into_iter().collect(),
         dof: IndexMap::from([(axis.drive.to_owned(), fewest)]),
         n_observations: fit.n_rows,
         clusters: fit.runs.map(|n| Clusters::of("run", n)),
@@ -103,7 +109,7 @@ pub fn rigid(source: &str, friction: &str, fit: &RigidFit, gain: &ForcePerVolt<'
         validity: validity(fit),
         diagnostics: Diagnostics {
             condition_number: fit.condition_number,
-            relative_residual: IndexMap::from([(axis.drive.to_owned(), fit.relative_force_error)]),
+            relative_residual: IndexMap::from([(of.to_owned(), fit.relative_force_error)]),
             notes: exact.into_iter().chain(fit.findings.iter().cloned()).collect(),
             ..Diagnostics::default()
         },
@@ -193,7 +199,8 @@ fn along(coordinate: Coordinate) -> Estimate {
 
 fn law_along(name: &str, formula: Option<String>, shape: &Shape) -> Law {
     let axis = shape.coordinate.names();
-    let read = shape.loads.iter().flat_map(|load| &load.channels).map(|name| [name.as_str(), axis.position[1]]);
+    let read = shape.loads.iter().flat_map(|load| &load.channels).filter(|name| *name != axis.speed[0]);
+    let read = read.map(|name| [name.as_str(), axis.position[1]]);
     let inputs = [axis.speed, axis.acceleration].into_iter().chain(read).map(|[name, unit]| (name, unit));
     Law::of(name, inputs).giving(axis.drive, axis.load, formula)
 }

@@ -140,7 +140,7 @@ pub struct ServoReport {
 /// [`ServoError`].
 pub fn of_rows(rows: Rows, chain: &Chain) -> Result<ServoReport, ServoError> {
     let solution = least_squares(&rows)?;
-    let spread = spread(&rows, &solution, chain.hac_lag_s).map_err(|error| match error {
+    let spread = spread(&rows, &solution, chain).map_err(|error| match error {
         ServoError::TooFewRows { rows, needed } if chain.is_moving => ServoError::AtRest { rows, needed },
         other => other,
     })?;
@@ -205,7 +205,7 @@ pub(crate) fn of_logs(logs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, Ser
         }
     }
     let each: Vec<&Vec<f64>> = alone.iter().flatten().collect();
-    let mut spread = spread(&all, &solution, chain.hac_lag_s)?;
+    let mut spread = spread(&all, &solution, chain)?;
     let n = each.len();
     if n >= 2 {
         let mean = |j: usize| each.iter().map(|b| b[j]).sum::<f64>() / n as f64;
@@ -298,11 +298,13 @@ fn reported(
         .collect();
     let mut weak = Vec::new();
     let mut is_told = vec![true; rows.names.len()];
-    for (j, change) in chain.delay.changes.iter().enumerate() {
-        for (k, other) in chain.delay.changes.iter().enumerate() {
-            spread.covariance[(j, k)] += change * other;
+    for changes in &chain.delay.changes {
+        for (j, change) in changes.iter().enumerate() {
+            for (k, other) in changes.iter().enumerate() {
+                spread.covariance[(j, k)] += change * other;
+            }
+            spread.hac[j] = spread.hac[j].hypot(*change);
         }
-        spread.hac[j] = spread.hac[j].hypot(*change);
     }
     let not_white = whiteness.as_ref().and_then(|w| not_white(w, &spread.covariance, &solution.standard, &pieces));
     if chain.is_moving {

@@ -9,14 +9,14 @@
 //!
 //! **Source.** Gautier & Poignet (2001), Control Eng. Pract. 9, 1361 (rows and parallel filters); Bates & Watts (1988), *Nonlinear regression analysis*, 2.2 (the steps).
 
-use froude_records::number::significant;
+use froude_records::number::{plain, significant};
 
 use crate::servo::chain::{At, Chain, Delay, OF_LOAD, Prepared, delay_unknown, is_delay_known};
 use crate::servo::coordinate::{DELAY, STRIBECK_SPEED};
 use crate::servo::error::ServoError;
 use crate::servo::log::ServoLog;
 use crate::servo::regression::least_squares;
-use crate::servo::report::{ServoReport, joined, of_logs};
+use crate::servo::report::{RigidFit, ServoReport, joined, of_logs};
 use crate::servo::rows::Rows;
 
 /// Most steps, and the part of a unit below which a step has settled.
@@ -95,7 +95,7 @@ fn of_prepared(logs: &Stretches, chain: &Chain) -> Result<ServoReport, ServoErro
             "the fit did not converge in {STEPS} iterations; use a simpler friction law, or declare delay and stribeck_speed"
         ));
     }
-    report.fit.findings.extend(doubts(&report, found.friction.fitted_stribeck.is_some()));
+    report.fit.findings.extend(doubts(&report, step_s, found.friction.fitted_stribeck.is_some()));
     Ok(report)
 }
 
@@ -140,7 +140,7 @@ fn changing(logs: &Stretches, chain: &Chain, standard_s: f64) -> Result<Chain, S
     };
     let (early, late) = (at(-standard_s)?, at(standard_s)?);
     let changes = early.iter().zip(&late).map(|(early, late)| 0.5 * (late - early)).collect();
-    Ok(Chain { delay: Delay { changes, ..chain.delay.clone() }, ..chain.clone() })
+    Ok(Chain { delay: Delay { changes: vec![changes], ..chain.delay.clone() }, ..chain.clone() })
 }
 
 /// Whether the fit knows less of the delay than that it lies within a step.
@@ -153,15 +153,10 @@ fn is_undetermined(report: &ServoReport, step_s: f64) -> bool {
 }
 
 /// What is doubtful of delay and terms of friction.
-fn doubts(report: &ServoReport, is_stribeck: bool) -> Vec<String> {
+fn doubts(report: &ServoReport, step_s: f64, is_stribeck: bool) -> Vec<String> {
     let fit = &report.fit;
     let mut out = Vec::new();
-    if let Some(c) = fit.coefficient(DELAY).filter(|c| c.interval[1] < 0.0) {
-        out.push(format!(
-            "the force precedes its command by {} ms: position and command have different clocks, or the position is filtered and late",
-            significant(-1e3 * c.value, 3)
-        ));
-    }
+    out.extend(lag(fit, step_s));
     let extra = ["F_s", if is_stribeck { STRIBECK_SPEED } else { OF_LOAD }];
     for c in extra.iter().filter_map(|name| fit.coefficient(name)) {
         if !(c.interval[0] > 0.0 || c.interval[1] < 0.0) {
@@ -173,6 +168,28 @@ fn doubts(report: &ServoReport, is_stribeck: bool) -> Vec<String> {
         }
     }
     out
+}
+
+/// A motion that is ahead of its command, or later than a held command explains.
+pub(crate) fn lag(fit: &RigidFit, step_s: f64) -> Option<String> {
+    let c = fit.coefficient(DELAY)?;
+    let [low, high] = c.interval;
+    if high < 0.0 {
+        Some(format!(
+            "the force precedes its command by {} ms: position and command have different clocks, or the position is filtered and late",
+            significant(-1e3 * c.value, 3)
+        ))
+    } else if low > step_s {
+        let [low, high] = [low, high].map(|end| significant(end, 3));
+        Some(format!(
+            "the motion lags the command by {} s, 95 % interval [{low}, {high}], more than the step of {} s for which a command may be held: the position or speed is filtered, the clocks differ, or the drive is slow. The fit \
+             includes this delay; methods that do not include it give a wrong inertia",
+            significant(c.value, 2),
+            plain(step_s, 3)
+        ))
+    } else {
+        None
+    }
 }
 
 /// A chain with a first value of Stribeck's speed, the best of some.

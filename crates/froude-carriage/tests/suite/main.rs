@@ -13,3 +13,4 @@ mod servo_logs;
 #[path = "../student_tank/mod.rs"]
 mod student_tank;
 mod tuning;
+mod vehicle;

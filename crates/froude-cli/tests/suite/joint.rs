@@ -75,6 +75,19 @@ fn rounded_stamps_and_lost_samples_leave_mass_and_friction() {
     }
 }
 
+/// A vehicle whose thrust and speed are logged, the speed 0.29 s late (15 steps of 20 ms, less the half step of the rule that made it): mass, drag and the lag.
+#[test]
+fn a_vehicle_whose_speed_lags_shows_mass_drag_and_the_lag() {
+    let record = identified(&fixture("surge.csv"), "friction = \"viscous\"\nloads = [\"D_II*speed*abs(speed)\"]\n");
+    holds(&record, &[("M", 95.0), ("F_v", 31.0), ("D_II", 200.0)], 0.15);
+    let estimate = &record["estimates"][0];
+    let [low, high] = [0, 1].map(|k| estimate["derived"]["delay"]["interval_95"][k].as_f64().unwrap());
+    assert!(low <= 0.29 && 0.29 <= high && high - low < 0.06, "[{low}, {high}]");
+    assert!(record["findings"].to_string().contains("the motion lags the command by 0.2"), "{}", record["findings"]);
+    let law = &estimate["law"]["outputs"]["drive_force"]["formula"];
+    assert_eq!(law, "M*v_y_dot + F_v*v_y + offset + D_II*v_y*abs(v_y)");
+}
+
 /// The same joint, its angle in other units or at the motor, its drive in other units: the same coefficients.
 #[test]
 fn units_counts_and_gear_change_no_coefficient() {
@@ -153,8 +166,33 @@ fn what_is_not_declared_or_does_not_fit_is_refused_with_the_line_to_write() {
         ),
         (
             log,
-            "drive_gain = \"0.35 N m/A\"\nloads = [\"angle_dot*sin(angle)\"]\n",
-            "angle_dot is the name of a column, which the table does not have",
+            "drive_gain = \"0.35 N m/A\"\nloads = [\"angle_dot_dot*sin(angle)\"]\n",
+            "names the coefficient angle_dot_dot, which is there already",
+        ),
+        (
+            &log.replace("angle [rad]", "angular_speed [rad/s]"),
+            &format!("{SECTION}friction = \"viscous\"\n"),
+            "the logs have a speed but no position, which this load needs",
+        ),
+        (
+            &log.replace("angle [rad]", "angular_speed [rad/s]"),
+            "drive_gain = \"0.35 N m/A\"\n",
+            "takes no dry friction here",
+        ),
+        (
+            &log.replace("angle [rad]", "angular_speed [rad/s]"),
+            "drive_gain = \"0.35 N m/A\"\nfriction = \"viscous\"\nloads = [\"c*sign(speed)\"]\n",
+            "a jump is dry friction, which a speed alone does not tell",
+        ),
+        (
+            log,
+            "drive_gain = \"0.35 N m/A\"\nfriction = \"load_dependent\"\nloads = [\"d*speed*abs(speed)\"]\n",
+            "is that of a bearing under its load, not under drag",
+        ),
+        (
+            log,
+            "drive_gain = \"0.35 N m/A\"\nposition = \"angle\"\nspeed = \"angle\"\n",
+            "is for a log without a position; delete speed or position",
         ),
         (log, "drive_gain = \"0.35 N m/A\"\nload = \"k*angle\"\n", "did you mean `loads`"),
         (log, "drive_gain = \"0.35 N m/A\"\ncount = \"1 deg\"\n", "is of a position in counts, and angle"),

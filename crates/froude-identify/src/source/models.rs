@@ -194,13 +194,14 @@ pub(crate) fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> Ident
     let own = loads.iter().find(|load| !data.is_of_water(load));
     let own = own.copied().or_else(|| ["thrust", "torque"].into_iter().find(|load| data.values(load).is_some()));
     let lacks = if let Some(load) = own.filter(|_| loads.iter().all(|load| !data.is_of_water(load))) {
-        let of_motion = if data.channels.contains_key("time") && data.values("v_x_dot").is_none() && has_motion {
-            "mass*v_x_dot + d_1*v_x + d_2*v_x*abs(v_x)\", with the acceleration in an added column v_x_dot [m/s^2]; if filters or clocks delay one of them, shift it by their delay first; the mass includes the added mass"
+        let of_log = if data.channels.contains_key("time") && data.values("v_x_dot").is_none() && has_motion {
+            "method = \"servo\" with friction = \"viscous\" and loads = [\"D_II*speed*abs(speed)\"] (froude new servo) gives mass with added mass, drag and the lag of the \
+             speed from such a log; or "
         } else {
-            "…\""
+            ""
         };
         format!(
-            "{load} is exerted by an actuator; the built-in laws describe water loads: write a law of your own ([[identify.model]], {load} = \"{of_motion}), or \
+            "{load} is exerted by an actuator, and the built-in laws describe water loads: {of_log}write a law of your own ([[identify.model]], {load} = \"…\"), or \
              models = [\"{THRUSTER}\"] where the table has the command, in V or rpm"
         )
     } else if loads.is_empty() {

@@ -531,10 +531,14 @@ fn a_load_of_an_actuator_may_drive_the_body() {
     };
     assert!(has_error(&keys("")) && !has_error(&keys("actuator = [\"f_x\"]\n")));
     let refused = result(&table, &keys("actuator = [\"f_x\"]\n").replace(own, "")).unwrap_err().to_string();
-    assert!(refused.contains("f_x is exerted by an actuator; the built-in laws describe water loads"), "{refused}");
+    assert!(
+        refused.contains("f_x is exerted by an actuator, and the built-in laws describe water loads: write a law"),
+        "{refused}"
+    );
     let log = "time [s],thrust [N],speed [m/s]\n0,30,0\n0.1,30,0.03\n0.2,29,0.06\n0.3,30,0.09\n";
     let refused = result(log, &keys("").replace(own, "")).unwrap_err().to_string();
-    let advice = "([[identify.model]], thrust = \"mass*v_x_dot + d_1*v_x + d_2*v_x*abs(v_x)\", with the acceleration in an added column v_x_dot [m/s^2]; if filters or clocks delay one of them, shift it by their delay first; the mass includes the added mass)";
+    let advice =
+        "method = \"servo\" with friction = \"viscous\" and loads = [\"D_II*speed*abs(speed)\"] (froude new servo)";
     assert!(refused.contains(advice), "{refused}");
     let refused = result(&table, &keys("actuator = [\"f_q\"]\n")).unwrap_err().to_string();
     assert!(refused.contains("actuator = [\"f_q\"]: the table has no such column; its loads are f_x"), "{refused}");
