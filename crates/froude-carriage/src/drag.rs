@@ -20,6 +20,7 @@
 //! | [`coefficient`]   | D_d by the common fit                                           | GUM, JCGM 101             |
 //! | [`detectability`] | the smallest drag that still and dry repeats can see            | –                         |
 //! | [`calibration`]   | force per volt from a known weight; encoder scale; jog          | –                         |
+//! | [`tracking`]      | how closely the reference was followed                          | MCD Table III             |
 //! | [`added_mass`]    | what the ramps say                                              | –                         |
 //! | [`online`]        | D_d while the campaign runs, and when to stop                   | Bonferroni                |
 //! | [`report`]        | all of it side by side                                          | –                         |
@@ -48,6 +49,7 @@ pub mod report;
 pub mod run;
 pub mod setup;
 pub mod steady;
+pub mod tracking;
 
 pub use crate::drag::setup::DragSetup;
 pub use error::DragError;

@@ -21,6 +21,7 @@ use crate::drag::point::Method;
 use crate::drag::report::{DragReport, drag_by};
 use crate::drag::run::{self as drag_run, DragRun};
 use crate::drag::setup::{Ballast, DragSetup, DriveUnit, Efficiency, ErrorKeys, SensorBudget};
+use crate::drag::tracking::{Tracking, tracking};
 use crate::runs::whole::STOPPED_EARLY;
 use crate::runs::{Runs, density_kg_m3, for_drag};
 use crate::two_masses::{relative_errors, two_masses};
@@ -46,6 +47,8 @@ pub struct Reduction {
     pub calibration: Option<Calibration>,
     /// What each method gave.
     pub report: DragReport,
+    /// How closely the carriage followed its reference, where the logs have one.
+    pub tracking: Vec<Tracking>,
 }
 
 /// Calibrates where known weights were hung, and reduces by these methods.
@@ -54,8 +57,10 @@ pub struct Reduction {
 ///
 /// A channel that is missing or that no carriage has, a declaration that the budget needs, and what the methods refuse.
 pub fn reduce(runs: Runs, methods: &[Method]) -> Result<Reduction, MethodError> {
-    let reduced: Vec<DragRun<'_>> =
-        runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+    let of_logs = runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?;
+    let references = of_logs.iter().zip(&runs.logs).filter_map(|(run, log)| Some((run.as_ref()?, reference_m(log)?)));
+    let tracking = tracking(references);
+    let reduced: Vec<DragRun<'_>> = of_logs.into_iter().flatten().collect();
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
     let (two_masses, no_two_masses) = two_masses(&runs.logs);
     let mut setup = setup_of(runs.campaign.as_ref(), constants);
@@ -80,7 +85,13 @@ pub fn reduce(runs: Runs, methods: &[Method]) -> Result<Reduction, MethodError> 
     report.findings.extend(no_two_masses);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     drop(reduced);
-    Ok(Reduction { runs, setup, calibration, report })
+    Ok(Reduction { runs, setup, calibration, report, tracking })
+}
+
+/// Reference positions of a log of Froude's own, m.
+fn reference_m(log: &RunLog) -> Option<&[f64]> {
+    let channel = log.channels.get(&format!("{}/reference_position", log.meta.carriage.axis.name()))?;
+    Some(&channel.values)
 }
 
 /// A result of some of the runs that lie in a folder.

@@ -11,12 +11,16 @@ use crate::drag::coefficient::Coefficient;
 use crate::drag::point::Method;
 use crate::drag::report::DragReport;
 use crate::drag::setup::DragSetup;
+use crate::drag::tracking::Tracking;
+use crate::runs::mounted;
 
 /// What belongs to all methods on the page: the paper's Table IV with its figure, which is the summary; calibration and runs.
 pub fn sections(reduction: &Reduction) -> (Section, Vec<Section>) {
-    let Reduction { runs, setup, calibration, report } = reduction;
+    let Reduction { runs, setup, calibration, report, tracking } = reduction;
     let said = Block::words(summary(report, setup));
-    let drag = Section::new("Drag by every method", [methods_table(report).into(), said, force_chart(report).into()]);
+    let followed = (!tracking.is_empty()).then(|| tracking_table(tracking).into());
+    let blocks = [methods_table(report).into(), said].into_iter().chain(followed).chain([force_chart(report).into()]);
+    let drag = Section::new("Drag by every method", blocks);
     let mut more = Vec::new();
     if let Some(c) = calibration {
         let value = format!(
@@ -147,6 +151,27 @@ fn methods_table(report: &DragReport) -> ResultTable {
         t.interval("c_d_interval_95", "C_D, 95 % interval", |c| drag(c).and_then(|(_, interval)| interval)),
         t.number("ratio", "ratio to reference", |c| c.value / report.reference_n_s2_m2.unwrap_or(f64::NAN)).plain(4),
         t.count("pairs", "pairs per speed", |c| c.pairs),
+    ])
+}
+
+/// Errors of the motion while a speed was held: the paper's Table III.
+fn tracking_table(tracking: &[Tracking]) -> ResultTable {
+    let caption = "Reference less measured position and speed (over 0.1 s) while the speed was held, positive where the carriage lags behind; the paper's Table III beside them.";
+    let t = TableBuilder::new("tracking", caption, tracking);
+    let of_paper = |k: usize| move |row: &Tracking| row.of_the_paper().map(|errors| 1e3 * errors[k]);
+    let body = |row: &Tracking| mounted(&[row.body]).trim_start_matches(", ").to_owned();
+    t.build(vec![
+        t.number("speed_m_s", "speed [m/s]", |row| row.speed_m_s).plain(3),
+        t.text("body", "carriage", body),
+        t.count("runs", "runs", |row| row.runs),
+        t.number("position_mean_mm", "position error, mean [mm]", |row| 1e3 * row.position_m.mean).significant(3),
+        t.number("position_std_mm", "std [mm]", |row| 1e3 * row.position_m.std).significant(2),
+        t.number("position_largest_mm", "largest [mm]", |row| 1e3 * row.position_m.largest).significant(3),
+        t.number("position_paper_mm", "paper [mm]", of_paper(0)).plain(3),
+        t.number("velocity_mean_mm_s", "velocity error, mean [mm/s]", |row| 1e3 * row.velocity_m_s.mean).significant(3),
+        t.number("velocity_std_mm_s", "std [mm/s]", |row| 1e3 * row.velocity_m_s.std).significant(2),
+        t.number("velocity_largest_mm_s", "largest [mm/s]", |row| 1e3 * row.velocity_m_s.largest).significant(3),
+        t.number("velocity_paper_mm_s", "paper [mm/s]", of_paper(1)).plain(3),
     ])
 }
 

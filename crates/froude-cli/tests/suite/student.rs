@@ -68,6 +68,9 @@ fn the_24_logs_of_a_students_tank_become_c_d_of_a_sphere_in_four_commands() {
 fn tows_of_the_twin_give_the_same_drag_as_logs_of_another_program() {
     let bench = Bench::new();
     bench.drag();
+    // How closely the twin followed its reference, beside the paper's Table III.
+    let page = std::fs::read_to_string(bench.folder.path().join("campaign-runs-drag/report.html")).unwrap();
+    assert!(page.contains("position error, mean [mm]") && page.contains("body wet") && page.contains("body dry"));
     let own = estimate(&bench.folder.path().join("campaign-runs-drag/estimate.json"), "mcd");
     let lab = tempfile::tempdir().unwrap();
     let lab = lab.path();
