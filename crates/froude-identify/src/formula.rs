@@ -92,9 +92,25 @@ impl Formula {
         load_dim: Dim,
         constants: &[Constant],
     ) -> Result<Self, FormulaError> {
+        Self::with_coefficients(load, text, channels, load_dim, constants, &|_| false)
+    }
+
+    /// The same where some names are coefficients whatever else they may stand for: those of a record, as the mass M of an axis.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::parse`].
+    pub fn with_coefficients(
+        load: &str,
+        text: &str,
+        channels: &dyn Fn(&str) -> Option<Dim>,
+        load_dim: Dim,
+        constants: &[Constant],
+        is_coefficient: &dyn Fn(&str) -> bool,
+    ) -> Result<Self, FormulaError> {
         let tokens = token::tokens(text)?;
         let (expression, names) = grammar::expression(&tokens)?;
-        let known = names::Known { channels, constants };
+        let known = names::Known { channels, constants, is_coefficient };
         let names::Resolved { values, columns, coefficients, constants } = names::resolve(&names, &known)?;
         let affine = expression.value(&values)?;
 

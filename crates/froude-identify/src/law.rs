@@ -129,7 +129,7 @@ impl ForceLaw {
         data: &Dataset,
         constants: &[Constant],
     ) -> Result<Self, IdentifyError> {
-        Self::reading(name, texts, data, &|name| data.dimension(name), constants)
+        Self::reading(name, texts, data, &|name| data.dimension(name), constants, &|_| false)
     }
 
     /// Other formulas under the constants of this law.
@@ -166,6 +166,7 @@ impl ForceLaw {
         data: &Dataset,
         channel: &dyn Fn(&str) -> Option<Dimension>,
         constants: &[Constant],
+        is_coefficient: &dyn Fn(&str) -> bool,
     ) -> Result<Self, IdentifyError> {
         let mut formulas = Vec::new();
         let mut coefficients: IndexMap<String, Dimension> = IndexMap::new();
@@ -173,8 +174,9 @@ impl ForceLaw {
             let target = response_of(data, response);
             let wanted = data.dimension(target).ok_or_else(|| IdentifyError::no_such_channel(name, target, data))?;
             let channel = |n: &str| channel(n).map(exponents);
-            let formula = Formula::parse(target, text, &channel, exponents(wanted), constants)
-                .map_err(|source| IdentifyError::Refused(format!("model {name:?}, {response}: {source}")))?;
+            let formula =
+                Formula::with_coefficients(target, text, &channel, exponents(wanted), constants, is_coefficient)
+                    .map_err(|source| IdentifyError::Refused(format!("model {name:?}, {response}: {source}")))?;
             for (coefficient, dimension) in &formula.coefficients {
                 let dimension = dimension_of(*dimension);
                 if let Some(before) = coefficients.insert(coefficient.clone(), dimension)
@@ -322,7 +324,8 @@ impl ForceLaw {
             let unit = parse_unit(&m.unit).ok()?;
             Some((name.clone(), unit.to_si(m.value), exponents(unit.dimension)))
         });
-        Self::reading(&estimate.law.name, texts, data, &channel, &constants.collect::<Vec<_>>())
+        let is_coefficient = |name: &str| estimate.coefficients.contains_key(name);
+        Self::reading(&estimate.law.name, texts, data, &channel, &constants.collect::<Vec<_>>(), &is_coefficient)
     }
 
     /// Derivatives of every response by every coefficient: rows stacked response by response,

@@ -86,6 +86,14 @@ fn a_vehicle_whose_speed_lags_shows_mass_drag_and_the_lag() {
     assert!(record["findings"].to_string().contains("the motion lags the command by 0.2"), "{}", record["findings"]);
     let law = &estimate["law"]["outputs"]["drive_force"]["formula"];
     assert_eq!(law, "M*v_y_dot + F_v*v_y + offset + D_II*v_y*abs(v_y)");
+    // The record predicts: M is the mass, not the moment of that letter.
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("record.json"), record.to_string()).unwrap();
+    std::fs::write(folder.path().join("t.csv"), "v_y [m/s],v_y_dot [m/s^2]\n0.3,0.1\n").unwrap();
+    let predicted = json(folder.path(), &["predict", "record.json", "t.csv", "--json"]);
+    let force = 95.0 * 0.1 + 31.0 * 0.3 + 200.0 * 0.09;
+    let found = predicted["estimates"][0]["rows"][0]["predicted"].as_f64().unwrap();
+    assert!((found / force - 1.0).abs() < 0.01, "{force}: {predicted}");
 }
 
 /// The same joint, its angle in other units or at the motor, its drive in other units: the same coefficients.

@@ -89,6 +89,8 @@ pub type Constant = (String, f64, Dim);
 pub(super) struct Known<'k> {
     pub channels: &'k dyn Fn(&str) -> Option<Dim>,
     pub constants: &'k [Constant],
+    /// Names that are coefficients whatever else they may stand for.
+    pub is_coefficient: &'k dyn Fn(&str) -> bool,
 }
 
 /// Finds what each of `names` is; they are in order of first appearance, each once.
@@ -117,7 +119,7 @@ pub(super) fn resolve<'a>(names: &[&'a str], known: &Known<'_>) -> Result<Resolv
 
 impl<'a> Resolved<'a> {
     fn value_of(&mut self, name: &'a str, known: &Known<'_>) -> Result<Affine, FormulaError> {
-        let Known { channels, constants: _ } = known;
+        let Known { channels, is_coefficient, .. } = known;
         if let Some((op, dim)) = self.constant(name, known)? {
             return Ok(Affine::known_as(name, op, Unit::of(dim)));
         }
@@ -127,6 +129,10 @@ impl<'a> Resolved<'a> {
         let load = load_column(name);
         // A column of the table hides a letter, never the other way round; a load itself is what the formula gives.
         let own = channels(name).filter(|_| load != Some(name));
+        if load.is_some() && own.is_none() && is_coefficient(name) {
+            self.coefficients.push(name);
+            return Ok(Affine::coefficient(name));
+        }
         if load.is_some() && own.is_none() {
             return Err(FormulaError(format!(
                 "{name} is the name of a load and cannot stand in a formula; give a coefficient another name"
