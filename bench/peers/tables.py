@@ -1,7 +1,7 @@
 """Reads large tables with froude and with pandas, in turn: wall time and peak memory of each, as processes of their own.
 
     cargo build --release --bin froude
-    cargo build --release --package froude-foreign --example calamine
+    cargo build --release --package froude-foreign --example sheet_alone
     target/oracles/bin/python bench/peers/tables.py target/release/froude
 
 The workbook is also read by calamine alone, where its example lies beside the program.
@@ -73,7 +73,7 @@ if sys.argv[1] == "--write":
     sys.exit()
 
 FROUDE = os.path.abspath(sys.argv[1])
-CALAMINE = os.path.join(os.path.dirname(FROUDE), "examples", "calamine")
+CALAMINE = os.path.join(os.path.dirname(FROUDE), "examples", "sheet_alone")
 SCRIPT = os.path.abspath(__file__)
 
 with tempfile.TemporaryDirectory() as folder:

@@ -165,7 +165,7 @@ pub fn of_table(
         wild::times(&servo.time_s, SLOWEST_HZ)
             .map(|what| Finding::new(Severity::Warning, "implausible-times", format!("{}: {what}", path.display()))),
     );
-    findings.push(one_excitation());
+    findings.push(one_excitation(ANOTHER_LOG));
     let files = files_of_table(path, sidecar);
     let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report.fit, gain), files.clone());
     Ok(AxisModels { estimates: models.iter().map(rigid).collect(), models, findings, ..AxisModels::default() })
@@ -185,11 +185,17 @@ fn read_log(path: &Path, sidecar: Option<&Path>) -> Result<(ImportedRun, ServoLo
 }
 
 /// One log is one excitation: what another would show is in none of its residuals.
-fn one_excitation() -> Finding {
-    let text = "the intervals hold for this excitation alone: friction that the model leaves out moves the coefficients from one motion to the next by more than any block \
-                of one log shows; check the fit on a log of another motion (--validate OTHER), or give a campaign several logs";
-    Finding::new(Severity::Note, "one-excitation", text.to_owned())
+fn one_excitation(remedy: &str) -> Finding {
+    let text = format!(
+        "the intervals hold for this excitation alone: friction that the model leaves out moves the coefficients from one motion to the next by more than any block \
+         of one log shows; {remedy}"
+    );
+    Finding::new(Severity::Note, "one-excitation", text)
 }
+
+/// What to do about it where another log can be held against the fit.
+const ANOTHER_LOG: &str =
+    "check the fit on a log of another motion (--validate OTHER), or give a campaign several logs";
 
 /// The friction of a rigid model of a log: an offset of the current is not excluded.
 fn friction_of(model: AxisModel) -> Friction {

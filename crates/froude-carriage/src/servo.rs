@@ -32,6 +32,7 @@ pub mod interval;
 pub mod load;
 pub mod log;
 pub mod long;
+pub mod motion;
 pub mod motor;
 pub mod record;
 mod regression;

@@ -203,7 +203,7 @@ fn read(source: &Source, axis: &Axis) -> Result<Read, MethodError> {
         findings
             .extend(done.map(|done| Finding::new(Severity::Warning, "uneven-time-steps", format!("{name}: {done}"))));
         findings.extend(
-            wild::times(&log.time_s, SLOWEST_HZ)
+            wild::times(&log.time_s, if is_speed { SLOWEST_SPEED_HZ } else { SLOWEST_HZ })
                 .map(|what| Finding::new(Severity::Warning, "implausible-times", format!("{name}: {what}"))),
         );
         let files = files_of_table(&path, sidecar);
@@ -275,6 +275,9 @@ fn simulated_over(time_s: &[f64]) -> Option<String> {
     })
 }
 
+/// Slowest rate of speeds that is not doubted, Hz: a Doppler log may give one in two seconds.
+const SLOWEST_SPEED_HZ: f64 = 0.5;
+
 /// Part by which rates of logs may differ: clocks drift.
 const SAME_RATE: f64 = 0.02;
 
@@ -309,9 +312,10 @@ fn column<'t>(table: &'t Table, axis: &Axis, key: &'static str, usual: &[&str]) 
         [] => Err(MethodError::input(
             &table.path,
             format!(
-                "has no column {}; it has {}. Write {key} = \"COLUMN\" in [source.servo]",
+                "has no column {}; it has {}. Write {key} = \"COLUMN\"{} in [source.servo]",
                 usual.join(" or "),
-                names().collect::<Vec<_>>().join(", ")
+                names().collect::<Vec<_>>().join(", "),
+                if key == "position" { ", or speed = \"COLUMN\" of a log without a position," } else { "" }
             ),
         )),
         several => {
@@ -565,7 +569,7 @@ fn fitted(campaign: &Campaign, source: &Source, axis: &Axis, read: Read) -> Resu
         findings.push(Finding::new(Severity::Note, "servo", text.to_owned()));
     }
     if paths.len() == 1 {
-        findings.push(one_excitation());
+        findings.push(one_excitation("give the source several logs of different motions (runs = \"FOLDER\")"));
     }
     let models = AxisModels { models, estimates: vec![(estimate, files)], ..AxisModels::default() };
     let (summary, blocks) = sections(&models);

@@ -24,7 +24,7 @@ use froude_records::table::Table;
 use froude_records::units::Dimension;
 
 use super::page::{Pieces, coefficient_table, with_declared};
-use super::{AxisModel, friction_of, one_excitation};
+use super::{ANOTHER_LOG, AxisModel, friction_of, one_excitation};
 use crate::runs::implausible;
 use crate::servo::log::{is_even, rate_of};
 use crate::servo::scale::ForcePerVolt;
@@ -239,7 +239,11 @@ pub(super) fn of_table(
         number::count(MOST_KEPT)
     );
     let mut out = Found {
-        findings: vec![clock.finding(path), Finding::new(Severity::Note, "long-log", text), one_excitation()],
+        findings: vec![
+            clock.finding(path),
+            Finding::new(Severity::Note, "long-log", text),
+            one_excitation(ANOTHER_LOG),
+        ],
         ..Found::default()
     };
     let mut tables: Vec<Block> = Vec::new();

@@ -20,6 +20,7 @@ use crate::servo::error::ServoError;
 use crate::servo::friction::{Friction, Regressor, signum};
 use crate::servo::load::{Load, Shape};
 use crate::servo::log::{ServoLog, Stretch};
+use crate::servo::motion::Motion;
 use crate::servo::rows::Rows;
 
 /// Rate of rows from a log, Hz: the effect of position noise grows with the fifth power of this rate, and a rigid axis needs no higher rate.
@@ -375,23 +376,4 @@ pub(crate) struct Prepared {
     pub rate_hz: f64,
     /// Its motion; an error where it is too short for the filter.
     pub motion: Result<Motion, ServoError>,
-}
-
-impl Motion {
-    /// Speeds alone, for laws that read nothing else.
-    pub(crate) fn at_speeds(velocity_m_s: Vec<f64>) -> Self {
-        let none = vec![0.0; velocity_m_s.len()];
-        Self { position_m: none.clone(), velocity_m_s, acceleration_m_s2: none }
-    }
-}
-
-/// Filtered motion at the full rate.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Motion {
-    /// Position, m.
-    pub position_m: Vec<f64>,
-    /// Speed, m/s.
-    pub velocity_m_s: Vec<f64>,
-    /// Acceleration, m/s².
-    pub acceleration_m_s2: Vec<f64>,
 }

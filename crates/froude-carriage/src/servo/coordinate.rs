@@ -82,10 +82,12 @@ pub(crate) fn is_inertia(name: &str) -> bool {
 
 /// Whether a number of a fit says when or where the law changes, and is no coefficient of it.
 pub(crate) fn is_place(name: &str) -> bool {
-    name == DELAY || name == STRIBECK_SPEED
+    name == DELAY || name == FILTER || name == STRIBECK_SPEED
 }
 
 /// The delay of the command.
 pub(crate) const DELAY: &str = "delay";
+/// Time constant of the filter of a recorded speed.
+pub(crate) const FILTER: &str = "filter";
 /// The speed at which Stribeck's term has fallen to 1/e.
 pub(crate) const STRIBECK_SPEED: &str = "v_s";

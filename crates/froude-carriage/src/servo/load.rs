@@ -11,9 +11,9 @@
 
 use froude_identify::formula::Formula;
 
-use crate::servo::chain::Motion;
 use crate::servo::coordinate::Coordinate;
 use crate::servo::friction::Regressor;
+use crate::servo::motion::Motion;
 
 /// What loads an axis beside its inertia and friction.
 #[derive(Debug, Clone, PartialEq, Default)]

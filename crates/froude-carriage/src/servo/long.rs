@@ -26,11 +26,12 @@ use froude_signal::butterworth;
 use froude_signal::decimate::Decimator;
 use froude_signal::stream::{Differences, Link, SecondDifferences, ZeroPhase};
 
-use crate::servo::chain::{Chain, MOST_NEAR_REST, Motion, delay_column, delay_unknown, is_delay_known};
+use crate::servo::chain::{Chain, MOST_NEAR_REST, delay_column, delay_unknown, is_delay_known};
 use crate::servo::coordinate::DELAY;
 use crate::servo::error::ServoError;
 use crate::servo::excitation::{Column, excitation};
 use crate::servo::interval::{BLOCK_S, diagonal_roots};
+use crate::servo::motion::Motion;
 use crate::servo::regression::{inverse_gram, solve};
 use crate::servo::report::{NO_RANGE, RigidFit, coefficients, negative, widened};
 

@@ -1,9 +1,11 @@
 //! A law without dry friction, fitted to a recorded speed by simulation (output error).
 //!
-//! M v̇ = F(t − delay) − F_v v − offset − Σ k φ(v)
+//! M v̇ = F(t − delay + T) − F_v v − offset − Σ k φ(v)
 //!
-//! is integrated from stamp to stamp (Runge and Kutta's fourth order), and its coefficients, the delay and the first speed of each stretch between gaps make the
-//! sum of squares of measured less simulated speed least. The speed is neither filtered nor differentiated: its noise biases nothing, however slow the log, and a force that
+//! T ẇ = v − w
+//!
+//! (w is the speed as it is recorded, through a filter of the first order) is integrated from stamp to stamp (Runge and Kutta's fourth order), and its coefficients, the delay, T and the first speed of each stretch between gaps make the
+//! sum of squares of measured less simulated speed least. T is at least 0; where it comes out there, it is left out. A delay that is declared is the whole lag. The speed is neither filtered nor differentiated: its noise biases nothing, however slow the log, and a force that
 //! disturbs the axis is no part of the simulated speed. At the minimum the problem is linear to first order: its rows, without what the first speeds explain, give intervals as those of
 //! any other fit of this chapter, from stretches of at least five correlation times of the residuals.
 //!
@@ -22,10 +24,11 @@ use froude_fit::nonlinear::{Model, Parameter, Settings, Solution, minimise};
 use froude_records::number::{plain, significant};
 use froude_records::run::stamps::{parts, usual_step_s};
 
-use crate::servo::chain::{Chain, Delay, Motion};
-use crate::servo::coordinate::{DELAY, is_inertia};
+use crate::servo::chain::{Chain, Delay};
+use crate::servo::coordinate::{DELAY, FILTER, is_inertia};
 use crate::servo::error::ServoError;
 use crate::servo::log::rate_of;
+use crate::servo::motion::Motion;
 use crate::servo::regression::solve;
 use crate::servo::report::{ServoReport, of_logs, widened};
 use crate::servo::rows::{Rows, norm};
@@ -41,6 +44,8 @@ const LONGEST_PART: f64 = 0.05;
 const TRIALS: i32 = 12;
 /// Stretches of time that the equation is integrated over, for a start.
 const SPANS: usize = 200;
+/// Time constant of the filter at the start, s.
+const FIRST_S: f64 = 0.02;
 /// Halfway between straight lines and cubics.
 const HALFWAY: f64 = 0.5;
 /// Parameters are off by this part of their standard uncertainties.
@@ -75,17 +80,18 @@ pub fn identify_speeds(logs: &[SpeedLog], chain: &Chain, delay_standard_s: f64) 
     let chain = Chain { is_moving: false, is_simulated: true, ..chain.clone() };
     let mut fit = Simulation::of(logs, &chain)?;
     let found = fit.found(None)?;
-    let last = fit.names.len() - 1;
-    if chain.delay.is_estimated && found.at_bound[last] {
+    let delay = fit.of_law();
+    if chain.delay.is_estimated && found.at_bound[delay] {
         return Err(ServoError::Setting {
             what: "delay of the speed behind the command (s)",
-            found: found.values[last],
+            found: found.values[delay],
             must: "it is looked for within 5 s, and a twentieth of the shortest stretch: bring the clocks together first, or record longer",
         });
     }
     let p = fit.names.len();
     let from = Some(&found.values[..p]);
-    let apart = |a: &[f64], b: &[f64], parts: f64| a.iter().zip(b).take(p).map(|(a, b)| (b - a) / parts).collect();
+    let kept = (0..p).filter(|j| !found.at_bound[*j]);
+    let apart = |a: &[f64], b: &[f64], parts: f64| kept.clone().map(|j| (b[j] - a[j]) / parts).collect();
     let smooth = Simulation { smooth: 1.0, ..Simulation::of(logs, &chain)? }.found(from)?.values;
     let mut changes: Vec<Vec<f64>> = vec![apart(&found.values, &smooth, 3.0_f64.sqrt())];
     if delay_standard_s > 0.0 {
@@ -122,7 +128,7 @@ struct Simulation<'a> {
     step_s: f64,
     /// The command between its stamps: from straight lines, 0, to cubics, 1.
     smooth: f64,
-    /// Names and units of the shared parameters: inertia, drag, offset, loads, and the delay where it is fitted.
+    /// Names and units of the shared parameters: inertia, drag, offset, loads, and delay and filter where they are fitted.
     names: Vec<(String, Cow<'static, str>)>,
 }
 
@@ -148,8 +154,9 @@ impl<'a> Simulation<'a> {
         let stretches: Vec<Stretch<'a>> = all.into_iter().map(stretch).collect();
         let step_s = logs.first().and_then(|log| usual_step_s(&log.time_s)).unwrap_or(f64::NAN);
         let names = chain.regressors(&Motion::at_speeds(Vec::new()))?.into_iter().map(|r| (r.name, r.unit));
-        let delay = chain.delay.is_estimated.then(|| (DELAY.to_owned(), "s".into()));
-        let (rate_hz, names) = (rate_of(step_s)?, names.chain(delay).collect());
+        let lags: &[&str] = if chain.delay.is_estimated { &[DELAY, FILTER] } else { &[] };
+        let lags = lags.iter().map(|name| ((*name).to_owned(), "s".into()));
+        let (rate_hz, names) = (rate_of(step_s)?, names.chain(lags).collect());
         let out =
             Self { chain, logs: logs.len(), rate_hz, longest_s, step_s: STEP_S, smooth: HALFWAY, names, stretches };
         out.has_no_jump()?;
@@ -187,9 +194,17 @@ impl<'a> Simulation<'a> {
         Ok(minimise(self, &self.parameters(&start), &Settings { offset: OFFSET, ..Settings::default() })?)
     }
 
-    /// Delay among the shared parameters; else as declared.
-    fn delay_s(&self, theta: &[f64]) -> f64 {
-        if self.chain.delay.is_estimated { theta[self.names.len() - 1] } else { self.chain.delay.at_s }
+    /// How many of the shared parameters are coefficients of the law: delay and filter follow them.
+    fn of_law(&self) -> usize {
+        self.names.len() - if self.chain.delay.is_estimated { 2 } else { 0 }
+    }
+
+    /// By how much the motion itself is late, and the time constant of the filter; together they are the delay.
+    fn lags_s(&self, theta: &[f64]) -> [f64; 2] {
+        match theta[self.of_law()..] {
+            [delay, filter] => [delay - filter, filter],
+            _ => [self.chain.delay.at_s, 0.0],
+        }
     }
 
     /// Force of the drive at a time, the command between its stamps between straight lines and Catmull and Rom's cubics; `after` moves on with the times.
@@ -231,9 +246,9 @@ impl<'a> Simulation<'a> {
 
     /// Simulated speeds of a stretch; `None` where they run away.
     fn speeds(&self, stretch: &Stretch<'_>, theta: &[f64], first: f64) -> Option<Vec<f64>> {
-        let (inertia, late_s) = (theta[0], self.delay_s(theta));
+        let (inertia, [late_s, filter_s]) = (theta[0], self.lags_s(theta));
         let mut resistance = self.resistance(theta);
-        let (mut v, mut after) = (first, 1);
+        let (mut v, mut recorded, mut after) = (first, first, 1);
         let times = &stretch.time_s[stretch.used.clone()];
         let mut out = vec![v];
         for pair in times.windows(2) {
@@ -246,9 +261,14 @@ impl<'a> Simulation<'a> {
                 let k_2 = (f_1 - resistance(v + 0.5 * h * k_1)) / inertia;
                 let k_3 = (f_1 - resistance(v + 0.5 * h * k_2)) / inertia;
                 let k_4 = (f_2 - resistance(v + h * k_3)) / inertia;
-                v += h * (k_1 + 2.0 * k_2 + 2.0 * k_3 + k_4) / 6.0;
+                let change = h * (k_1 + 2.0 * k_2 + 2.0 * k_3 + k_4) / 6.0;
+                // Exact for a speed that changes evenly over the step.
+                let behind = change / h * filter_s;
+                let kept = if filter_s > 0.0 { (-h / filter_s).exp() } else { 0.0 };
+                recorded = v + change - behind + (recorded - v + behind) * kept;
+                v += change;
             }
-            out.push(v);
+            out.push(recorded);
         }
         out.iter().all(|v| v.is_finite()).then_some(out)
     }
@@ -267,8 +287,8 @@ impl<'a> Simulation<'a> {
             let Ok(solution) = solve(&columns, &response) else { continue };
             let left = solution.sigma;
             if solution.coefficients[0] > 0.0 && best.as_ref().is_none_or(|(least, _)| left < *least) {
-                let delay = self.chain.delay.is_estimated.then_some(late_s);
-                best = Some((left, solution.coefficients.into_iter().chain(delay).collect()));
+                let lags = if self.chain.delay.is_estimated { vec![late_s, FIRST_S] } else { Vec::new() };
+                best = Some((left, [solution.coefficients, lags].concat()));
             }
         }
         best.map(|(_, theta)| theta).ok_or(ServoError::Dependent)
@@ -276,8 +296,7 @@ impl<'a> Simulation<'a> {
 
     /// ∫F = M Δv + Σ k ∫φ over spans of each stretch, each half over the one before.
     fn integrated(&self, late_s: f64) -> Result<(Vec<Vec<f64>>, Vec<f64>), ServoError> {
-        let of_law = self.names.len() - usize::from(self.chain.delay.is_estimated);
-        let (mut columns, mut response) = (vec![Vec::new(); of_law], Vec::new());
+        let (mut columns, mut response) = (vec![Vec::new(); self.of_law()], Vec::new());
         for stretch in &self.stretches {
             let (times, speed) = (&stretch.time_s[stretch.used.clone()], &stretch.speed[stretch.used.clone()]);
             let regressors = self.chain.regressors(&Motion::at_speeds(speed.to_vec()))?;
@@ -316,7 +335,8 @@ impl<'a> Simulation<'a> {
                 }
                 Some(column) => Parameter::new(name.as_str(), *value, NATURAL * force / rms(&column.values)),
                 None => {
-                    Parameter::new(name.as_str(), *value, 0.1 / self.rate_hz).within(-self.longest_s, self.longest_s)
+                    let least = if name == FILTER { 0.0 } else { -self.longest_s };
+                    Parameter::new(name.as_str(), value.max(least), 0.1 / self.rate_hz).within(least, self.longest_s)
                 }
             });
         }
@@ -330,6 +350,7 @@ impl<'a> Simulation<'a> {
     /// The rows of each log at the minimum, where the problem is linear, without what the first speeds explain.
     fn rows(&self, found: &Solution) -> Vec<Rows> {
         let p = self.names.len();
+        let kept: Vec<usize> = (0..p).filter(|j| !found.at_bound[*j]).collect();
         let mut logs: Vec<Option<Rows>> = vec![None; self.logs];
         for (i, stretch) in self.stretches.iter().enumerate() {
             let own = &found.columns[i][p];
@@ -338,16 +359,16 @@ impl<'a> Simulation<'a> {
                 let part = own.iter().zip(x).map(|(o, x)| o * x).sum::<f64>() / square;
                 x.iter().zip(own).map(|(x, o)| x - part * o).collect::<Vec<f64>>()
             };
-            let columns: Vec<Vec<f64>> = found.columns[i][..p].iter().map(|column| without(column)).collect();
+            let columns: Vec<Vec<f64>> = kept.iter().map(|j| without(&found.columns[i][*j])).collect();
             let mut response = without(&found.residuals[i]);
-            for (column, value) in columns.iter().zip(&found.values) {
-                response.iter_mut().zip(column).for_each(|(y, x)| *y += value * x);
+            for (column, j) in columns.iter().zip(&kept) {
+                response.iter_mut().zip(column).for_each(|(y, x)| *y += found.values[*j] * x);
             }
             let rows = Rows {
                 rate_hz: self.rate_hz,
                 time_s: stretch.time_s[stretch.used.clone()].to_vec(),
                 force_n: response,
-                names: self.names.clone(),
+                names: kept.iter().map(|j| self.names[*j].clone()).collect(),
                 columns,
             };
             match &mut logs[stretch.log] {
