@@ -158,20 +158,20 @@ fn methods_table(report: &DragReport) -> ResultTable {
 fn tracking_table(tracking: &[Tracking]) -> ResultTable {
     let caption = "Reference less measured position and speed (over 0.1 s) while the speed was held, positive where the carriage lags behind; the paper's Table III beside them.";
     let t = TableBuilder::new("tracking", caption, tracking);
-    let of_paper = |k: usize| move |row: &Tracking| row.of_the_paper().map(|errors| 1e3 * errors[k]);
+    let of_paper = |k: usize| move |row: &Tracking| row.of_the_paper().map(|errors| errors[k]);
     let body = |row: &Tracking| mounted(&[row.body]).trim_start_matches(", ").to_owned();
     t.build(vec![
         t.number("speed_m_s", "speed [m/s]", |row| row.speed_m_s).plain(3),
         t.text("body", "carriage", body),
         t.count("runs", "runs", |row| row.runs),
-        t.number("position_mean_mm", "position error, mean [mm]", |row| 1e3 * row.position_m.mean).significant(3),
-        t.number("position_std_mm", "std [mm]", |row| 1e3 * row.position_m.std).significant(2),
-        t.number("position_largest_mm", "largest [mm]", |row| 1e3 * row.position_m.largest).significant(3),
-        t.number("position_paper_mm", "paper [mm]", of_paper(0)).plain(3),
-        t.number("velocity_mean_mm_s", "velocity error, mean [mm/s]", |row| 1e3 * row.velocity_m_s.mean).significant(3),
-        t.number("velocity_std_mm_s", "std [mm/s]", |row| 1e3 * row.velocity_m_s.std).significant(2),
-        t.number("velocity_largest_mm_s", "largest [mm/s]", |row| 1e3 * row.velocity_m_s.largest).significant(3),
-        t.number("velocity_paper_mm_s", "paper [mm/s]", of_paper(1)).plain(3),
+        t.number("position_mean_m", "position error, mean [mm]", |row| row.position_m.mean).significant(3),
+        t.number("position_std_m", "std [mm]", |row| row.position_m.std).significant(2),
+        t.number("position_largest_m", "largest [mm]", |row| row.position_m.largest).significant(3),
+        t.number("position_paper_m", "paper [mm]", of_paper(0)).plain(3),
+        t.number("velocity_mean_m_s", "velocity error, mean [mm/s]", |row| row.velocity_m_s.mean).significant(3),
+        t.number("velocity_std_m_s", "std [mm/s]", |row| row.velocity_m_s.std).significant(2),
+        t.number("velocity_largest_m_s", "largest [mm/s]", |row| row.velocity_m_s.largest).significant(3),
+        t.number("velocity_paper_m_s", "paper [mm/s]", of_paper(1)).plain(3),
     ])
 }
 
