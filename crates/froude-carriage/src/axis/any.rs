@@ -266,9 +266,13 @@ fn simulated_over(time_s: &[f64]) -> Option<String> {
     let gaps = parts(time_s).len() - 1;
     let uneven = time_s.windows(2).filter(|w| !is_even(w[1] - w[0], step_s)).count();
     (uneven > 0).then(|| {
-        let parts = if gaps > 0 { "; each stretch between gaps starts at a speed of its own" } else { "" };
+        let parts = if gaps > 0 {
+            "; each stretch between gaps starts at a speed of its own, and short ones are left out"
+        } else {
+            ""
+        };
         format!(
-            "{} from {} ms: the speed is simulated at the stamps as they are, with commands in straight lines between them{parts}",
+            "{} from {} ms: the speed is simulated at the stamps as they are{parts}",
             counted(uneven, "step differs", "steps differ"),
             plain(1e3 * step_s, 6)
         )

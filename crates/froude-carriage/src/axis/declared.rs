@@ -320,7 +320,7 @@ fn with_word(text: &str, word: &str, other: &str) -> String {
 }
 
 /// Names that the law of an axis has itself.
-const RESERVED: [&str; 5] = ["J", "M", "v_s", "offset", "delay"];
+const RESERVED: [&str; 6] = ["J", "M", "v_s", "offset", "delay", "filter"];
 
 /// A load over position out of a table.
 fn curve(table: &Table, (of_position, of_load): (Dimension, Dimension), range: [f64; 2]) -> Result<Curve, MethodError> {

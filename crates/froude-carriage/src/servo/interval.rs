@@ -141,7 +141,7 @@ pub(crate) fn over_runs(
 fn over_stretches(rows: &Rows, solution: &Solution, residuals: &[f64]) -> Result<Spread, ServoError> {
     let n = residuals.len();
     let [fewest, most] = STRETCHES;
-    let times = integrated_time(residuals).unwrap_or(0.0);
+    let times = integrated_time(residuals).unwrap_or(f64::INFINITY);
     let count = (n as f64 / (TIMES_IN_LAG * times)).clamp(fewest, most) as usize;
     let ranges: Vec<_> = (0..count).map(|k| k * n / count..(k + 1) * n / count).collect();
     let block_s = (n / count) as f64 / rows.rate_hz;

@@ -9,8 +9,8 @@
 //! disturbs the axis is no part of the simulated speed. At the minimum the problem is linear to first order: its rows, without what the first speeds explain, give intervals as those of
 //! any other fit of this chapter, from stretches of at least five correlation times of the residuals.
 //!
-//! **Between stamps** nothing is known of the command. The fit takes it halfway between straight lines and cubics; what a fit with cubics gives otherwise is the half-width of a
-//! rectangular error. (Of ten stamps to a period, lines have 3.3 % less amplitude than the sine that they join.)
+//! **Between stamps** nothing is known of the command. The fit takes it halfway between straight lines and cubics; what a fit with cubics gives otherwise is
+//! a standard uncertainty. (Of ten stamps to a period, lines have 3.3 % less amplitude than the sine that they join.)
 //!
 //! **Setting.** The force does not follow the disturbance: thrust as commanded or by hand. In a loop on the speed the estimates are biased by about the part that disturbances have in the motion.
 //! **Start.** Least squares of the equation integrated over stretches of time, at trial delays.
@@ -21,7 +21,7 @@ use std::ops::Range;
 
 use froude_fit::End;
 use froude_fit::nonlinear::{Model, Parameter, Settings, Solution, minimise};
-use froude_records::number::{plain, significant};
+use froude_records::number::{percent, plain, significant};
 use froude_records::run::stamps::{parts, usual_step_s};
 
 use crate::servo::chain::{Chain, Delay};
@@ -37,11 +37,22 @@ use crate::servo::settle::lag;
 /// Longest step of the integration, s, and as a part of the fastest time constant of the motion.
 const STEP_S: f64 = 0.025;
 const STEP_PART: f64 = 0.2;
-/// Longest delay, s, and as a part of the shortest stretch; nothing is simulated within it of the ends, where the command may be unknown.
+/// Longest delay, s, and as a part of the longest stretch; nothing is simulated within it of the ends, where the command may be unknown.
 const LONGEST_S: f64 = 5.0;
 const LONGEST_PART: f64 = 0.05;
-/// Trial delays to each side.
-const TRIALS: i32 = 12;
+/// Trial delays to each side, and how many of the best the search starts from.
+const TRIALS: i32 = 50;
+const STARTS: usize = 3;
+/// Most steps of a search. One that stalls before is at its minimum: the lines of the command have corners, which the sum of squares shows.
+const ITERATIONS: usize = 200;
+/// Sums of squares that differ by less than this part tell nothing of which of two fits holds.
+const ALIKE: f64 = 0.02;
+/// Relative error of the speed beyond which the law is none of this motion.
+const MOST_ERROR: f64 = 0.5;
+/// Stretches are at least as many times as long as the longest delay.
+const LEAST_LENGTHS: f64 = 4.0;
+/// Most steps of the integration from stamp to stamp.
+const MOST_STEPS: f64 = 50.0;
 /// Stretches of time that the equation is integrated over, for a start.
 const SPANS: usize = 200;
 /// Time constant of the filter at the start, s.
@@ -79,13 +90,26 @@ pub struct SpeedLog {
 pub fn identify_speeds(logs: &[SpeedLog], chain: &Chain, delay_standard_s: f64) -> Result<ServoReport, ServoError> {
     let chain = Chain { is_moving: false, is_simulated: true, ..chain.clone() };
     let mut fit = Simulation::of(logs, &chain)?;
-    let found = fit.found(None)?;
+    let mut found = fit.found(None)?;
+    let mut is_exchangeable = false;
+    if let Some(other) = fit.exchanged(&found) {
+        let [own, its] = [found.sum_of_squares, other.sum_of_squares];
+        let is_other = fit
+            .names
+            .iter()
+            .position(|(name, _)| is_inertia(name))
+            .is_some_and(|j| (other.values[j] / found.values[j] - 1.0).abs() > MOST_UNCERTAIN);
+        is_exchangeable = is_other && (its / own - 1.0).abs() < ALIKE;
+        if its < own {
+            found = other;
+        }
+    }
     let delay = fit.of_law();
     if chain.delay.is_estimated && found.at_bound[delay] {
         return Err(ServoError::Setting {
             what: "delay of the speed behind the command (s)",
             found: found.values[delay],
-            must: "it is looked for within 5 s, and a twentieth of the shortest stretch: bring the clocks together first, or record longer",
+            must: "it is looked for within 5 s, and a twentieth of the longest stretch: bring the clocks together first, or record longer",
         });
     }
     let p = fit.names.len();
@@ -93,7 +117,7 @@ pub fn identify_speeds(logs: &[SpeedLog], chain: &Chain, delay_standard_s: f64) 
     let kept = (0..p).filter(|j| !found.at_bound[*j]);
     let apart = |a: &[f64], b: &[f64], parts: f64| kept.clone().map(|j| (b[j] - a[j]) / parts).collect();
     let smooth = Simulation { smooth: 1.0, ..Simulation::of(logs, &chain)? }.found(from)?.values;
-    let mut changes: Vec<Vec<f64>> = vec![apart(&found.values, &smooth, 3.0_f64.sqrt())];
+    let mut changes: Vec<Vec<f64>> = vec![apart(&found.values, &smooth, 1.0)];
     if delay_standard_s > 0.0 {
         let at = |late_s: f64| -> Result<Vec<f64>, ServoError> {
             let delay = Delay { at_s: chain.delay.at_s + late_s, ..chain.delay.clone() };
@@ -103,7 +127,7 @@ pub fn identify_speeds(logs: &[SpeedLog], chain: &Chain, delay_standard_s: f64) 
     }
     let delay = Delay { changes, ..chain.delay.clone() };
     let mut report = of_logs(fit.rows(&found), &Chain { delay, ..chain.clone() })?;
-    fit.tell(&mut report, &found);
+    fit.tell(&mut report, &found, is_exchangeable);
     Ok(report)
 }
 
@@ -140,12 +164,15 @@ impl<'a> Simulation<'a> {
                 let of = |column: &'a [f64]| &column[rows.clone()];
                 all.push((log, of(&columns.time_s), of(&columns.speed), of(&columns.command_v)));
             }
+        }
+        let length_s = |t: &[f64]| t[t.len() - 1] - t[0];
+        let longest_s = LONGEST_S.min(LONGEST_PART * all.iter().map(|(_, t, ..)| length_s(t)).fold(0.0, f64::max));
+        all.retain(|(_, t, ..)| length_s(t) >= LEAST_LENGTHS * longest_s);
+        for (log, columns) in logs.iter().enumerate() {
             if !all.iter().any(|(own, ..)| *own == log) {
                 return Err(ServoError::TooFewRows { rows: columns.time_s.len(), needed: FEWEST });
             }
         }
-        let length_s = |t: &[f64]| t[t.len() - 1] - t[0];
-        let longest_s = all.iter().map(|(_, t, ..)| LONGEST_PART * length_s(t)).fold(LONGEST_S, f64::min);
         let stretch = |(log, time_s, speed, command_v): (usize, &'a [f64], &'a [f64], &'a [f64])| {
             let (first, last) = (time_s[0] + longest_s, time_s[time_s.len() - 1] - longest_s);
             let used = time_s.partition_point(|t| *t < first)..time_s.partition_point(|t| *t <= last);
@@ -183,15 +210,42 @@ impl<'a> Simulation<'a> {
         self.stretches.iter().flat_map(|stretch| stretch.speed).fold(0.0, |most, v| v.abs().max(most))
     }
 
-    /// The minimum from `start`, or from a start of its own, integrated in steps that suit the motion there.
+    /// The minimum from `start`, or the lowest from some starts of its own.
     fn found(&mut self, start: Option<&[f64]>) -> Result<Solution, ServoError> {
-        let start = start.map_or_else(|| self.start(), |start| Ok(start.to_vec()))?;
-        let fastest = self.fastest();
-        let mut resistance = self.resistance(&start);
-        let slope = (resistance(fastest) - resistance(0.99 * fastest)) / (0.01 * fastest);
-        drop(resistance);
-        self.step_s = STEP_S.min(STEP_PART * start[0] / slope.abs());
-        Ok(minimise(self, &self.parameters(&start), &Settings { offset: OFFSET, ..Settings::default() })?)
+        let starts = start.map_or_else(|| self.starts(), |start| Ok(vec![start.to_vec()]))?;
+        let mut best: Option<Solution> = None;
+        for start in starts {
+            let Ok(found) = self.from(&start) else { continue };
+            if best.as_ref().is_none_or(|best| found.sum_of_squares < best.sum_of_squares) {
+                best = Some(found);
+            }
+        }
+        best.ok_or(ServoError::Dependent)
+    }
+
+    /// The minimum from one start, integrated in steps that suit the motion there.
+    fn from(&mut self, start: &[f64]) -> Result<Solution, ServoError> {
+        self.step_s = STEP_S.min(STEP_PART * start[0] / self.slope(start, self.fastest()));
+        self.step_s = self.step_s.max(1.0 / (MOST_STEPS * self.rate_hz));
+        let settings = Settings { offset: OFFSET, iterations: ITERATIONS, ..Settings::default() };
+        Ok(minimise(self, &self.parameters(start), &settings)?)
+    }
+
+    /// How fast the resistance grows with the speed, up to a speed.
+    fn slope(&self, theta: &[f64], speed: f64) -> f64 {
+        let mut resistance = self.resistance(theta);
+        ((resistance(speed) - resistance(0.0)) / speed).abs()
+    }
+
+    /// The fit where inertia and filter have changed their places: through a linear law both give the same speed. `None` without a filter.
+    fn exchanged(&mut self, found: &Solution) -> Option<Solution> {
+        let filter = self.names.iter().position(|(name, _)| name == FILTER)?;
+        let mut start = found.values[..self.names.len()].to_vec();
+        let speeds: Vec<f64> = self.stretches.iter().flat_map(|s| s.speed).copied().collect();
+        let slope = self.slope(&start, norm(&speeds) / (speeds.len() as f64).sqrt());
+        (start[0], start[filter]) = (start[filter] * slope, start[0] / slope);
+        let is_possible = !found.at_bound[filter] && start[0] > 0.0 && start[filter] < self.longest_s;
+        is_possible.then(|| self.from(&start).ok()).flatten()
     }
 
     /// How many of the shared parameters are coefficients of the law: delay and filter follow them.
@@ -248,9 +302,11 @@ impl<'a> Simulation<'a> {
     fn speeds(&self, stretch: &Stretch<'_>, theta: &[f64], first: f64) -> Option<Vec<f64>> {
         let (inertia, [late_s, filter_s]) = (theta[0], self.lags_s(theta));
         let mut resistance = self.resistance(theta);
-        let (mut v, mut recorded, mut after) = (first, first, 1);
         let times = &stretch.time_s[stretch.used.clone()];
-        let mut out = vec![v];
+        let (mut v, mut after) = (first, 1);
+        let slope = (self.force(stretch, times[0] - late_s, &mut after) - resistance(v)) / inertia;
+        let mut recorded = first - filter_s * slope;
+        let mut out = vec![recorded];
         for pair in times.windows(2) {
             let steps = ((pair[1] - pair[0]) / self.step_s).ceil().max(1.0);
             let h = (pair[1] - pair[0]) / steps;
@@ -273,25 +329,29 @@ impl<'a> Simulation<'a> {
         out.iter().all(|v| v.is_finite()).then_some(out)
     }
 
-    /// Shared parameters by least squares of the equation integrated over spans, at the trial delay that leaves least.
-    fn start(&self) -> Result<Vec<f64>, ServoError> {
-        let trials = if self.chain.delay.is_estimated { -TRIALS..=TRIALS } else { 0..=0 };
-        let mut best: Option<(f64, Vec<f64>)> = None;
-        for trial in trials {
-            let late_s = if self.chain.delay.is_estimated {
-                0.99 * self.longest_s * f64::from(trial) / f64::from(TRIALS)
-            } else {
-                self.chain.delay.at_s
-            };
+    /// Shared parameters by least squares of the equation integrated over spans, at the trial delays that leave least.
+    fn starts(&self) -> Result<Vec<Vec<f64>>, ServoError> {
+        let is_estimated = self.chain.delay.is_estimated;
+        let mut all: Vec<(f64, Vec<f64>)> = Vec::new();
+        for trial in if is_estimated { -TRIALS..=TRIALS } else { 0..=0 } {
+            let trial_s = 0.99 * self.longest_s * f64::from(trial) / f64::from(TRIALS);
+            let late_s = if is_estimated { trial_s } else { self.chain.delay.at_s };
             let (columns, response) = self.integrated(late_s)?;
-            let Ok(solution) = solve(&columns, &response) else { continue };
-            let left = solution.sigma;
-            if solution.coefficients[0] > 0.0 && best.as_ref().is_none_or(|(least, _)| left < *least) {
-                let lags = if self.chain.delay.is_estimated { vec![late_s, FIRST_S] } else { Vec::new() };
-                best = Some((left, [solution.coefficients, lags].concat()));
-            }
+            let left = match solve(&columns, &response) {
+                Ok(solution) if solution.coefficients[0] > 0.0 => {
+                    let lags = if is_estimated { vec![late_s, FIRST_S] } else { Vec::new() };
+                    (solution.sigma, [solution.coefficients, lags].concat())
+                }
+                _ => (f64::INFINITY, Vec::new()),
+            };
+            all.push(left);
         }
-        best.map(|(_, theta)| theta).ok_or(ServoError::Dependent)
+        // Valleys of what is left, the deepest first.
+        let at = |i: usize| all.get(i).map_or(f64::INFINITY, |(left, _)| *left);
+        let is_valley = |i: &usize| at(*i).is_finite() && at(*i) <= at(i.wrapping_sub(1)) && at(*i) <= at(i + 1);
+        let mut valleys: Vec<usize> = (0..all.len()).filter(is_valley).collect();
+        valleys.sort_by(|i, j| at(*i).total_cmp(&at(*j)));
+        Ok(valleys.into_iter().take(STARTS).map(|i| all[i].1.clone()).collect())
     }
 
     /// ∫F = M Δv + Σ k ∫φ over spans of each stretch, each half over the one before.
@@ -380,7 +440,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Puts speeds in the place of linearised rows, and says what is doubtful.
-    fn tell(&self, report: &mut ServoReport, found: &Solution) {
+    fn tell(&self, report: &mut ServoReport, found: &Solution, is_exchangeable: bool) {
         let measured = |stretch: &Stretch<'_>| stretch.speed[stretch.used.clone()].to_vec();
         let speeds: Vec<f64> = self.stretches.iter().flat_map(measured).collect();
         let residuals: Vec<f64> = found.residuals.iter().flatten().copied().collect();
@@ -401,18 +461,30 @@ impl<'a> Simulation<'a> {
         for ((name, _), range) in self.names.iter().zip(&mut fit.ranges) {
             *range = if is_inertia(name) { accelerations } else { of_speed };
         }
-        if found.report.end != End::Converged {
-            fit.findings.push("the search for the coefficients did not converge; fit fewer of them".to_owned());
-        }
         fit.findings.extend(lag(fit, self.rate_hz.recip()));
-        let inertia = &fit.coefficients[0];
-        if inertia.block_std.is_nan() || inertia.block_std > MOST_UNCERTAIN * inertia.value {
-            fit.excitation.push(format!(
-                "the motion hardly determines {} (standard uncertainty {} of {}), so that no coefficient has an interval: change the thrust faster, in steps",
-                inertia.name,
-                significant(inertia.block_std, 2),
-                plain(inertia.value, 3)
-            ));
+        let inertia = fit.coefficients.iter().find(|c| is_inertia(&c.name));
+        let uncertain = inertia.filter(|c| c.block_std <= MOST_UNCERTAIN * c.value.abs());
+        let why = if is_exchangeable {
+            Some("inertia and filter may change places, which this motion does not tell: reach higher speeds, or declare the delay, which is then a pure one".to_owned())
+        } else if found.report.end == End::IterationLimit {
+            Some(
+                "the search for them did not converge: fit fewer, or record a motion with more changes of the thrust"
+                    .to_owned(),
+            )
+        } else if fit.relative_force_error > MOST_ERROR {
+            Some(format!(
+                "they leave {} of the speed: the law is not that of this motion, the clocks differ by more than is looked for, or a sign is wrong",
+                percent(fit.relative_force_error)
+            ))
+        } else if uncertain.is_none() {
+            let said = inertia
+                .map_or_else(String::new, |c| format!(" ({} ± {})", plain(c.value, 3), significant(c.block_std, 2)));
+            Some(format!("the motion hardly determines the inertia{said}: change the thrust more often"))
+        } else {
+            None
+        };
+        if let Some(why) = why {
+            fit.excitation.push(format!("no coefficient has an interval, because {why}"));
             for c in &mut fit.coefficients {
                 (c.block_std, c.hac_std, c.interval) = (f64::NAN, f64::NAN, [f64::NAN; 2]);
             }
