@@ -1,6 +1,6 @@
 //! How closely the carriage followed its reference while it held a speed: the paper's Table III.
 //!
-//! Errors are reference less measured, positive where the carriage lags behind in its direction of motion. A speed is taken from positions over [`SPAN_S`]; the mean over a window is
+//! Errors are reference less measured, positive where the carriage lags behind in its direction of motion. A speed is taken from positions over 0.1 s; the mean over a window is
 //! the change of the position error by the time. (The paper does not say whether its means are signed. A step of its encoder in one period of 4 kHz is 9.9 mm/s, so that means of
 //! absolute velocity errors could not be as small as 0.02 mm/s.)
 //!
