@@ -530,7 +530,7 @@ fn fitted(campaign: &Campaign, source: &Source, axis: &Axis, read: Read) -> Resu
     }
     let rate_hz = logs[0].evenly().map_err(MethodError::refused)?.rate_hz;
     if is_speed && axis.law() != VISCOUS {
-        let what = "takes no dry friction here: the logs have a speed but no position, from which dry friction is not told; write friction = \"viscous\", or record the position";
+        let what = "must be \"viscous\" here: the logs have a speed but no position, and dry friction cannot be identified from a speed alone; write friction = \"viscous\", or record the position";
         return Err(axis.values.wrong("friction", what).into());
     }
     let mut chain = Chain {

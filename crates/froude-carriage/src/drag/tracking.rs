@@ -47,7 +47,7 @@ impl Error {
 /// The errors at one speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tracking {
-    /// Speed that was asked for, m/s.
+    /// Commanded speed, m/s.
     pub speed_m_s: f64,
     /// What hung on the strut.
     pub body: BodyState,
@@ -79,6 +79,9 @@ pub fn tracking<'a>(runs: impl IntoIterator<Item = (&'a DragRun<'a>, &'a [f64])>
         }
         let pairs = held.of(reference_m).iter().zip(held.of(run.position_m));
         let position: Vec<f64> = pairs.map(|(asked, is)| run.direction * (asked - is)).collect();
+        if position.len() < 2 {
+            continue;
+        }
         let span = run.samples(SPAN_S).clamp(1, position.len() - 1);
         let span_s = span as f64 * run.step_s();
         let velocity = position.iter().zip(&position[span..]).map(|(before, after)| (after - before) / span_s);

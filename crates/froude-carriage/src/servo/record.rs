@@ -113,7 +113,7 @@ pub fn rigid(source: &str, friction: &str, fit: &RigidFit, gain: &ForcePerVolt<'
             notes: exact.into_iter().chain(fit.findings.iter().cloned()).collect(),
             ..Diagnostics::default()
         },
-        ..along(fit.shape.coordinate)
+        ..along(&fit.shape)
     }
 }
 
@@ -183,8 +183,15 @@ fn on_the_chain() -> Estimate {
 }
 
 /// The frame of a model of one coordinate.
-fn along(coordinate: Coordinate) -> Estimate {
-    match coordinate {
+fn along(shape: &Shape) -> Estimate {
+    match shape.coordinate {
+        Coordinate::Linear if shape.is_simulated => Estimate {
+            frame: Frame { words: "y along the motion of the vehicle or axis".to_owned(), ..Frame::chain() },
+            signs: Signs(
+                "force of the drive along the motion; positive in the direction of positive speeds".to_owned(),
+            ),
+            ..on_the_chain()
+        },
         Coordinate::Linear => on_the_chain(),
         Coordinate::Rotary => Estimate {
             kind: "towing".to_owned(),

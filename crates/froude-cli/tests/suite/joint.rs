@@ -185,7 +185,7 @@ fn what_is_not_declared_or_does_not_fit_is_refused_with_the_line_to_write() {
         (
             &log.replace("angle [rad]", "angular_speed [rad/s]"),
             "drive_gain = \"0.35 N m/A\"\n",
-            "takes no dry friction here",
+            "dry friction cannot be identified from a speed alone",
         ),
         (
             &log.replace("angle [rad]", "angular_speed [rad/s]"),
