@@ -99,15 +99,31 @@ fn cargo(root: &Path, args: &str) -> Result<(), String> {
 }
 
 fn test(root: &Path) -> Result<(), String> {
-    cargo(root, "fmt --all --check")?;
-    cargo(root, "clippy --workspace --all-targets --locked -- -D warnings")?;
-    need_packages(root)?;
-    oracles::need_python(root)?;
-    cargo(root, "test --workspace --locked")?;
-    run_env(root, "cargo", &["doc", "--workspace", "--no-deps", "--locked"], "RUSTDOCFLAGS", "-D warnings")?;
-    firmware::firmware(root, false)?;
-    demo(root)?;
-    validate(root, true)
+    let docs =
+        || run_env(root, "cargo", &["doc", "--workspace", "--no-deps", "--locked"], "RUSTDOCFLAGS", "-D warnings");
+    let steps: [(&str, &dyn Fn() -> Result<(), String>); 9] = [
+        ("format", &|| cargo(root, "fmt --all --check")),
+        ("lints", &|| cargo(root, "clippy --workspace --all-targets --locked -- -D warnings")),
+        ("packages", &|| need_packages(root).and_then(|()| oracles::need_python(root))),
+        ("build of the tests", &|| cargo(root, "test --workspace --locked --no-run")),
+        ("tests", &|| cargo(root, "test --workspace --locked")),
+        ("documentation", &docs),
+        ("firmware", &|| firmware::firmware(root, false)),
+        ("demo", &|| demo(root)),
+        ("validation", &|| validate(root, true)),
+    ];
+    let mut times = String::new();
+    for (name, step) in steps {
+        let started = Instant::now();
+        let done = step();
+        times += &format!("xtask: {:5.0} s  {name}\n", started.elapsed().as_secs_f64());
+        if done.is_err() {
+            print!("{times}");
+            return done;
+        }
+    }
+    print!("{times}");
+    Ok(())
 }
 
 fn run_env(root: &Path, program: &str, args: &[&str], key: &str, value: &str) -> Result<(), String> {

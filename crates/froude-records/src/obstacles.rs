@@ -109,9 +109,35 @@ fn list(reading: &Reading, rows: &[Row<'_>], sidecar: Option<&Sidecar>) -> Vec<O
     let unstated = FileWords::default();
     let file = sidecar.map_or(&unstated, |sidecar| &sidecar.file);
     let mut out = if is_mapped { Vec::new() } else { of_headings(reading) };
+    out.extend(of_long(reading, &data));
     out.extend(reading.undecided.as_ref().map(of_marks));
     out.extend(of_rows(reading, file, &data));
     out
+}
+
+/// What the one column of numbers is called where another names what each of them is.
+const VALUE: [&str; 9] = ["value", "values", "reading", "wert", "messwert", "valeur", "valor", "verdi", "値"];
+
+/// A table with a quantity per row, `time,channel,value`, instead of one per column.
+fn of_long(reading: &Reading, data: &[&Row<'_>]) -> Option<Obstacle> {
+    let is_number = |at: usize| reading.is_number.get(at).copied().unwrap_or(false);
+    let names = || reading.headings.iter().enumerate();
+    let (value_at, value) = names().find(|(_, heading)| VALUE.contains(&heading.name.to_lowercase().as_str()))?;
+    let (channel, kinds) = names().filter(|(at, _)| !is_number(*at) && *at != value_at).find_map(|(at, heading)| {
+        let mut kinds: IndexMap<&str, usize> = IndexMap::new();
+        data.iter().filter_map(|row| row.cells.get(at)).for_each(|cell| *kinds.entry(cell.as_ref()).or_default() += 1);
+        (kinds.len() > 1 && kinds.values().all(|n| *n > 1)).then_some((heading, kinds))
+    })?;
+    let shown: Vec<&str> = kinds.keys().take(3).copied().collect();
+    let (channel, value) = (&channel.name, &value.name);
+    Some(Obstacle {
+        line: Some(reading.line),
+        column: None,
+        text: format!(
+            "each row holds one of several quantities, which column `{channel}` names ({}); write one column for each instead: in pandas, df.pivot(index=…, columns=\"{channel}\", values=\"{value}\")",
+            shown.join(", ")
+        ),
+    })
 }
 
 fn of_marks(found: &Undecided) -> Obstacle {

@@ -8,6 +8,7 @@ use froude_foreign::marks::{Marks, Undecided, Witness, shape};
 
 use crate::error::{Place, Position, RecordError};
 use crate::file_words::{FileWords, sidecar_name};
+use crate::foreign_names::is_known_in_another;
 use crate::guard::unguarded;
 use crate::heading::{Heading, headings, rename_sname, split_header};
 use crate::label_rows::{Odd, is_scale, is_statistic, label, odd};
@@ -75,6 +76,7 @@ impl Reading {
     pub fn seen(path: &Path, seen: &Seen, words: Vec<String>, file: &FileWords) -> Result<Self, RecordError> {
         let layout = &seen.layout;
         refuse_scales(path, layout, file)?;
+        ask_for_symbols(path, layout, file)?;
         if layout.heads.is_empty() {
             let problem = "there are numbers where the columns should be named; write a line of headers above them, as `speed [m/s],f_x [N]`";
             return Err(RecordError::syntax(Place::in_table(path, layout.data_line.max(1)), problem));
@@ -263,6 +265,26 @@ fn refuse_scales(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), R
         return Err(RecordError::syntax(Place::in_table(path, layout.names_line), problem));
     }
     Ok(())
+}
+
+/// Asks about a line of units that may be one of symbols, as `L; m; V` below `Length; Mass; Volume`.
+fn ask_for_symbols(path: &Path, layout: &Layout, file: &FileWords) -> Result<(), RecordError> {
+    let Some(line) = layout.units_line.filter(|_| file.stated.units_line.is_none()) else { return Ok(()) };
+    let pairs = || layout.heads.iter().filter_map(|head| Some((&head.name, head.unit.as_deref()?)));
+    let is_symbol = |unit: &str| unit.chars().count() == 1 && unit.chars().all(char::is_alphabetic);
+    let is_initial = |(name, unit): (&String, &str)| name.to_lowercase().starts_with(&unit.to_lowercase());
+    let is_other =
+        |(name, unit): &(&String, &str)| parse_unit(unit).is_ok_and(|unit| is_known_in_another(name, unit.dimension));
+    if pairs().count() < 2 || !pairs().all(|(_, unit)| is_symbol(unit)) {
+        return Ok(());
+    }
+    let odd = pairs().find(is_other).or_else(|| pairs().next().filter(|_| pairs().all(is_initial)));
+    let Some((name, unit)) = odd else { return Ok(()) };
+    let problem = format!(
+        "`{unit}` below `{name}` can be a symbol or a unit, and so can all others of this line; write in {}:\n  schema = 1\n  [file]\n  units = 0\nif they are symbols, or units = {line} if they are units",
+        sidecar_name(path)
+    );
+    Err(RecordError::syntax(Place::in_table(path, line), problem))
 }
 
 /// Adds how the cells of a table are to be read.

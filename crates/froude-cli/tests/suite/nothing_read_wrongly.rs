@@ -1260,3 +1260,26 @@ fn a_coefficient_of_no_law_is_held_by_none_and_said() {
     assert_eq!(findings(&out, "held-by-no-law").len(), 1);
     assert_eq!(findings(&json(&files, &["identify", "c.toml"]), "held-by-no-law").len(), 0);
 }
+
+#[test]
+fn symbols_below_names_are_not_taken_for_units() {
+    let table = "Length;Mass;Volume\nL;m;V\n1,5;2,5;3,5\n1,6;2,6;3,6\n";
+    let said = refusal(&[("t.csv", table)], &["inspect", "t.csv"]);
+    assert!(said.starts_with("froude: t.csv:2: `V` below `Volume` can be a symbol or a unit"), "{said}");
+    let stated = |line: usize| format!("schema = 1\n[file]\nunits = {line}\n");
+    let said = refusal(&[("t.csv", table), ("t.toml", &stated(0))], &["inspect", "t.csv"]);
+    assert!(said.contains("column `L` has no unit"), "{said}");
+    let read = json(&[("t.csv", table), ("t.toml", &stated(2))], &["inspect", "t.csv"]);
+    assert_eq!(read["columns"][1]["unit"], "m");
+}
+
+#[test]
+fn a_table_of_a_quantity_per_row_is_named_as_one() {
+    let table = "time [s],channel,value\n0,speed,1\n0,force,2\n1,speed,1.2\n1,force,2.4\n";
+    let said = refusal(&[("t.csv", table)], &["inspect", "t.csv"]);
+    assert!(
+        said.contains("each row holds one of several quantities, which column `channel` names (speed, force)"),
+        "{said}"
+    );
+    assert!(said.contains("df.pivot(index=…, columns=\"channel\", values=\"value\")"), "{said}");
+}

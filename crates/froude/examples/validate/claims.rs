@@ -41,6 +41,13 @@ pub struct Line {
     pub verdict: Verdict,
 }
 
+impl Line {
+    /// The line for a terminal, without its verdict.
+    pub fn text(&self) -> String {
+        format!("{}: {} (expected {})", self.claim, self.found, self.expected)
+    }
+}
+
 /// All lines.
 #[derive(Debug, Default)]
 pub struct Claims {
@@ -85,7 +92,7 @@ impl Claims {
         for (section, lines) in self.sections() {
             out += &format!("\n{section}\n");
             for l in lines {
-                out += &format!("  [{}] {}: {} (expected {})\n", mark(l.verdict), l.claim, l.found, l.expected);
+                out += &format!("  [{}] {}\n", mark(l.verdict), l.text());
             }
         }
         out

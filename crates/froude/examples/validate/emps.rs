@@ -4,7 +4,8 @@ use std::error::Error;
 use std::path::Path;
 
 use froude::methods::carriage::servo::held_out::halves;
-use froude::methods::carriage::servo::{Chain, Friction, ServoLog, ServoReport, identify_servo};
+use froude::methods::carriage::servo::{Chain, Delay, Friction, ServoLog, ServoReport, identify_servo};
+use froude::records::number::significant;
 use froude::records::table_file::read_table;
 use froude::records::units::Dimension;
 
@@ -66,7 +67,7 @@ fn read(root: &Path) -> Result<ServoLog, Box<dyn Error>> {
     })
 }
 
-/// As the verb fits any log: samples near rest and reversal left out, the command held from its sample to the next.
+/// As the verb fits any log, samples near rest and reversal left out: with the delay of the publication, zero, and with a fitted one.
 fn as_any_log(
     claims: &mut Claims,
     name: &str,
@@ -75,21 +76,36 @@ fn as_any_log(
     printed: &[(&str, f64, f64)],
 ) -> Result<(), Box<dyn Error>> {
     let chain = Chain::of_log(FORCE_PER_VOLT_N_V, log.rate_hz()?, chain.friction.clone());
-    let report = identify_servo(log, &chain)?;
-    let mass = printed[0].1;
-    let interval = report.fit.coefficient("M").map_or([f64::NAN; 2], |c| c.interval);
-    let each = report.fit.coefficients.iter().map(|c| format!("{} {:.3} ± {:.3}", c.name, c.value, c.block_std));
-    claims.holds(
-        SECTION,
-        &format!("{name}: as `froude identify` fits a log, without samples near rest and reversal"),
-        "the interval of M contains the published value",
-        format!(
-            "{}; force error {:.2} %",
-            each.collect::<Vec<_>>().join(", "),
-            100.0 * report.fit.relative_force_error
-        ),
-        (interval[0]..=interval[1]).contains(&mass),
-    );
+    let (_, mass, _) = printed[0];
+    let at_once = Chain { delay: Delay::default(), ..chain.clone() };
+    for (chain, words, is_judged) in [(&at_once, "delay 0 as published", true), (&chain, "delay fitted", false)] {
+        let report = identify_servo(log, chain)?;
+        let interval = report.fit.coefficient("M").map_or([f64::NAN; 2], |c| c.interval);
+        let each = report
+            .fit
+            .coefficients
+            .iter()
+            .map(|c| format!("{} {} ± {}", c.name, significant(c.value, 5), significant(c.block_std, 2)));
+        // The published fit has no delay. The 0.77 ms that the log shows lower M by 0.09 kg, so its value is no reference there.
+        let contains = (interval[0]..=interval[1]).contains(&mass);
+        claims.add(
+            SECTION,
+            &format!("{name}: as `froude identify` fits a log, without samples near rest and reversal; {words}"),
+            "the interval of M contains the published value",
+            format!(
+                "{}, interval of M [{:.2}, {:.2}]; force error {:.2} %",
+                each.collect::<Vec<_>>().join(", "),
+                interval[0],
+                interval[1],
+                100.0 * report.fit.relative_force_error
+            ),
+            match (contains, is_judged) {
+                (true, _) => Verdict::Pass,
+                (false, true) => Verdict::Miss,
+                (false, false) => Verdict::Finding,
+            },
+        );
+    }
     Ok(())
 }
 
