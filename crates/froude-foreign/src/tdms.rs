@@ -47,12 +47,12 @@ pub fn read(bytes: &[u8]) -> Result<Contents, ForeignError> {
     for (path, own) in &layout.objects {
         let names = parts_of(path);
         let [group, channel] = names.as_slice() else { continue };
-        let Some(raw) = values.channels.remove(path) else {
-            notes.push(format!("channel {group}/{channel} has no values"));
-            continue;
-        };
+        let raw = values.channels.remove(path).unwrap_or_default();
         let levels = [own, properties(&path_of(group)), properties("/")];
         match Channel::new(channel, &raw, levels, &mut first_stamp) {
+            Ok(channel) if channel.len == 0 => {
+                notes.push(format!("channel {group}/{} has no values", channel.column.name))
+            }
             Ok(channel) => match groups.iter_mut().find(|other| other.name == *group) {
                 Some(group) => group.channels.push(channel),
                 None => groups.push(Group { name: group.clone(), channels: vec![channel] }),

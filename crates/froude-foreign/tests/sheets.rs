@@ -519,3 +519,13 @@ json.dump(out, open("expected.json", "w"))
         }
     }
 }
+
+#[test]
+fn a_chain_of_empty_sectors_in_an_old_workbook_ends() {
+    let bytes = include_bytes!("../../../fuzz/seeds/workbook/chain-of-empty-sectors.xls");
+    let Err(error) = Workbook::open(&bytes[..]) else { panic!("the stream of the workbook is damaged") };
+    assert_eq!(
+        error.0,
+        "the workbook is damaged: its stream \"Workbook\" cannot be read; open it in Excel or LibreOffice and save it again"
+    );
+}

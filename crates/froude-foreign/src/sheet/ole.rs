@@ -103,7 +103,8 @@ impl<'a> Ole<'a> {
         let mut id = *start;
         while out.len() < *length {
             let start = id as usize * MINI_SECTOR;
-            out.extend(self.mini_stream.get(start..)?.iter().take(MINI_SECTOR));
+            // A sector at the very end is empty: a chain in it would never grow.
+            out.extend(self.mini_stream.get(start..).filter(|rest| !rest.is_empty())?.iter().take(MINI_SECTOR));
             id = *self.mini_fat.get(id as usize)?;
             if out.len() > self.mini_stream.len() {
                 return None;
