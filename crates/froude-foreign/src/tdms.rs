@@ -51,7 +51,7 @@ pub fn read(bytes: &[u8]) -> Result<Contents, ForeignError> {
         let levels = [own, properties(&path_of(group)), properties("/")];
         match Channel::new(channel, &raw, levels, &mut first_stamp) {
             Ok(channel) if channel.len == 0 => {
-                notes.push(format!("channel {group}/{} has no values", channel.column.name))
+                notes.push(format!("channel {group}/{} has no values", channel.column.name));
             }
             Ok(channel) => match groups.iter_mut().find(|other| other.name == *group) {
                 Some(group) => group.channels.push(channel),
