@@ -13,6 +13,7 @@ pub mod drag;
 #[cfg(test)]
 #[path = "../tests/flexible_axis/mod.rs"]
 mod flexible_axis;
+pub mod forecast;
 pub mod live;
 pub mod reduction;
 pub mod runs;

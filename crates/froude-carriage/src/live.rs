@@ -4,14 +4,16 @@ use std::path::{Path, PathBuf};
 
 use froude_records::campaign::Campaign;
 use froude_records::run::{BodyState, Role, RunMeta, read_run};
+use froude_records::text::counted;
 use froude_records::write::write_atomically;
+use froude_rig::campaign::runner::Known;
 use froude_rig::carriage::plan::PlannedRun;
 use froude_rig::carriage::{CarriageCampaign, CarriagePlan, Directions, DrivenCampaign};
 
 use crate::drag::calibration::Readings;
 use crate::drag::detectability::DryMean;
 use crate::drag::mcd;
-use crate::drag::online::OnLine;
+use crate::drag::online::{OnLine, Status};
 use crate::drag::setup::DragSetup;
 use crate::reduction::{calibration_from, setup_of};
 use crate::runs::for_drag;
@@ -32,6 +34,13 @@ pub struct Live {
     per_pair: usize,
 }
 
+/// What is known of a campaign before its first run: a look after each of its pairs.
+pub(crate) fn setup_before(campaign: &DrivenCampaign, asked: &CarriagePlan) -> DragSetup {
+    let rig = campaign.carriage.as_ref().map(|carriage| &carriage.rig);
+    let axis = rig.and_then(|rig| if asked.axis as usize == 0 { Some(&rig.y) } else { rig.x.as_ref() });
+    DragSetup { looks: asked.repeats, ..setup_of(Some(campaign), axis.map(|axis| &axis.constants)) }
+}
+
 /// A run that waits for its partner.
 struct Waiting {
     path: PathBuf,
@@ -43,12 +52,10 @@ impl Live {
     #[must_use]
     pub fn new(campaign: &Campaign, carriage: &CarriageCampaign, asked: &CarriagePlan, folder: &Path) -> Self {
         let campaign = DrivenCampaign { campaign: campaign.clone(), carriage: Some(carriage.clone()), logs: None };
-        let axis = if asked.axis as usize == 0 { Some(&carriage.rig.y) } else { carriage.rig.x.as_ref() };
-        let constants = axis.map(|axis| &axis.constants);
         let directions = if asked.directions == Directions::Both { 2 } else { 1 };
         Self {
             online: asked.stop_at_relative_half_width.map(|target| OnLine::new(target, directions)),
-            setup: DragSetup { looks: asked.repeats, ..setup_of(Some(&campaign), constants) },
+            setup: setup_before(&campaign, asked),
             campaign,
             folder: folder.to_owned(),
             waiting: Vec::new(),
@@ -59,8 +66,12 @@ impl Live {
         }
     }
 
-    /// Reads the run again from its file and asks whether enough is known. A run that gives no point only gives none.
-    pub fn after(&mut self, path: &Path, run: &PlannedRun) -> Option<String> {
+    /// Reads the run again from its file, and after a whole pair says where D_d stands and whether that is enough. A run that gives no point only gives none.
+    pub fn after(&mut self, path: &Path, run: &PlannedRun) -> Known {
+        self.look(path, run).unwrap_or_default()
+    }
+
+    fn look(&mut self, path: &Path, run: &PlannedRun) -> Option<Known> {
         self.online.as_ref()?;
         if !matches!(run.role, Role::Dry | Role::Wet | Role::Calibration) {
             return None;
@@ -102,19 +113,31 @@ impl Live {
             return None;
         }
         let status = online.status(&self.setup)?;
+        let half_width = status.half_width?;
+        let estimate = format!("D_d = {:.2} ± {half_width:.2} N s²/m² after {} pairs", status.value, status.pairs);
         if !status.may_stop {
-            return None;
+            let said = format!("{estimate}: {}", self.remaining(&status));
+            return Some(Known { said: Some(said), enough: None });
         }
-        let why = format!(
-            "D_d = {:.2} ± {:.2} N s²/m² after {} pairs: its 95 % interval is as narrow as asked; the remaining pairs are left out",
-            status.value,
-            status.half_width.unwrap_or(f64::NAN),
-            status.pairs
-        );
+        let why = format!("{estimate}: its 95 % interval is as narrow as asked; the remaining pairs are left out");
         // A folder that cannot be written to has stopped the recorder long before; then the report does without.
         let said = format!("{why}\n{LAST_RUN}{}\n", run.id);
         let _ = write_atomically(&self.folder.join(STOPPED_EARLY), said.as_bytes());
-        Some(why)
+        Some(Known { said: None, enough: Some(why) })
+    }
+
+    /// How many pairs the target takes, in words.
+    fn remaining(&self, status: &Status) -> String {
+        let (left, looks) = (self.setup.looks.saturating_sub(status.pairs), self.setup.looks);
+        let planned = counted(left, "planned pair remains", "planned pairs remain");
+        match status.pairs_needed {
+            None => {
+                format!("what all pairs share leaves ± {:.2} and keeps it from its target; {planned}", status.floor)
+            }
+            Some(needed) if needed > looks => format!("about {needed} pairs would reach the target; {planned}"),
+            Some(needed) if needed > status.pairs => format!("about {} more will do; {planned}", needed - status.pairs),
+            Some(_) => format!("the target is near; {planned}"),
+        }
     }
 
     /// Force per volt of the weights, as the report will take them, before the first look.

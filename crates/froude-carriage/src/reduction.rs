@@ -265,7 +265,7 @@ fn weights_key(campaign: Option<&DrivenCampaign>) -> Option<String> {
 }
 
 /// Loss of the campaign's pulley, as a part of the weight; [`PULLEY_LOSS`] where it declares none.
-fn pulley_loss(campaign: Option<&DrivenCampaign>) -> Uncertain {
+pub(crate) fn pulley_loss(campaign: Option<&DrivenCampaign>) -> Uncertain {
     let plan = campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref());
     let declared = plan.and_then(|p| p.calibration.as_ref()).and_then(|c| c.pulley_loss);
     declared.map_or(PULLEY_LOSS, |p| Uncertain::new(p.value, p.standard_uncertainty))

@@ -114,7 +114,7 @@ pub enum Verb {
     /// Show the run matrix of a campaign, its time in the tank, and the interval to expect of each coefficient.
     #[command(after_help = "Example: froude plan campaign.toml")]
     Plan {
-        /// The campaign, with `source.plan` blocks and, for the intervals, a `simulate` section.
+        /// The campaign, with `source.plan` blocks and, for the intervals, a `simulate` section; or that of a carriage.
         campaign: PathBuf,
     },
     /// Write the observation tables, or the runs, that a campaign would give for chosen true coefficients.

@@ -36,7 +36,7 @@ pub const PREDICT: Takes = Takes {
 pub const SIMULATE: Takes =
     Takes { verb: "simulate", kinds: &[Kind::Campaign, Kind::Drive], words: "a campaign with plan and truth (.toml)" };
 pub const PLAN: Takes =
-    Takes { verb: "plan", kinds: &[Kind::Campaign], words: "a campaign with a plan of runs (.toml)" };
+    Takes { verb: "plan", kinds: &[Kind::Campaign, Kind::Drive], words: "a campaign with a plan of runs (.toml)" };
 pub const RUN: Takes =
     Takes { verb: "run", kinds: &[Kind::Campaign, Kind::Drive], words: "a campaign with [rig] and [carriage] (.toml)" };
 pub const TUNE: Takes = Takes { verb: "carriage tune", ..RUN };

@@ -73,7 +73,7 @@ fn campaign(folder: &Path, port: Option<&Path>, has_warm_up: bool) -> PathBuf {
         ),
         ("repeats = 5  ", "repeats = 1  ".to_owned()),
         ("repeats = 6", "repeats = 1".to_owned()),
-        (r#"stop_when = "1.5 %""#, String::new() + "#"),
+        (r#"stop_when = "2.5 %""#, String::new() + "#"),
     ];
     if let Some(port) = port {
         changes.extend(on_a_board(port));

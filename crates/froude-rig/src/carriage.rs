@@ -231,6 +231,8 @@ pub struct CarriagePlan {
     pub stop_at_relative_half_width: Option<f64>,
     /// D_d to be expected, N s²/m², for the detectability of each speed.
     pub expected_drag_n_s2_m2: Option<f64>,
+    /// Standard deviation of one wet-minus-dry difference, N, with its degrees of freedom, as an earlier campaign showed it.
+    pub expected_scatter_n: Option<(f64, f64)>,
     /// Drag of the strut, N s²/m², that is in the water with the body and measured along.
     pub strut_drag_n_s2_m2: Option<Declared>,
     /// Where the section stands.

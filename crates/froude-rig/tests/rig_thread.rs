@@ -11,7 +11,7 @@ use froude_control::request::{Excitation, Request};
 use froude_control::status::Phase;
 use froude_records::Place;
 use froude_records::run::{Axis, BodyState, Role, RunStatus, read_run};
-use froude_rig::campaign::runner::{Driven, Operator, Progress, RunnerError, Setting, drive};
+use froude_rig::campaign::runner::{Driven, Known, Operator, Progress, RunnerError, Setting, drive};
 use froude_rig::campaign::stop::StopSwitch;
 use froude_rig::carriage::plan::{Drive, OperatorStep, PlannedRun, Step};
 use froude_rig::carriage::{CarriagePlan, Directions, Order};
@@ -127,6 +127,7 @@ fn setting(folder: &Path) -> Setting {
         is_ballasted: true,
         stop_at_relative_half_width: None,
         expected_drag_n_s2_m2: None,
+        expected_scatter_n: None,
         strut_drag_n_s2_m2: None,
         place: Place::whole(Path::new("campaign.toml")),
     };
@@ -197,7 +198,7 @@ fn run(
     asked: Hold<'_>,
     watch: &mut dyn FnMut(&Sample, f64),
 ) -> Result<Driven, RunnerError> {
-    drive(&steps(), &setting(folder), rig, switch, &mut Person(asked), &mut Watch(watch), &mut |_, _| None)
+    drive(&steps(), &setting(folder), rig, switch, &mut Person(asked), &mut Watch(watch), &mut |_, _| Known::default())
 }
 
 #[test]
@@ -280,7 +281,8 @@ fn a_stop_from_another_host_ends_the_campaign_in_a_run_and_between_two() {
     let (setting, switch) = (setting(folder.path()), StopSwitch::default());
     let mut ready = |_: &dyn Fn() -> bool| true;
     let mut person = Person(&mut ready);
-    let error = drive(&steps, &setting, &mut rig, &switch, &mut person, &mut Watch(&mut watch), &mut |_, _| None);
+    let error =
+        drive(&steps, &setting, &mut rig, &switch, &mut person, &mut Watch(&mut watch), &mut |_, _| Known::default());
     let said = error.unwrap_err().to_string();
     assert!(
         said.starts_with("another program on the line (session 0000000b) stopped the carriage in 001-tow. "),

@@ -30,8 +30,7 @@ pub const CAMPAIGNS: [&str; 3] = ["unh-rm2/tare.toml", "unh-rm2/rotor.toml", "ma
 ///
 /// A folder that is not empty or cannot be written; anything that [`identify`] finds.
 pub fn run(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
-    let occupied = std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
-    if occupied {
+    if std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some()) {
         return Err(Error::NotEmpty { path: folder.to_owned() });
     }
     let unfinished = UnfinishedFolder::beside(folder)?;

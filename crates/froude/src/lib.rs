@@ -25,9 +25,7 @@ pub use {error::Error, method::campaign_schema};
 
 /// The methods that make estimates of sources, by what they are measured with.
 pub mod methods {
-    pub use froude_added_mass as added_mass;
-    pub use froude_carriage as carriage;
-    pub use froude_tank as tank;
+    pub use {froude_added_mass as added_mass, froude_carriage as carriage, froude_tank as tank};
 }
 
 pub mod carriage;
@@ -44,8 +42,7 @@ pub mod twin;
 
 /// What most programs need.
 pub mod prelude {
-    pub use crate::pipeline::identify;
-    pub use crate::pipeline::{Identified, Input, Job};
+    pub use crate::pipeline::{Identified, Input, Job, identify};
     pub use crate::records::estimate::{Coefficient, Estimate, EstimateFile, Status};
     pub use crate::records::finding::{Finding, Severity};
 }

@@ -6,10 +6,11 @@ use froude_identify::method::Prospect;
 use froude_identify::simulate::tables::SimulateError;
 use froude_records::block::{Section, facts};
 use froude_records::outcome::Outcome;
+use froude_rig::carriage::declared;
 
-use crate::{Error, method};
+use crate::{Error, carriage::drive, method};
 
-/// Run matrix, time and intervals to expect of every source that plans runs.
+/// Run matrix, time and intervals to expect of every source that plans runs; of a carriage the runs that it would drive.
 ///
 /// # Errors
 ///
@@ -21,6 +22,9 @@ pub fn plan(path: &Path) -> Result<Outcome, Error> {
         for (method, _) in method::of(source, None)? {
             out.extend(method.plan(&campaign, source).map_err(Error::Method)?);
         }
+    }
+    if out.is_empty() && declared(&campaign)?.is_some_and(|carriage| carriage.plan.is_some()) {
+        return Ok(drive::prepare(&drive::DriveJob { campaign: campaign.path, ..Default::default() })?.outcome());
     }
     if out.is_empty() {
         return Err(SimulateError::NoPlan { path: campaign.path }.into());

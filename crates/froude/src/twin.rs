@@ -45,8 +45,7 @@ pub fn simulate(path: &Path, replace: bool) -> Result<Outcome, Error> {
             all.extend(method.simulate(&campaign, source).map_err(Error::Method)?.unwrap_or_default());
         }
         if let Some(other) = first_other(target, |name| all.iter().any(|file| file.name == name))? {
-            let what =
-                format!("holds {}, which the twin did not write; name another folder in `runs`", other.display());
+            let what = format!("holds {}, not written by the twin; name another folder in `runs`", other.display());
             return Err(Error::Method(MethodError::input(target, what)));
         }
         if !replace && target.exists() && first_other(target, |_| false)?.is_some() {

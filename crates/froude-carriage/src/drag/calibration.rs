@@ -142,6 +142,11 @@ impl Readings {
         }
     }
 
+    /// Takes what a drawn run shows: the direction of its motion, its weight, N, and its command along the motion, V.
+    pub(crate) fn push_drawn(&mut self, direction: f64, weight_n: f64, along_v: f64) {
+        self.taken.push(Reading { direction, weight_n, along_v });
+    }
+
     /// No calibration run was seen, with or without a reading.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -7,6 +7,7 @@
 //! ([`DragSetup::looks`]), so that all intervals shown cover together with 95 %. The price is some 40 % of width over ten looks. After an
 //! early stop, quote the interval shown here; the report does.
 
+use froude_fit::distribution::coverage_factor;
 use froude_fit::propagate::expanded;
 
 use super::coefficient::Coefficient;
@@ -35,6 +36,8 @@ pub struct Status {
     pub value: f64,
     /// Half-width of its interval (the longer arm), Bonferroni over the planned looks; `None` before two pairs.
     pub half_width: Option<f64>,
+    /// Half-width that no number of pairs goes below, from what all of them share, N s²/m².
+    pub floor: f64,
     /// Pairs seen.
     pub pairs: usize,
     /// Whether the campaign may stop: half-width at or below the target.
@@ -56,6 +59,12 @@ impl OnLine {
         self.dry.push(mean);
     }
 
+    /// The differences so far.
+    #[cfg(test)]
+    pub(crate) fn points(&self) -> &[Point] {
+        &self.points
+    }
+
     /// Takes one steady difference, in newtons of the setup of the next look.
     pub fn push(&mut self, point: Point) {
         self.points.push(point);
@@ -74,6 +83,7 @@ impl OnLine {
         Some(Status {
             value: c.value,
             half_width,
+            floor: coverage_factor(confidence(setup), f64::INFINITY) * c.type_b,
             pairs: n,
             may_stop: n >= FEWEST_PAIRS && half_width.is_some_and(|h| h <= target),
             pairs_needed: pairs_needed(&c, n, target, setup),
@@ -81,14 +91,18 @@ impl OnLine {
     }
 }
 
+/// That of one look, so that all planned ones hold together with 95 %.
+fn confidence(setup: &DragSetup) -> f64 {
+    1.0 - 0.05 / setup.looks.max(1) as f64
+}
+
 /// Pairs until the half-width is at the target, with the scatter of now and the shared errors as they are.
 fn pairs_needed(c: &Coefficient, n: usize, target: f64, setup: &DragSetup) -> Option<usize> {
     let of_one = c.type_a? * (n as f64).sqrt();
-    let confidence = 1.0 - 0.05 / setup.looks.max(1) as f64;
     let shared = (c.type_b * c.type_b, f64::INFINITY);
     (FEWEST_PAIRS.max(n)..=10 * setup.looks.max(n)).find(|&m| {
         let scatter = (of_one * of_one / m as f64, m as f64 - 1.0);
-        expanded(&[scatter, shared], confidence).expanded <= target
+        expanded(&[scatter, shared], confidence(setup)).expanded <= target
     })
 }
 

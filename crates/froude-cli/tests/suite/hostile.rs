@@ -192,7 +192,7 @@ fn two_masses_that_cannot_be_found_cost_their_method_and_not_the_report() {
         ),
         (r#"duration = "1 min""#, r#"duration = "10 s""#),
         (r#"speed = "0.3 m/s""#, r#"speed = "0.2 m/s""#),
-        (r#"stop_when = "1.5 %""#, r#"stop_when = "0.1 %""#),
+        (r#"stop_when = "2.5 %""#, ""),
         (r#"amplitude = "2 V""#, r#"amplitude = "1.1 V""#),
         (r#"period = "1 s""#, r#"period = "0.3 s""#),
     ] {

@@ -53,7 +53,7 @@ fn a_campaign_is_planned_simulated_and_identified() {
     assert_eq!(std::fs::read(folder.path().join("runs/003.csv")).unwrap(), before);
     std::fs::write(folder.path().join("runs/my own.csv"), "a real log").unwrap();
     let text = refused(folder.path(), &["simulate", "campaign.toml", "--replace"]);
-    assert!(text.contains("my own.csv, which the twin did not write"), "{text}");
+    assert!(text.contains("my own.csv, not written by the twin"), "{text}");
     assert!(folder.path().join("runs/my own.csv").exists());
 }
 

@@ -168,7 +168,7 @@ fn a_campaign_that_was_not_driven_to_its_end_says_what_is_missing() {
 fn a_campaign_that_stopped_by_its_rule_is_not_unfinished() {
     let folder = tempfile::tempdir().unwrap();
     let mut changes = SHORT.to_vec();
-    changes.extend([("repeats = 2  ", "repeats = 5  "), (r#"stop_when = "1.5 %""#, r#"stop_when = "50 %""#)]);
+    changes.extend([("repeats = 2  ", "repeats = 5  "), (r#"stop_when = "2.5 %""#, r#"stop_when = "50 %""#)]);
     let campaign = campaign(folder.path(), &changes);
     let outcome = json(&["run", text(&campaign), "--yes", "--json"]);
     assert_eq!((&outcome["driven"], &outcome["spared"]), (&21.into(), &8.into()));

@@ -14,7 +14,7 @@ use super::error::CampaignError;
 use super::lock;
 use super::pair::check_names;
 use super::prepare::{Prepared, return_speed_m_s};
-use super::runner::{self, Driven, Enough, Operator, Progress, RunnerError};
+use super::runner::{self, Driven, Look, Operator, Progress, RunnerError};
 use super::setup;
 use super::stop::StopSwitch;
 use crate::campaign::runner::Setting;
@@ -28,7 +28,7 @@ fn homing_s(limits: &Limits) -> f64 {
     60.0 + 1.5 * (limits.hard_high_m - limits.hard_low_m) / limits.unhomed_speed_m_s
 }
 
-/// Drives what passed its pre-flight; goes on where an earlier drive into the same folder stopped. `enough` is asked after every run.
+/// Drives what passed its pre-flight; goes on where an earlier drive into the same folder stopped. `look_at` is asked after every run.
 ///
 /// # Errors
 ///
@@ -38,7 +38,7 @@ pub fn drive(
     switch: &StopSwitch,
     operator: &mut dyn Operator,
     progress: &mut dyn Progress,
-    enough: &mut Enough<'_>,
+    look_at: &mut Look<'_>,
 ) -> Result<Driven, CampaignError> {
     if let Some(first) = prepared.objections.first() {
         let more = prepared.objections.len() - 1;
@@ -74,7 +74,7 @@ pub fn drive(
         start_unix_ns: if prepared.is_twin() { 0 } else { prepared.job.start_unix_ns },
         date: prepared.job.date.clone(),
     };
-    Ok(runner::drive(&prepared.steps, &setting, rig.as_mut(), switch, operator, progress, enough)?)
+    Ok(runner::drive(&prepared.steps, &setting, rig.as_mut(), switch, operator, progress, look_at)?)
 }
 
 type Readied = (Box<dyn Rig + Send>, Load, Option<u64>);

@@ -6,8 +6,10 @@ use crate::carriage::plan::{PlannedRun, Step, order_seed, plan};
 use crate::carriage::{CarriageCampaign, CarriagePlan, RigKind, declared};
 use froude_control::config::{AxisConfig, Config, Limits};
 use froude_hydro::fluid::density_kg_m3;
+use froude_records::block::Block;
 use froude_records::campaign::Campaign;
 use froude_records::campaign_file::read_campaign;
+use froude_records::run::Role;
 
 use super::error::CampaignError;
 use super::preflight::{check, check_campaign};
@@ -16,7 +18,7 @@ use crate::campaign::preflight::{Expected, Forecast, Objection};
 use crate::load::{Load, TowedBody};
 
 /// What to drive and where the runs go.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct DriveJob {
     /// The campaign.
     pub campaign: PathBuf,
@@ -44,8 +46,10 @@ pub struct Prepared {
     pub forecasts: Vec<Forecast>,
     /// Everything that speaks against it; empty when it may be driven.
     pub objections: Vec<Objection>,
-    /// Time that the campaign takes on the rig, without the operator's, s.
-    pub duration_s: f64,
+    /// Time that each run takes on the rig, without the operator's, s.
+    pub run_s: Vec<f64>,
+    /// What others say of it before it is driven.
+    pub beside: Vec<Block>,
     pub(super) job: DriveJob,
 }
 
@@ -101,17 +105,41 @@ impl Prepared {
         self.control.axes[self.asked.axis as usize].mode_hz > 0.0
     }
 
-    /// Smallest drag that one wet-minus-dry difference is expected to show (95 %), N: twice √2 times the assumed change of friction from run to
-    /// run. The dry repeats replace it when they are there.
+    /// Time that the campaign takes on the rig, without the operator's, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.run_s.iter().sum()
+    }
+
+    /// The same where it stops after so many pairs, s.
+    #[must_use]
+    pub fn duration_of_pairs_s(&self, pairs: usize) -> f64 {
+        let is_driven =
+            |run: &PlannedRun| run.role == Role::Friction || run.pair.is_none_or(|pair| pair as usize <= pairs);
+        self.runs().zip(&self.run_s).filter(|(run, _)| is_driven(run)).map(|(_, s)| s).sum()
+    }
+
+    /// Smallest drag that one wet-minus-dry difference is expected to show (95 %), N.
     #[must_use]
     pub fn detectable_n(&self) -> f64 {
+        1.96 * self.scatter_n().0
+    }
+
+    /// Standard deviation of one wet-minus-dry difference, N, with its degrees of freedom: as declared, else √2 times the assumed change of friction from run to run.
+    #[must_use]
+    pub fn scatter_n(&self) -> (f64, f64) {
+        let assumed = || (std::f64::consts::SQRT_2 * ASSUMED_REPEATABILITY * self.friction_n(), f64::INFINITY);
+        self.asked.expected_scatter_n.unwrap_or_else(assumed)
+    }
+
+    /// Friction of the carriage as a force at the chain, N.
+    #[must_use]
+    pub fn friction_n(&self) -> f64 {
         let drive = &self.control.axes[self.asked.axis as usize].drive;
         let spec =
             if self.asked.axis as usize == 0 { Some(&self.carriage.rig.y) } else { self.carriage.rig.x.as_ref() };
         let efficiency = spec.and_then(|s| s.constants.efficiency_forward).map_or(1.0, |e| e.value);
-        // As the motor sees it through the gear, and as a force at the chain.
-        let friction_n = efficiency * drive.coulomb_n_m * drive.gear_ratio / drive.sprocket_radius_m;
-        1.96 * std::f64::consts::SQRT_2 * ASSUMED_REPEATABILITY * friction_n
+        efficiency * drive.coulomb_n_m * drive.gear_ratio / drive.sprocket_radius_m
     }
 }
 
@@ -220,13 +248,12 @@ pub fn prepare_with(
         assumed_volume_m3: volume_m3.is_none().then_some(displaced_m3),
     };
     let (mut forecasts, mut objections) = (Vec::new(), check_campaign(&asked, &carriage.rig, &control));
-    let mut duration_s = 0.0;
+    let mut run_s = Vec::new();
     for step in &steps {
         if let Step::Run(run) = step {
             let (forecast, against) = check(run, &asked, &control, &expected);
-            duration_s += run.settle_s + 2.0 * asked.still_s + forecast.duration_s;
-            // The way back to the start.
-            duration_s += asked.distance_m / return_speed_m_s(&asked, &axis.limits);
+            let way_back_s = asked.distance_m / return_speed_m_s(&asked, &axis.limits);
+            run_s.push(run.settle_s + 2.0 * asked.still_s + forecast.duration_s + way_back_s);
             forecasts.push(forecast);
             objections.extend(against);
         }
@@ -245,7 +272,8 @@ pub fn prepare_with(
         steps,
         forecasts,
         objections,
-        duration_s,
+        run_s,
+        beside: Vec::new(),
         job: job.clone(),
     })
 }

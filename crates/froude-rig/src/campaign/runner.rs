@@ -57,8 +57,17 @@ pub trait Progress {
     fn say(&mut self, line: &str);
 }
 
-/// After a run, driven now or there already: whether its campaign knows enough. The text says why.
-pub type Enough<'a> = dyn FnMut(&Path, &PlannedRun) -> Option<String> + 'a;
+/// What is known after a run.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Known {
+    /// Where the estimate stands, in words.
+    pub said: Option<String>,
+    /// Why the campaign may stop; `None` where it goes on.
+    pub enough: Option<String>,
+}
+
+/// Asked after a run, driven now or there already.
+pub type Look<'a> = dyn FnMut(&Path, &PlannedRun) -> Known + 'a;
 
 /// How a campaign ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,7 +134,7 @@ pub fn drive(
     switch: &StopSwitch,
     operator: &mut dyn Operator,
     progress: &mut dyn Progress,
-    enough: &mut Enough<'_>,
+    look_at: &mut Look<'_>,
 ) -> Result<Driven, RunnerError> {
     let facts = RigFacts::of(rig);
     let (pace, capacity) = rig_thread::pace(rig);
@@ -134,7 +143,7 @@ pub fn drive(
         let attend = move || rig_thread::attend(rig, engine, setting, switch);
         let thread = std::thread::Builder::new().name("rig".to_owned()).spawn_scoped(scope, attend);
         let thread = thread.map_err(|e| RunnerError::Thread { reason: e.to_string() })?;
-        let driven = Campaign { steps, setting, helm, facts, switch, operator, progress }.drive(enough);
+        let driven = Campaign { steps, setting, helm, facts, switch, operator, progress }.drive(look_at);
         // A thread that ended by itself has been reported already.
         let _ = thread.join();
         driven
@@ -153,7 +162,7 @@ struct Campaign<'a, 'b> {
 }
 
 impl<'a> Campaign<'a, '_> {
-    fn drive(mut self, enough: &mut Enough<'_>) -> Result<Driven, RunnerError> {
+    fn drive(mut self, look_at: &mut Look<'_>) -> Result<Driven, RunnerError> {
         let folder = &self.setting.folder;
         let total = self.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
         let mut outcome = Driven { driven: 0, resumed: 0, spared: 0, enough: None, cut: Vec::new() };
@@ -182,8 +191,8 @@ impl<'a> Campaign<'a, '_> {
                         self.progress.say(EARLIER_VERSION);
                     }
                     // What was known then is known now: a campaign that had stopped stays stopped.
-                    let known = enough(&folder.join(format!("{}.mcap", run.id)), run);
-                    outcome.enough = outcome.enough.or(known);
+                    let known = look_at(&folder.join(format!("{}.mcap", run.id)), run);
+                    outcome.enough = outcome.enough.or(known.enough);
                     continue;
                 }
                 Found::Nothing { aside: Some(what) } => self.progress.say(&what),
@@ -205,10 +214,11 @@ impl<'a> Campaign<'a, '_> {
                 outcome.cut.push(what);
                 continue;
             }
-            if let Some(why) = enough(&path, run) {
-                self.progress.say(&why);
-                outcome.enough = Some(why);
+            let known = look_at(&path, run);
+            for line in known.said.iter().chain(&known.enough) {
+                self.progress.say(line);
             }
+            outcome.enough = known.enough;
         }
         Ok(outcome)
     }

@@ -236,6 +236,13 @@ pub const CARRIAGE: &[Key] = &[
     usual("ballasted", Kind::Flag, "false", "whether wet runs carry ballast that restores the dry wheel load"),
     part("stop_when", IfMissing::Nothing("all runs are made"), "the relative half-width of D_d's 95 % interval"),
     positive("expected_drag", DRAG, "not stated", "D_d to be expected, for the detectability of each speed"),
+    positive(
+        "expected_scatter",
+        Dimension::FORCE,
+        "friction repeats within 2 %",
+        "standard deviation of one wet-minus-dry difference, as an earlier campaign on this rig showed it",
+    ),
+    optional("expected_scatter_dof", Kind::Count(10_000), "exactly known", "degrees of freedom of `expected_scatter`"),
     constant("strut_drag", DRAG, "no strut", "drag of a strut that goes into the water with the body"),
 ];
 

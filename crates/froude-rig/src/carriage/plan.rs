@@ -444,6 +444,7 @@ mod tests {
             excitation: None,
             is_ballasted: true,
             stop_at_relative_half_width: None,
+            expected_scatter_n: None,
             expected_drag_n_s2_m2: Some(20.0),
             strut_drag_n_s2_m2: None,
             place: Place::whole("campaign.toml".as_ref()),

@@ -200,6 +200,9 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
         is_ballasted: values.flag("ballasted"),
         stop_at_relative_half_width: values.number("stop_when"),
         expected_drag_n_s2_m2: values.number("expected_drag"),
+        expected_scatter_n: values
+            .number("expected_scatter")
+            .map(|n| (n, values.count("expected_scatter_dof").map_or(f64::INFINITY, |dof| dof as f64))),
         strut_drag_n_s2_m2: values.constant("strut_drag"),
         place: s.place(),
     })

@@ -9,7 +9,7 @@ use froude_control::status::Phase;
 use froude_records::Place;
 use froude_records::campaign::BodyAxis;
 use froude_records::run::{Axis, Role, RunStatus, read_run};
-use froude_rig::campaign::runner::{Driven, Operator, Progress, RunnerError, Setting, drive};
+use froude_rig::campaign::runner::{Driven, Known, Operator, Progress, RunnerError, Setting, drive};
 use froude_rig::campaign::stop::StopSwitch;
 use froude_rig::carriage::plan::{PlannedRun, Step, plan};
 use froude_rig::carriage::{Calibration, CarriagePlan, Directions, Order, PulseTrain};
@@ -52,6 +52,7 @@ fn asked() -> CarriagePlan {
         is_ballasted: true,
         stop_at_relative_half_width: None,
         expected_drag_n_s2_m2: Some(20.0),
+        expected_scatter_n: None,
         strut_drag_n_s2_m2: None,
         place: Place::whole(Path::new("campaign.toml")),
     }
@@ -121,7 +122,7 @@ fn run(folder: &Path, hand: &mut Hand, rig: &mut TwinRig) -> Result<Driven, Runn
     let mut begun = Vec::new();
     let switch = hand.switch.clone();
     let mut watch = Watch(&mut begun, hand.press, switch.clone());
-    let outcome = drive(&steps, &setting(folder), rig, &switch, hand, &mut watch, &mut |_, _| None);
+    let outcome = drive(&steps, &setting(folder), rig, &switch, hand, &mut watch, &mut |_, _| Known::default());
     hand.begun = begun;
     outcome
 }
@@ -229,7 +230,7 @@ fn an_excitation_that_ends_before_its_time_is_cut_and_the_campaign_goes_on() {
         let (mut hand, mut begun) = (Hand::default(), Vec::new());
         let switch = StopSwitch::default();
         let mut watch = Watch(&mut begun, None, switch.clone());
-        (drive(&steps, &setting, rig, &switch, &mut hand, &mut watch, &mut |_, _| None).unwrap(), begun)
+        (drive(&steps, &setting, rig, &switch, &mut hand, &mut watch, &mut |_, _| Known::default()).unwrap(), begun)
     };
     let (outcome, begun) = run(&mut rig());
     assert_eq!(outcome.driven, names(&steps).len(), "the campaign went on");
@@ -257,8 +258,10 @@ fn a_jog_that_a_soft_limit_ends_is_cut() {
     let (mut hand, mut begun) = (Hand::default(), Vec::new());
     let switch = StopSwitch::default();
     let mut watch = Watch(&mut begun, None, switch.clone());
-    let outcome =
-        drive(&steps, &setting(folder.path()), &mut rig(), &switch, &mut hand, &mut watch, &mut |_, _| None).unwrap();
+    let outcome = drive(&steps, &setting(folder.path()), &mut rig(), &switch, &mut hand, &mut watch, &mut |_, _| {
+        Known::default()
+    })
+    .unwrap();
     assert_eq!((outcome.driven, outcome.cut.len()), (2, 1), "{:?}", outcome.cut);
     let told = &outcome.cut[0];
     assert!(told.starts_with("002-jog-backward was cut: the jog of -1 V went "), "{told}");
@@ -305,8 +308,10 @@ fn a_tow_that_somebody_else_stopped_is_not_complete() {
     let (mut hand, mut begun) = (Hand::default(), Vec::new());
     let switch = StopSwitch::default();
     let mut watch = Watch(&mut begun, None, switch.clone());
-    let error = drive(&steps, &setting(folder.path()), &mut driven, &switch, &mut hand, &mut watch, &mut |_, _| None)
-        .unwrap_err();
+    let error = drive(&steps, &setting(folder.path()), &mut driven, &switch, &mut hand, &mut watch, &mut |_, _| {
+        Known::default()
+    })
+    .unwrap_err();
     let RunnerError::Elsewhere { run, target_m, at_m } = &error else { panic!("{error}") };
     assert!((target_m - at_m).abs() > 0.01, "{error}");
     if let Ok(log) = read_run(&folder.path().join(format!("{run}.mcap"))) {

@@ -63,7 +63,7 @@ fn the_papers_campaign_is_read_as_it_is_written() {
     assert_eq!(plan.speed_m_s, [0.05, 0.15, 0.25, 0.35, 0.45, 0.55]);
     assert_eq!((plan.repeats, plan.order, plan.directions), (5, Order::Abba, Directions::Both));
     assert_eq!((plan.distance_m, plan.settling_dry_s, plan.settling_wet_s), (2.2, 5.0, 120.0));
-    assert_eq!(plan.stop_at_relative_half_width, Some(0.015));
+    assert_eq!(plan.stop_at_relative_half_width, Some(0.025));
     assert_eq!(plan.expected_drag_n_s2_m2, Some(20.0));
     assert_eq!(plan.calibration.unwrap().weights_n.len(), 2);
     assert_eq!(plan.excitation.unwrap().duty, 0.6);
@@ -145,7 +145,7 @@ fn what_is_wrong_is_reported_with_its_line_and_what_to_write() {
             ),
         ),
         (
-            "stop_when = \"1.5 %\"",
+            "stop_when = \"2.5 %\"",
             "stop_when = \"1 1\"",
             format!(
                 "{}:13: `stop_when` is \"1 1\"; the relative half-width of D_d's 95 % interval lies between 0 and 100 %",

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use froude_carriage::live::Live;
+use froude_carriage::{forecast::foresee, live::Live};
 use froude_rig::campaign::drive::drive as drive_until;
 use froude_rig::campaign::prepare::prepare as prepared;
 pub use froude_rig::campaign::prepare::{DriveJob, Prepared, prepare_with};
@@ -18,8 +18,9 @@ use crate::{Error, method};
 ///
 /// As [`froude_rig::campaign::prepare::prepare`], and a mistake in the section of a method.
 pub fn prepare(job: &DriveJob) -> Result<Prepared, Error> {
-    let prepared = prepared(job)?;
+    let mut prepared = prepared(job)?;
     method::check_sections(prepared.campaign())?;
+    foresee(&mut prepared);
     Ok(prepared)
 }
 
@@ -35,6 +36,6 @@ pub fn drive(
     progress: &mut dyn Progress,
 ) -> Result<Driven, Error> {
     let mut live = Live::new(prepared.campaign(), prepared.carriage(), prepared.asked(), &prepared.folder);
-    let mut enough = |path: &Path, run: &PlannedRun| live.after(path, run);
-    Ok(drive_until(prepared, switch, operator, progress, &mut enough)?)
+    let mut look = |path: &Path, run: &PlannedRun| live.after(path, run);
+    Ok(drive_until(prepared, switch, operator, progress, &mut look)?)
 }

@@ -49,7 +49,7 @@ fn example(folder: &Path) -> PathBuf {
         (r#"settling = { dry = "5 s", wet = "120 s" }"#, r#"settling = { dry = "0.5 s", wet = "0.5 s" }"#),
         (r#"still = "5 s""#, r#"still = "1.6 s""#),
         (r#"log_rate = "1 kHz""#, r#"log_rate = "100 Hz""#),
-        (r#"stop_when = "1.5 %""#, "#"),
+        (r#"stop_when = "2.5 %""#, "#"),
     ] {
         assert!(text.contains(from), "the example has no {from}");
         text = text.replace(from, to);

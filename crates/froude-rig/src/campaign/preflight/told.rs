@@ -58,26 +58,22 @@ impl Prepared {
         if objections.is_empty() {
             said.push("Pre-flight passed. Nothing was moved.".to_owned());
         }
-        let blocks = vec![
-            self.about().into(),
-            self.forecast_table().into(),
-            self.objection_table().into(),
-            Block::text("", said),
-        ];
+        let tables = [self.about(), self.forecast_table(), self.objection_table()].map(Block::from);
+        let blocks = [tables.to_vec(), self.beside.clone(), vec![Block::text("", said)]].concat();
         Outcome { blocks, exit, ..Outcome::default() }
     }
 
     /// What is said before it is driven.
     #[must_use]
     pub fn blocks(&self) -> Vec<Block> {
-        vec![self.forecast_table().into(), Block::text("", self.said())]
+        [vec![self.forecast_table().into()], self.beside.clone(), vec![Block::text("", self.said())]].concat()
     }
 
     fn about(&self) -> ResultTable {
         let f = facts("", "", self);
         f.build(vec![
             f.text("name", "", |p| p.name().to_owned()),
-            f.number("duration_s", "", |p| p.duration_s),
+            f.number("duration_s", "", Self::duration_s),
             f.number("detectable_n", "", Self::detectable_n),
         ])
     }
@@ -96,7 +92,7 @@ impl Prepared {
         let first = alike.values().map(|(i, _)| *i).collect();
         let detectable_n = self.detectable_n();
         let runs = counted(rows.len(), "run", "runs");
-        let caption = format!("{}: {runs}, about {} on the rig", self.name(), duration(self.duration_s));
+        let caption = format!("{}: {runs}, about {} on the rig", self.name(), duration(self.duration_s()));
         let t = TableBuilder::new("runs", caption, &rows);
         let pairs = |row: &Row<'_>| row.forecast.drag_n.filter(|d| *d > 0.0).map(|d| pairs_to_see(detectable_n, d));
         let mut table = t.build(vec![
@@ -130,7 +126,12 @@ impl Prepared {
     fn said(&self) -> Vec<String> {
         let detectable_n = self.detectable_n();
         let mut out = vec![format!(
-            "One wet-minus-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs show it)."
+            "One wet-minus-dry difference is expected to show {detectable_n:.2} N ({}",
+            if self.asked.expected_scatter_n.is_some() {
+                "its scatter as declared)."
+            } else {
+                "friction repeating within 2 %, assumed until the dry runs show it)."
+            }
         )];
         if self.runs().zip(&self.forecasts).any(|(_, f)| !f.margin_m.is_finite()) {
             out.push(
