@@ -1,14 +1,14 @@
 //! When a campaign that stops by its own rule will stop, before the tank is paid for.
 //!
 //! The rule is played with drawn campaigns. Each lifts and lowers its known weights: the command is s v_c = (f + s W + λ W)/k with the scatter of the friction,
-//! and a loss λ of the pulley within what is declared of it; they give a force per volt as those of a driven campaign do. Then one pair after the other gives its
+//! and a loss λ of the pulley drawn from its declared uncertainty; they give a force per volt as those of a driven campaign do. Then one pair after the other gives its
 //! differences at every speed, and [`OnLine`] looks at them as it does on the rig.
 //!
 //! **Scatter.** A difference scatters as declared (`expected_scatter`, which `froude carriage drag` prints after every campaign), drawn anew for each campaign with its degrees of
 //! freedom, s √(ν/χ²_ν); where nothing is declared, friction is taken to repeat within 2 %. The drift of K_T comes on top, in proportion to the drag.
 //!
-//! **Floor.** What all pairs share (force per volt, encoder, pulley) no pair takes off: the half-width never falls below the normal coverage factor at 1 − 0.05/n, n planned looks,
-//! times the standard uncertainty of that. More planned pairs raise it.
+//! **Floor.** Errors that all pairs share (force per volt, encoder, pulley) do not average out: the half-width never falls below the longer arm of their own interval at 1 − 0.05/n,
+//! n planned looks. More planned pairs raise it.
 //!
 //! Not drawn: changes that a whole pair shares beyond friction, and what an operator does.
 
@@ -33,7 +33,7 @@ use crate::drag::setup::DragSetup;
 use crate::live::setup_before;
 use crate::reduction::{calibration_from, known_of_calibration, pulley_loss};
 
-/// Drawn campaigns: a probability of 90 % is then known within 2 %.
+/// Drawn campaigns: a probability of 90 % then has a standard deviation of 2 %.
 const DRAWS: u64 = 200;
 
 /// What a campaign is expected to show.
@@ -117,8 +117,8 @@ impl<'a> Drawn<'a> {
         let of_run_n = chance * scatter_n / std::f64::consts::SQRT_2;
         let mut readings = Readings::default();
         for &(direction, weight_n) in &asked.weights {
-            let chance: f64 = StandardNormal.sample(&mut rng);
-            let hung_n = of_weights * weight_n;
+            let [chance, drift]: [f64; 2] = [(); 2].map(|()| StandardNormal.sample(&mut rng));
+            let hung_n = of_weights * weight_n * (1.0 + asked.setup.torque_constant_drift_relative * drift);
             let along_n = asked.friction_n + direction * hung_n + loss * hung_n + of_run_n * chance;
             readings.push_drawn(direction, weight_n, along_n / k);
         }
@@ -143,7 +143,12 @@ impl<'a> Drawn<'a> {
         let (k, taken) = (self.asked.setup.force_per_volt_n(), self.setup.force_per_volt_n());
         for &v in &self.asked.velocity_m_s {
             let mut normal = || -> f64 { StandardNormal.sample(&mut self.rng) };
-            let drag_n = self.asked.drag_n_s2_m2 * v * v * (1.0 + self.setup.torque_constant_drift_relative * normal());
+            // The points lose the declared drag of the strut again.
+            let strut = self.setup.strut_n_s2_m2.map_or(0.0, |strut| strut.value);
+            let drag_n = (self.asked.drag_n_s2_m2 + strut)
+                * v
+                * v
+                * (1.0 + self.setup.torque_constant_drift_relative * normal());
             let dry_n = self.asked.friction_n + self.of_run_n * normal();
             let wet_n = self.asked.friction_n + self.of_run_n * normal() + drag_n;
             self.live.push_dry(DryMean { velocity_m_s: v, pair: self.pairs, resistance_v: dry_n / k });
@@ -233,12 +238,12 @@ pub fn foresee(prepared: &mut Prepared) {
         return say("When stop_when ends the campaign cannot be forecast: expected_drag is not declared.".to_owned());
     };
     let forecast = Forecast::of(&asked);
-    if target <= forecast.floor_relative {
+    if target <= forecast.floor_relative && forecast.reached() == 0.0 {
         return refuse(
             prepared,
             format!(
-                "stop_when = {} cannot be reached: what all pairs share (force per volt, encoder) leaves {} (95 %, over {planned} planned looks), however many are driven. Write a larger target, \
-             plan fewer pairs, or calibrate better (the pulley's loss, the weights)",
+                "stop_when = {} cannot be reached: the errors that all pairs share (force per volt, encoder) alone give ± {} (95 %, {planned} planned looks). Write a larger target, plan fewer pairs, or \
+                 calibrate better (pulley, weights)",
                 percent(target),
                 percent(forecast.floor_relative)
             ),
@@ -280,9 +285,10 @@ fn told(forecast: &Forecast, asked: &Asked, prepared: &Prepared) -> Section {
         "assumed; declare what froude carriage drag prints of an earlier campaign as expected_scatter".to_owned()
     };
     let said = vec![format!(
-        "D_d is known within {} after the {planned} planned pairs in {} of {DRAWS} drawn campaigns. One wet − dry difference scatters by {} N ({whence}). What all pairs share leaves {}.",
-        percent(asked.target_relative),
+        "In {} of {DRAWS} drawn campaigns the 95 % interval narrows to ± {} within the {planned} planned pairs (—: not within them). One wet-minus-dry difference scatters by {} N ({whence}), drawn as independent \
+         from run to run: where mounting changes the friction of a whole pair, more pairs are needed. The errors that all pairs share alone give ± {}.",
         percent(forecast.reached()),
+        percent(asked.target_relative),
         significant(scatter_n, 2),
         percent(forecast.floor_relative)
     )];

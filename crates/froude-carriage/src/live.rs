@@ -128,13 +128,19 @@ impl Live {
 
     /// How many pairs the target takes, in words.
     fn remaining(&self, status: &Status) -> String {
-        let (left, looks) = (self.setup.looks.saturating_sub(status.pairs), self.setup.looks);
+        let left = self.setup.looks.saturating_sub(self.differences / self.per_pair);
         let planned = counted(left, "planned pair remains", "planned pairs remain");
         match status.pairs_needed {
-            None => {
-                format!("what all pairs share leaves ± {:.2} and keeps it from its target; {planned}", status.floor)
+            None if status.floor >= status.target => {
+                format!(
+                    "the errors that all pairs share alone give ± {:.2}, and the target is ± {:.2}; {planned}",
+                    status.floor, status.target
+                )
             }
-            Some(needed) if needed > looks => format!("about {needed} pairs would reach the target; {planned}"),
+            None => format!("more than {} pairs would be needed; {planned}", 10 * self.setup.looks),
+            Some(needed) if needed > status.pairs + left => {
+                format!("about {needed} pairs would reach the target; {planned}")
+            }
             Some(needed) if needed > status.pairs => format!("about {} more will do; {planned}", needed - status.pairs),
             Some(_) => format!("the target is near; {planned}"),
         }

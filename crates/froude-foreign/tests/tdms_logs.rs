@@ -258,7 +258,6 @@ fn what_is_no_tdms_is_refused_in_words() {
     );
 }
 
-/// Bytes changed, one or four at a time, and lengths cut: an answer, never a panic or memory that the file cannot hold.
 #[test]
 fn a_channel_that_is_declared_with_no_values_is_named_and_left_out() {
     let bytes = include_bytes!("../../../fuzz/seeds/foreign_logs/tdms-channel-without-values.tdms");
@@ -275,6 +274,7 @@ fn a_channel_that_is_declared_with_no_values_is_named_and_left_out() {
     assert!(told.contains("has no values"), "{told}");
 }
 
+/// Bytes changed, one or four at a time, and lengths cut: an answer, never a panic or memory that the file cannot hold.
 #[test]
 fn damage_never_panics() {
     let folder = tempfile::tempdir().unwrap();

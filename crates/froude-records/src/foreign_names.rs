@@ -449,13 +449,6 @@ pub(crate) fn meant(name: &str, dimension: Option<Dimension>) -> Option<Meant> {
     Some(Meant { name: known.name, sign: known.sign })
 }
 
-/// Whether a name is known, and in other dimensions alone: `Kraft` in farad.
-pub(crate) fn is_known_in_another(name: &str, dimension: Dimension) -> bool {
-    let plain = plain(name);
-    let mut all = KNOWN.iter().filter(|known| known.words.contains(&plain.as_str())).peekable();
-    all.peek().is_some() && all.all(|known| known.dimension.is_some_and(|own| own != dimension))
-}
-
 /// What a name means where its unit is missing or unknown, if that is one thing alone.
 pub(crate) fn meant_without_unit(name: &str) -> Option<(Meant, Option<Dimension>)> {
     let plain = plain(name);

@@ -109,7 +109,9 @@ fn list(reading: &Reading, rows: &[Row<'_>], sidecar: Option<&Sidecar>) -> Vec<O
     let unstated = FileWords::default();
     let file = sidecar.map_or(&unstated, |sidecar| &sidecar.file);
     let mut out = if is_mapped { Vec::new() } else { of_headings(reading) };
-    out.extend(of_long(reading, &data));
+    if !is_mapped {
+        out.extend(of_long(reading, &data));
+    }
     out.extend(reading.undecided.as_ref().map(of_marks));
     out.extend(of_rows(reading, file, &data));
     out

@@ -8,7 +8,7 @@ use froude_foreign::marks::{Marks, Undecided, Witness, shape};
 
 use crate::error::{Place, Position, RecordError};
 use crate::file_words::{FileWords, sidecar_name};
-use crate::foreign_names::is_known_in_another;
+use crate::foreign_names::meant;
 use crate::guard::unguarded;
 use crate::heading::{Heading, headings, rename_sname, split_header};
 use crate::label_rows::{Odd, is_scale, is_statistic, label, odd};
@@ -273,13 +273,14 @@ fn ask_for_symbols(path: &Path, layout: &Layout, file: &FileWords) -> Result<(),
     let pairs = || layout.heads.iter().filter_map(|head| Some((&head.name, head.unit.as_deref()?)));
     let is_symbol = |unit: &str| unit.chars().count() == 1 && unit.chars().all(char::is_alphabetic);
     let is_initial = |(name, unit): (&String, &str)| name.to_lowercase().starts_with(&unit.to_lowercase());
-    let is_other =
-        |(name, unit): &(&String, &str)| parse_unit(unit).is_ok_and(|unit| is_known_in_another(name, unit.dimension));
-    if pairs().count() < 2 || !pairs().all(|(_, unit)| is_symbol(unit)) {
-        return Ok(());
-    }
-    let odd = pairs().find(is_other).or_else(|| pairs().next().filter(|_| pairs().all(is_initial)));
-    let Some((name, unit)) = odd else { return Ok(()) };
+    // `Force` in N and `Volt` in V say themselves that the line holds units.
+    let is_unit = |(name, unit): (&String, &str)| {
+        let dimension = |text: &str| parse_unit(text).ok().map(|unit| unit.dimension);
+        meant(name, dimension(unit)).is_some() || dimension(name) == dimension(unit)
+    };
+    let is_open =
+        pairs().count() > 1 && pairs().all(|pair| is_symbol(pair.1) && is_initial(pair)) && !pairs().any(is_unit);
+    let Some((name, unit)) = pairs().next().filter(|_| is_open) else { return Ok(()) };
     let problem = format!(
         "`{unit}` below `{name}` can be a symbol or a unit, and so can all others of this line; write in {}:\n  schema = 1\n  [file]\n  units = 0\nif they are symbols, or units = {line} if they are units",
         sidecar_name(path)

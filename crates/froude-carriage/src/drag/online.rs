@@ -7,7 +7,7 @@
 //! ([`DragSetup::looks`]), so that all intervals shown cover together with 95 %. The price is some 40 % of width over ten looks. After an
 //! early stop, quote the interval shown here; the report does.
 
-use froude_fit::distribution::coverage_factor;
+use froude_fit::budget::{Part, combine};
 use froude_fit::propagate::expanded;
 
 use super::coefficient::Coefficient;
@@ -36,6 +36,8 @@ pub struct Status {
     pub value: f64,
     /// Half-width of its interval (the longer arm), Bonferroni over the planned looks; `None` before two pairs.
     pub half_width: Option<f64>,
+    /// The half-width to reach, N s²/m².
+    pub target: f64,
     /// Half-width that no number of pairs goes below, from what all of them share, N s²/m².
     pub floor: f64,
     /// Pairs seen.
@@ -83,7 +85,8 @@ impl OnLine {
         Some(Status {
             value: c.value,
             half_width,
-            floor: coverage_factor(confidence(setup), f64::INFINITY) * c.type_b,
+            target,
+            floor: floor(&c, setup),
             pairs: n,
             may_stop: n >= FEWEST_PAIRS && half_width.is_some_and(|h| h <= target),
             pairs_needed: pairs_needed(&c, n, target, setup),
@@ -94,6 +97,14 @@ impl OnLine {
 /// That of one look, so that all planned ones hold together with 95 %.
 fn confidence(setup: &DragSetup) -> f64 {
     1.0 - 0.05 / setup.looks.max(1) as f64
+}
+
+/// The longer arm that the errors which all pairs share have alone.
+fn floor(c: &Coefficient, setup: &DragSetup) -> f64 {
+    let is_shared = |part: &&Part| part.kind.is_type_b() && !part.in_scatter;
+    let shared: Vec<Part> = c.budget.iter().filter(is_shared).cloned().collect();
+    let [low, high] = combine(&shared, 0, 1.0 - confidence(setup)).arms;
+    low.max(high)
 }
 
 /// Pairs until the half-width is at the target, with the scatter of now and the shared errors as they are.

@@ -878,7 +878,7 @@ fn a_campaign_that_stops_by_itself_is_forecast_and_a_target_out_of_reach_refused
     let stop = &forecast["stop_forecast"];
     let number = |value: &Value| value.as_f64().unwrap();
     // The issue's own model has a floor of 1.54 % without the scatter of the calibration runs, and 91 % within five pairs.
-    assert!((0.0154..0.02).contains(&number(&stop["floor_relative"])), "{stop}");
+    assert!((0.0154..0.0225).contains(&number(&stop["floor_relative"])), "{stop}");
     assert!(number(&stop["reached"]) > 0.9, "{stop}");
     let pairs: Vec<f64> = stop["stop"].as_array().unwrap().iter().map(|row| number(&row["pairs"])).collect();
     assert!(pairs[0] >= 3.0 && pairs.is_sorted() && pairs[2] <= 5.0, "{stop}");
@@ -890,7 +890,7 @@ fn a_campaign_that_stops_by_itself_is_forecast_and_a_target_out_of_reach_refused
 
     let refused = |changes: &[(&str, &str)]| refusal(&["run", text(&declared(changes)), "--check"]);
     let said = refused(&[(r#"stop_when = "2.5 %""#, r#"stop_when = "1.5 %""#)]);
-    assert!(said.contains("stop_when = 1.5 % cannot be reached: what all pairs share"), "{said}");
+    assert!(said.contains("stop_when = 1.5 % cannot be reached: the errors that all pairs share"), "{said}");
     let planned =
         |changes: &[(&str, &str)]| String::from_utf8(froude(&["plan", text(&declared(changes))]).stdout).unwrap();
     let said = planned(&[("repeats = 5  ", "repeats = 2  ")]);

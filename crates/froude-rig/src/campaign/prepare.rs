@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::carriage::plan::{PlannedRun, Step, order_seed, plan};
-use crate::carriage::{CarriageCampaign, CarriagePlan, RigKind, declared};
+use crate::carriage::{CarriageCampaign, CarriagePlan, Order, RigKind, declared};
 use froude_control::config::{AxisConfig, Config, Limits};
 use froude_hydro::fluid::density_kg_m3;
 use froude_records::block::Block;
@@ -114,8 +114,9 @@ impl Prepared {
     /// The same where it stops after so many pairs, s.
     #[must_use]
     pub fn duration_of_pairs_s(&self, pairs: usize) -> f64 {
-        let is_driven =
-            |run: &PlannedRun| run.role == Role::Friction || run.pair.is_none_or(|pair| pair as usize <= pairs);
+        // In blocks all dry runs come before the first wet one.
+        let is_before = |role: Role| role == Role::Friction || (self.asked.order == Order::Blocks && role == Role::Dry);
+        let is_driven = |run: &PlannedRun| is_before(run.role) || run.pair.is_none_or(|pair| pair as usize <= pairs);
         self.runs().zip(&self.run_s).filter(|(run, _)| is_driven(run)).map(|(_, s)| s).sum()
     }
 

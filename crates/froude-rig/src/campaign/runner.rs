@@ -218,7 +218,7 @@ impl<'a> Campaign<'a, '_> {
             for line in known.said.iter().chain(&known.enough) {
                 self.progress.say(line);
             }
-            outcome.enough = known.enough;
+            outcome.enough = outcome.enough.or(known.enough);
         }
         Ok(outcome)
     }

@@ -180,6 +180,11 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
     let number = |key: &str| values.need(key, values.number(key));
     let (settling_dry_s, settling_wet_s) = settling(s)?;
     let FrictionSweep { speed_m_s, repeats } = sweep(&values)?;
+    let [scatter_n, scatter_dof] =
+        [values.number("expected_scatter"), values.count("expected_scatter_dof").map(|dof| dof as f64)];
+    if scatter_n.is_none() && scatter_dof.is_some() {
+        return Err(values.wrong("expected_scatter_dof", "belongs to expected_scatter, which is not declared"));
+    }
     Ok(CarriagePlan {
         axis: values.word("axis", &Axis::ALL).unwrap_or_default(),
         speed_m_s,
@@ -200,9 +205,7 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
         is_ballasted: values.flag("ballasted"),
         stop_at_relative_half_width: values.number("stop_when"),
         expected_drag_n_s2_m2: values.number("expected_drag"),
-        expected_scatter_n: values
-            .number("expected_scatter")
-            .map(|n| (n, values.count("expected_scatter_dof").map_or(f64::INFINITY, |dof| dof as f64))),
+        expected_scatter_n: scatter_n.map(|n| (n, scatter_dof.unwrap_or(f64::INFINITY))),
         strut_drag_n_s2_m2: values.constant("strut_drag"),
         place: s.place(),
     })
