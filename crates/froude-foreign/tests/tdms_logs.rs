@@ -261,7 +261,7 @@ fn what_is_no_tdms_is_refused_in_words() {
 #[test]
 fn a_channel_that_is_declared_with_no_values_is_named_and_left_out() {
     let bytes = include_bytes!("../../../fuzz/seeds/foreign_logs/tdms-channel-without-values.tdms");
-    let told = match tdms::read(bytes) {
+    let message = match tdms::read(bytes) {
         Ok(contents) => {
             assert!(contents.parts.iter().flat_map(|part| &part.columns).all(|column| match &column.cells {
                 Cells::Numbers(numbers) => !numbers.is_empty(),
@@ -271,7 +271,7 @@ fn a_channel_that_is_declared_with_no_values_is_named_and_left_out() {
         }
         Err(error) => error.to_string(),
     };
-    assert!(told.contains("has no values"), "{told}");
+    assert!(message.contains("has no values"), "{message}");
 }
 
 /// Bytes changed, one or four at a time, and lengths cut: an answer, never a panic or memory that the file cannot hold.

@@ -877,8 +877,8 @@ fn a_campaign_that_stops_by_itself_is_forecast_and_a_target_out_of_reach_refused
     assert_eq!(forecast, json(&["run", text(&whole), "--check", "--json"]));
     let stop = &forecast["stop_forecast"];
     let number = |value: &Value| value.as_f64().unwrap();
-    // The issue's own model has a floor of 1.54 % without the scatter of the calibration runs, and 91 % within five pairs.
-    assert!((0.0154..0.0225).contains(&number(&stop["floor_relative"])), "{stop}");
+    // A simple model without the scatter of the calibration runs has a floor of 1.54 %; the target is 2.5 %.
+    assert!((0.0154..0.025).contains(&number(&stop["floor_relative"])), "{stop}");
     assert!(number(&stop["reached"]) > 0.9, "{stop}");
     let pairs: Vec<f64> = stop["stop"].as_array().unwrap().iter().map(|row| number(&row["pairs"])).collect();
     assert!(pairs[0] >= 3.0 && pairs.is_sorted() && pairs[2] <= 5.0, "{stop}");
@@ -895,6 +895,8 @@ fn a_campaign_that_stops_by_itself_is_forecast_and_a_target_out_of_reach_refused
         |changes: &[(&str, &str)]| String::from_utf8(froude(&["plan", text(&declared(changes))]).stdout).unwrap();
     let said = planned(&[("repeats = 5  ", "repeats = 2  ")]);
     assert!(said.contains("stop_when never ends this campaign"), "{said}");
+    let said = planned(&[("repeats = 5  ", "repeats = 41  ")]);
+    assert!(said.contains("is forecast for up to 40 planned pairs; 41 are planned"), "{said}");
     let said = planned(&[(r#"expected_drag = "20 N s^2/m^2""#, "")]);
     assert!(said.contains("cannot be forecast: expected_drag is not declared"), "{said}");
 }

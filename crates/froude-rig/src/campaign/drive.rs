@@ -28,7 +28,7 @@ fn homing_s(limits: &Limits) -> f64 {
     60.0 + 1.5 * (limits.hard_high_m - limits.hard_low_m) / limits.unhomed_speed_m_s
 }
 
-/// Drives what passed its pre-flight; goes on where an earlier drive into the same folder stopped. `look_at` is asked after every run.
+/// Drives what passed its pre-flight; goes on where an earlier drive into the same folder stopped. `look_at` is called after every run.
 ///
 /// # Errors
 ///

@@ -8,9 +8,9 @@
 mod excitation;
 mod fall;
 mod forecast;
+mod report;
 #[cfg(test)]
 mod tests;
-mod told;
 mod tow;
 
 use crate::carriage::plan::{Drive, PlannedRun};
