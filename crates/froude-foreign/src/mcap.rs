@@ -24,6 +24,7 @@ use mcap::McapError;
 use mcap::records::op;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
+use crate::guard::guarded;
 use crate::{Cells, Column, Contents, ForeignError, MAX_CELLS, Part};
 
 /// Largest chunk: as many times its file, and at most so many bytes.
@@ -41,6 +42,10 @@ const OTHER_CLOCK_NS: i128 = 86_400 * NS_PER_S;
 ///
 /// A file that is no MCAP, is damaged, or has no topic that can be read; a message that does not fit its definition.
 pub fn read(input: &mut dyn Read, bytes: u64) -> Result<Contents, ForeignError> {
+    guarded("the log", || records(input, bytes))
+}
+
+fn records(input: &mut dyn Read, bytes: u64) -> Result<Contents, ForeignError> {
     let mut log = Log::default();
     let mut notes = Vec::new();
     let limit = bytes.saturating_mul(TIMES).clamp(1 << 20, MAX_CHUNK);

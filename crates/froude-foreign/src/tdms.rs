@@ -53,10 +53,19 @@ pub fn read(bytes: &[u8]) -> Result<Contents, ForeignError> {
             Ok(channel) if channel.len == 0 => {
                 notes.push(format!("channel {group}/{} has no values", channel.column.name));
             }
-            Ok(channel) => match groups.iter_mut().find(|other| other.name == *group) {
-                Some(group) => group.channels.push(channel),
-                None => groups.push(Group { name: group.clone(), channels: vec![channel] }),
-            },
+            Ok(channel) => {
+                if let Some(stated) = scale::not_applied(&raw, own) {
+                    notes.push(format!(
+                        "channel {group}/{} holds whole numbers and states {stated}, which is not applied; if they are counts, \
+                         declare `scale` for this column",
+                        channel.column.name
+                    ));
+                }
+                match groups.iter_mut().find(|other| other.name == *group) {
+                    Some(group) => group.channels.push(channel),
+                    None => groups.push(Group { name: group.clone(), channels: vec![channel] }),
+                }
+            }
             Err(problem) => notes.push(format!("channel {group}/{channel} is not read: it {problem}")),
         }
     }

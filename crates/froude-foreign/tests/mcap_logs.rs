@@ -259,3 +259,12 @@ fn damage_never_panics() {
         }
     }
 }
+
+/// The crate that reads records subtracts what a chunk does not have.
+#[test]
+fn a_record_that_is_longer_than_its_chunk_never_panics() {
+    let bytes = include_bytes!("../../../fuzz/seeds/foreign_logs/mcap-record-beyond-its-chunk.mcap");
+    // Where overflow is not checked, the same bytes have no topic.
+    let message = of_bytes(bytes).unwrap_err().to_string();
+    assert!(message.contains("damaged") || message.contains("no topic"), "{message}");
+}

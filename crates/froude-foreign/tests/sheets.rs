@@ -529,3 +529,10 @@ fn a_chain_of_empty_sectors_in_an_old_workbook_ends() {
         "the workbook is damaged: its stream \"Workbook\" cannot be read; open it in Excel or LibreOffice and save it again"
     );
 }
+
+#[test]
+fn a_list_of_sectors_that_leads_to_itself_is_refused() {
+    let bytes = include_bytes!("../../../fuzz/seeds/workbook/fat-list-that-leads-to-itself.xls");
+    let Err(error) = Workbook::open(&bytes[..]) else { panic!("the table of sectors is damaged") };
+    assert!(error.0.contains("its table of sectors is damaged"), "{}", error.0);
+}

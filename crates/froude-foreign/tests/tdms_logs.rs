@@ -169,6 +169,7 @@ with TdmsWriter("wave.tdms") as w:
     w.write_segment([wave("two rates", "fast", np.arange(4.0), 0.5, start), wave("two rates", "slow", np.arange(2.0), 1.0, start + np.timedelta64(250, "ms"))])
     w.write_segment([ChannelObject("scaled", "both", np.array([1.0, 2.0]), properties={"unit_string": "N", "Unit": "kN"})])
     w.write_segment([ChannelObject("plain", "note", ["a", "bc"]), ChannelObject("plain", "x", np.array([1.5, 2.5], dtype=np.float32)),
+        ChannelObject("plain", "counts", np.array([3, 4], dtype=np.int16), properties={"Slope": 0.005, "Offset": 2.0}),
         ChannelObject("scaled", "volts", np.array([0, 100], dtype=np.int16), properties={"NI_Number_Of_Scales": 1, "NI_Scale[0]_Scale_Type": "Linear",
             "NI_Scale[0]_Linear_Slope": 0.5, "NI_Scale[0]_Linear_Y_Intercept": 1.0, "NI_Scale[0]_Linear_Input_Source": np.uint32(0xFFFFFFFF), "unit_string": "V"}),
         ChannelObject("scaled", "strain", np.array([0, 100], dtype=np.int16), properties={"NI_Number_Of_Scales": 1, "NI_Scale[0]_Scale_Type": "Strain"})])
@@ -207,7 +208,7 @@ fn waveforms_give_times_and_units_come_from_their_properties() {
                 vec![column("time", "s", &[0.0, 0.5, 1.0, 1.5]), column("fast", "", &[0.0, 1.0, 2.0, 3.0])]
             ),
             part("two rates/slow", vec![column("time", "s", &[0.25, 1.25]), column("slow", "", &[0.0, 1.0])]),
-            part("plain", vec![texts, column("x", "", &[1.5, 2.5])]),
+            part("plain", vec![texts, column("x", "", &[1.5, 2.5]), column("counts", "", &[3.0, 4.0])]),
             part("scaled", vec![column("volts", "V", &[1.0, 51.0])]),
         ]
     );
@@ -215,6 +216,8 @@ fn waveforms_give_times_and_units_come_from_their_properties() {
         contents.notes,
         [
             "channel scaled/both is not read: it states two units, N and kN",
+            "channel plain/counts holds whole numbers and states Offset = 2, Slope = 0.005, which is not applied; if they are counts, \
+             declare `scale` for this column",
             "channel scaled/strain is not read: it has a scale of the kind Strain, which is not read; write scaled values",
             "times count from 1774951200.000000 s after 1970-01-01 00:00 UTC",
         ]

@@ -57,13 +57,16 @@ impl<'a> Ole<'a> {
         // The sectors of the FAT are listed in the header, and on in a chain of their own.
         let mut fat_sectors: Vec<u32> = (0..109).map(|i| u32_at(bytes, 76 + 4 * i)).collect::<Option<_>>()?;
         let mut next = u32_at(bytes, 68)?;
-        while next < MAX_SECTOR {
+        for _ in 0..=n_sectors {
+            if next >= MAX_SECTOR {
+                break;
+            }
             let list = file.sector(next)?;
             fat_sectors.extend(list.as_chunks().0.iter().copied().map(u32::from_le_bytes));
             next = fat_sectors.pop()?;
-            if fat_sectors.len() > n_sectors + 109 {
-                return None;
-            }
+        }
+        if next < MAX_SECTOR {
+            return None;
         }
         fat_sectors.retain(|id| *id < MAX_SECTOR);
         if fat_sectors.len() > n_sectors {

@@ -33,6 +33,20 @@ pub(super) fn scaled(raw: &Raw, levels: [&Properties; 3]) -> Result<Vec<f64>, St
     }
 }
 
+/// What properties outside of `NI_Scale` state about whole numbers, which may be counts of a converter: `Slope = 0.005, Offset = 2`.
+pub(super) fn not_applied(raw: &Raw, own: &Properties) -> Option<String> {
+    const NAMES: [&str; 6] = ["slope", "gain", "scale", "scale factor", "scale_factor", "offset"];
+    if raw.numbers.is_empty() || raw.numbers.iter().any(|x| x.fract() != 0.0) || count(own).is_some_and(|n| n > 0) {
+        return None;
+    }
+    let stated = own.iter().filter_map(|(name, value)| {
+        let (lower, number) = (name.to_lowercase(), value.number()?);
+        let changes = number != if lower == "offset" { 0.0 } else { 1.0 };
+        (NAMES.contains(&lower.as_str()) && changes).then(|| format!("{name} = {number}"))
+    });
+    Some(stated.collect::<Vec<_>>().join(", ")).filter(|stated| !stated.is_empty())
+}
+
 fn text<'a>(properties: &'a Properties, name: &str) -> Option<&'a str> {
     properties.get(name)?.text()
 }
