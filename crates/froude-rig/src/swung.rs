@@ -26,9 +26,11 @@ const STEP_RAD: f64 = 0.05;
 /// Position and its first two derivatives: rad or m, per s, per s².
 pub type Motion = [f64; 3];
 
-/// How a body is moved: α sin ωt.
+/// How a body is moved: φ₀ + α sin ωt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swing {
+    /// φ₀, where the body rests, rad or m.
+    pub middle: f64,
     /// α, rad or m.
     pub amplitude: f64,
     /// ω, rad/s.
@@ -124,12 +126,13 @@ struct Servo {
 
 impl Servo {
     fn new(asked: Swing, natural_and_damping: (f64, f64)) -> Self {
-        Self { asked, natural_and_damping, time_s: f64::NEG_INFINITY, state: [0.0; 2] }
+        Self { asked, natural_and_damping, time_s: f64::NEG_INFINITY, state: [asked.middle, 0.0] }
     }
 
     fn second(&self, t: f64, [place, rate]: [f64; 2]) -> f64 {
         let (natural, damping) = self.natural_and_damping;
-        let asked = self.asked.amplitude * libm::sin(self.asked.omega_rad_s * (t - self.asked.still_s));
+        let asked =
+            self.asked.middle + self.asked.amplitude * libm::sin(self.asked.omega_rad_s * (t - self.asked.still_s));
         natural * natural * (asked - place) - 2.0 * damping * natural * rate
     }
 
@@ -137,7 +140,7 @@ impl Servo {
     fn at(&mut self, time_s: f64) -> Motion {
         let begins = self.asked.still_s;
         if time_s <= begins {
-            return [0.0; 3];
+            return [self.asked.middle, 0.0, 0.0];
         }
         let from = self.time_s.max(begins);
         let (natural, _) = self.natural_and_damping;
@@ -164,7 +167,7 @@ mod tests {
     use super::*;
 
     const SERVO: (f64, f64) = (30.0, 0.6);
-    const SWING: Swing = Swing { amplitude: 0.2, omega_rad_s: 1.2, still_s: 1.0, periods: 6.0 };
+    const SWING: Swing = Swing { middle: 0.0, amplitude: 0.2, omega_rad_s: 1.2, still_s: 1.0, periods: 6.0 };
 
     fn exact(rate_hz: f64, delay_s: f64) -> SwungSensor {
         let reading = Reading { gain: 1.0, ..Reading::default() };

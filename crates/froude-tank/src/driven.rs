@@ -10,6 +10,7 @@
 //! | [`matrix`]                 | run matrix                                                        |
 //! | [`mod@fit`]                | unknowns, priors and declared errors of the joint fit ([`crate::joint`]) |
 //! | [`twin`]                   | truth, draws, logs and sidecars                                   |
+//! | [`stills`]                 | what the body held fast shows of a constant                       |
 //! | [`lag`]                    | a delay that the runs show and nobody declared                    |
 //! | [`mod@forecast`], [`plan`] | the intervals to expect                                           |
 //! | [`derived`]                | sums of coefficients with their uncertainty                       |
@@ -33,4 +34,5 @@ pub mod run;
 pub mod setup;
 pub mod source;
 pub mod spec;
+pub mod stills;
 pub mod twin;

@@ -112,6 +112,29 @@ pub(crate) struct Run<'a> {
     pub motion: &'a Motion,
 }
 
+/// What is known of an unknown beforehand.
+#[derive(Debug, Clone)]
+pub(crate) struct Known {
+    /// What it is, in words.
+    pub name: String,
+    pub prior: ls::Prior,
+    /// Degrees of freedom of its standard uncertainty.
+    pub dof: f64,
+    /// Inputs of the problem that it was found with, by their place, and what its value moves by with each.
+    pub moves: Vec<(usize, f64)>,
+}
+
+impl Known {
+    pub fn declared(name: String, prior: ls::Prior) -> Self {
+        Self { name, prior, dof: f64::INFINITY, moves: Vec::new() }
+    }
+
+    /// What its value moves by with an input.
+    pub fn moved_by(&self, input: usize) -> f64 {
+        self.moves.iter().filter(|(k, _)| *k == input).map(|(_, by)| by).sum()
+    }
+}
+
 /// What is looked for, in which runs, and what is known beforehand.
 pub(crate) struct Problem<'a, E> {
     pub equation: E,
@@ -128,8 +151,8 @@ pub(crate) struct Problem<'a, E> {
     pub bounded: Vec<usize>,
     /// Unknowns whose loads may change from run to run, those together that change by one fraction.
     pub varying: Vec<Vec<usize>>,
-    /// Declared numbers that are unknowns too.
-    pub priors: Vec<(String, ls::Prior)>,
+    /// Numbers that are unknowns too: declared, or found by still runs.
+    pub priors: Vec<Known>,
     pub inputs: Vec<Input>,
     pub identify: &'a Identify,
 }
@@ -177,19 +200,19 @@ impl<E> Problem<'_, E> {
         self.identify.exclude.iter().filter_map(|name| self.position(name)).collect()
     }
 
-    /// What is known of an unknown beforehand, with its name: declared numbers, and priors of the campaign.
-    pub fn known(&self) -> Vec<(String, ls::Prior)> {
+    /// What is known of the unknowns beforehand: declared numbers, still runs, and priors of the campaign.
+    pub fn known(&self) -> Vec<Known> {
         // What is known enters with its uncertainty, as a prior does.
         let stated = self.identify.prior.iter().chain(&self.identify.known);
         let of_campaign = stated.filter(|p| p.model.as_ref().is_none_or(|m| *m == self.law));
         let of_campaign = of_campaign.filter_map(|p| {
             let prior = ls::Prior::new(self.position(&p.coefficient)?, p.value, p.standard_uncertainty);
-            Some((format!("prior of {}", p.coefficient), prior))
+            Some(Known::declared(format!("prior of {}", p.coefficient), prior))
         });
         let (held, excluded) = (self.held(), self.excluded());
         let is_free = |j: usize| !excluded.contains(&j) && held.iter().all(|(k, _)| *k != j);
         let all = self.priors.iter().cloned().chain(of_campaign);
-        all.filter(|(_, prior)| prior.standard > 0.0 && is_free(prior.index)).collect()
+        all.filter(|known| known.prior.standard > 0.0 && is_free(known.prior.index)).collect()
     }
 
     pub fn bound(&self, j: usize) -> ls::Bound {

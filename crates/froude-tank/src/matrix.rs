@@ -96,7 +96,8 @@ impl Plan {
                 }
                 Kind::Count(_) if name == "repeats" => repeats = values.need(name, values.count(name))?,
                 // Of two axes that exclude each other one is missing, which `check` sees to.
-                Kind::Axis(_) if matches!(key.default, IfMissing::Nothing(_)) && !values.is_stated(name) => {}
+                Kind::Axis(_) | Kind::Frequency
+                    if matches!(key.default, IfMissing::Nothing(_)) && !values.is_stated(name) => {}
                 Kind::Axis(_) | Kind::Frequency => {
                     let put = |point: &mut Point, value: &f64| point.conditions.extend([(name, *value)]);
                     points = with_each(&points, &values.numbers(name), put);

@@ -49,6 +49,7 @@ use crate::driven::source;
 use crate::driven::spec::{
     Channel, Coefficient, Condition, Constant, Enters, Factor, Number, Point, Spec, Terms, Unknown,
 };
+use crate::driven::stills::Zeroed;
 use crate::error::{TankError, undeclared};
 use crate::findings::{note, warning};
 use crate::joint::findings::are_whole;
@@ -75,7 +76,11 @@ const FIRST_BODY: usize = 6;
 pub const FORCED: TankMethod = source::method::<Oscillation>(
     &[FORCED_OSCILLATION],
     &["added mass, drag, buoyancy and delay fitted together in time, to runs of a body that a motor swings"],
-    &[Need::of(&["test"], CHANNELS), Need { is_optional: true, ..Need::of(&["dry_air"], CHANNELS) }],
+    &[
+        Need::of(&["test"], CHANNELS),
+        Need { is_optional: true, ..Need::of(&["dry_air"], CHANNELS) },
+        Need { is_optional: true, ..Need::of(&["still"], CHANNELS) },
+    ],
     &[FORCED_OSCILLATION, "models", "uncertainty", "plan", "cfd"],
 );
 const CHANNELS: &[&str] = &["angle", "force"];
@@ -129,7 +134,7 @@ impl MotorDriven for Oscillation {
         keys: KEYS,
         missing: "nothing is declared of the body that swings: write [source.forced_oscillation] with pivot, radius and mass",
         plan: PLAN,
-        roles: ("medium", &[Role::Test, Role::DryAir]),
+        roles: ("medium", &[Role::Test, Role::DryAir, Role::Still]),
         changed: "configuration",
         conditions: &[Condition { name: "flow", dimension: Dimension::SPEED, unit: "m/s", of: stream }],
         motion: Channel {
@@ -172,7 +177,24 @@ impl MotorDriven for Oscillation {
             let problem = "stands with an upright pivot, about which it has no part across the body; leave it out, or write pivot = \"stream\"";
             return Err(values.wrong("buoyancy", problem));
         }
+        if pivot == Pivot::Upright && values.is_stated("stills") {
+            let problem = "stands with an upright pivot, about which the net buoyancy has no part across the body: still runs show nothing there";
+            return Err(values.wrong("stills", problem));
+        }
         Ok(())
+    }
+
+    fn check_plan(values: &Values) -> Result<(), RecordError> {
+        keys::check_plan(values)
+    }
+
+    fn zeroed(values: &Values) -> Result<Option<Zeroed>, RecordError> {
+        let Some(stills) = values.table("stills") else { return Ok(None) };
+        if !stills.need("zeroed", stills.word("zeroed", &[true, false]))? {
+            let problem = "hides what its run would show, −B sin φ: hold the body at each angle again with the cell zeroed once, or leave the still runs out";
+            return Err(stills.wrong("zeroed", problem));
+        }
+        Ok(Some(Zeroed { drift: stills.number("drift").unwrap_or(0.0) }))
     }
 
     fn read(declared: &Declared<'_>, law: Option<&str>) -> Result<Vec<Self>, MethodError> {
@@ -379,7 +401,7 @@ fn sloshing(fitted: &Fitted<'_, Oscillation>) -> Option<Finding> {
 
 fn stream(role: Role, flow: Option<f64>) -> Result<f64, String> {
     let what = "the speed of the stream is not declared; write [conditions] flow = \"0.2 m/s\" in its sidecar (\"0 m/s\" in water at rest)";
-    flow.or((role == Role::DryAir).then_some(0.0)).ok_or_else(|| what.to_owned())
+    flow.or((role != Role::Test).then_some(0.0)).ok_or_else(|| what.to_owned())
 }
 
 fn unit_of(channel: &str) -> &'static str {

@@ -57,14 +57,14 @@ pub(crate) fn intervals(expected: &[Expected], law: &str) -> ResultTable {
     ])
 }
 
-/// A plan; its tables are the run matrix and the intervals to expect.
+/// A plan; its tables are the run matrix, what a method adds, and the intervals to expect.
 pub(crate) fn prospect(
     source: &Source,
     (runs, duration_s): (usize, f64),
-    tables: [ResultTable; 2],
+    tables: impl IntoIterator<Item = ResultTable>,
     said: Vec<String>,
 ) -> Prospect {
-    let blocks = tables.map(Block::from).into_iter().chain([Block::words(said)]);
+    let blocks = tables.into_iter().map(Block::from).chain([Block::words(said)]);
     let section = Section::new(format!("Plan of {}", source.name), blocks);
     Prospect { source: source.name.clone(), runs, duration_s, section }
 }

@@ -12,7 +12,7 @@ use super::run::Run;
 use super::setup::Setup;
 use super::spec::{Enters, Factor, Point};
 use crate::error::TankError;
-use crate::joint::{self, Equation, Input, JointFit, Problem, Terms};
+use crate::joint::{self, Equation, Input, JointFit, Known, Problem, Terms};
 use crate::motion::{Logged, Motion, Sampled, motion};
 
 /// The motion of every run, without the cycles that a mark touches; `sampled` belongs to `runs`, one each, and is empty where nothing is known of the samples.
@@ -123,7 +123,8 @@ pub(super) fn problem<'a, M: MotorDriven>(
         let index = names.len();
         names.push((name.to_owned(), unit.to_owned()));
         start.push(known.map_or(0.0, |(_, known)| known.value));
-        priors.extend(known.map(|(of, known)| (of.to_owned(), ls::Prior::new(index, known.value, known.standard))));
+        let prior = |known: Uncertain| ls::Prior::new(index, known.value, known.standard);
+        priors.extend(known.map(|(of, known)| Known::declared(of.to_owned(), prior(known))));
         index
     };
     let (mut bounded, mut varying) = (Vec::new(), Vec::<Vec<usize>>::new());
@@ -163,7 +164,14 @@ pub(super) fn problem<'a, M: MotorDriven>(
         let matters = constants[*k].is_none() && constant.matters(points.iter().copied());
         matters.then(|| (*k, Input { name: constant.name.clone(), declared, enters }))
     };
-    let (errs, inputs) = (0..constants.len()).filter_map(|k| input(&k)).unzip();
+    let (errs, inputs): (Vec<usize>, _) = (0..constants.len()).filter_map(|k| input(&k)).unzip();
+    let place = |constant: usize| errs.iter().position(|k| *k == constant);
+    priors.extend(setup.slopes.iter().filter_map(|slope| {
+        let known = ls::Prior::new(constants[slope.constant]?, slope.value, slope.standard());
+        let moves = slope.moves.iter().filter_map(|(constant, by)| Some((place(*constant)?, *by)));
+        let name = format!("{} from still runs", setup.constants[slope.constant].name);
+        Some(Known { name, prior: known, dof: slope.dof, moves: moves.collect() })
+    }));
     Ok(Problem {
         law: setup.method.law().to_owned(),
         runs: views(runs, motions),

@@ -13,6 +13,7 @@ use super::derived::Sum;
 use super::fitted::Fitted;
 use super::setup::Setup;
 use super::spec::{Coefficient, Constant, Number, Point, Spec, Terms};
+use super::stills::Zeroed;
 use crate::error::TankError;
 use crate::joint::forecast::Forecast;
 
@@ -41,6 +42,24 @@ pub trait MotorDriven: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// The first contradiction, with its place.
     fn check(_: &Values) -> Result<(), RecordError> {
         Ok(())
+    }
+
+    /// Checks the keys of a block of the plan against each other.
+    ///
+    /// # Errors
+    ///
+    /// The first contradiction, with its place.
+    fn check_plan(_: &Values) -> Result<(), RecordError> {
+        Ok(())
+    }
+
+    /// How the cell was zeroed for still runs; `None` where that is not declared, or the method uses none.
+    ///
+    /// # Errors
+    ///
+    /// A cell that was zeroed for each run.
+    fn zeroed(_: &Values) -> Result<Option<Zeroed>, RecordError> {
+        Ok(None)
     }
 
     /// One method for each requested law, or for `law` alone if it is given.

@@ -7,10 +7,11 @@ use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::run::Role;
 
-use super::forecast::{Forecast, forecast, sensors_of};
+use super::forecast::{Forecast, forecast, sensors_of, still};
 use super::matrix::Planned;
 use super::method::MotorDriven;
 use super::spec::{Number, Point};
+use super::stills::{self, is_still};
 use super::twin::{Twin, senses};
 use crate::plan;
 use crate::sensors::seed_and_sensors;
@@ -47,17 +48,39 @@ pub fn prospect<M: MotorDriven>(campaign: &Campaign, source: &Source) -> Result<
     paragraphs.extend(twin.setup.method.about_plan(&found, rates));
     let law = twin.setup.method.law();
     let law = if law == M::SPEC.law { String::new() } else { format!(", with the law {law} of [simulate]") };
-    let tables = [matrix(&twin, &found), plan::intervals(&found.expected, &law)];
+    let mut setup = twin.setup.clone();
+    setup.slopes = still(&twin, sensors).map_err(MethodError::refused)?;
+    let (stills, setup) = (twin.planned.iter().filter(|run| is_still(&run.point)).collect::<Vec<_>>(), &setup);
+    let of_stills = || [held::<M>(&stills), stills::page::found(setup)];
+    let tables = [matrix(&twin, &found)];
+    let tables = tables.into_iter().chain((!stills.is_empty()).then(of_stills).into_iter().flatten());
+    let tables = tables.chain([plan::intervals(&found.expected, &law)]);
     Ok(plan::prospect(source, (twin.planned.len(), duration_s), tables, paragraphs))
+}
+
+/// The still runs.
+fn held<M: MotorDriven>(runs: &[&Planned]) -> ResultTable {
+    let motion = M::SPEC.motion;
+    let t = TableBuilder::new("stills", "Still runs.", runs);
+    t.build(vec![
+        t.text("run", "run", |run| run.id.clone()),
+        t.text("configuration", "configuration", |run| run.point.configuration.clone()),
+        t.number(&format!("{}_{}", motion.name, motion.unit), &format!("{} [{}]", motion.name, motion.shown), |run| {
+            run.swing.middle
+        })
+        .plain(4),
+        t.number("duration_s", "duration [s]", |run| run.swing.duration_s()).places(1),
+    ])
 }
 
 fn matrix<M: MotorDriven>(twin: &Twin<M>, found: &Forecast) -> ResultTable {
     let motion = M::SPEC.motion;
-    let points: Vec<&Point> = twin.planned.iter().map(|run| &run.point).collect();
+    let moved: Vec<&Planned> = twin.planned.iter().filter(|run| !is_still(&run.point)).collect();
+    let points: Vec<&Point> = moved.iter().map(|run| &run.point).collect();
     let numbers =
         |run: &Planned| twin.setup.method.numbers(&run.point, &twin.setup, run.swing.amplitude, run.swing.omega_rad_s);
     let rows: Vec<(&Planned, Vec<Number>, usize)> =
-        twin.planned.iter().zip(&found.cycles).map(|(run, cycles)| (run, numbers(run), *cycles)).collect();
+        moved.into_iter().zip(&found.cycles).map(|(run, cycles)| (run, numbers(run), *cycles)).collect();
     let t = TableBuilder::new("matrix", "Run matrix.", &rows);
     let (key, head) = (format!("amplitude_{}", motion.unit), format!("amplitude [{}]", motion.shown));
     let mut columns = vec![t.text("run", "run", |(run, ..)| run.id.clone())];

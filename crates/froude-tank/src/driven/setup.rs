@@ -3,6 +3,7 @@
 use froude_fit::budget::Uncertain;
 
 use super::spec::{Constant, Enters, Point};
+use super::stills::{Slope, Zeroed};
 use crate::error::TankError;
 use crate::motion::Cycles;
 
@@ -17,6 +18,10 @@ pub struct Setup<M> {
     pub cycles: Cycles,
     /// Harmonics of the motion.
     pub harmonics: usize,
+    /// How the cell was zeroed for still runs, where that is declared.
+    pub zeroed: Option<Zeroed>,
+    /// What still runs showed of the constants.
+    pub slopes: Vec<Slope>,
 }
 
 impl<M> Setup<M> {

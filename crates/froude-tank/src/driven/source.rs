@@ -6,6 +6,7 @@ use froude_identify::method::{Declares, Found, MethodError, Need};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::significant;
+use froude_records::run::Role;
 use indexmap::IndexMap;
 
 use super::derived::{Derived, derived};
@@ -17,7 +18,7 @@ use super::read::{check, setups};
 use super::run::Run;
 use super::setup::Setup;
 use super::spec::{Channel, Constant, Enters, Point};
-use super::{page, plan, record, twin};
+use super::{page, plan, record, stills, twin};
 use crate::findings::warning;
 use crate::joint::JointFit;
 use crate::joint::findings::{contradicted, few_runs, misfit, of_motion, undetermined};
@@ -69,6 +70,12 @@ pub(crate) fn identified<M: MotorDriven>(
         logs::one_body(&logs)?;
     }
     let mut setups = setups::<M>(campaign, source, &logs::configurations(&logs), None)?;
+    let (still, logs): (Vec<TankLog>, Vec<TankLog>) =
+        logs.into_iter().partition(|log| log.log.meta.role == Role::Still);
+    let at_rest = still.iter().map(run::<M>).collect::<Result<Vec<_>, _>>()?;
+    for setup in &mut setups {
+        setup.slopes = stills::shown(&at_rest, setup).map_err(MethodError::refused)?;
+    }
     let stamps = |log, load: &Channel| logs::stamps_standard_s(log, [spec.motion.name, load.name]);
     let of_log = |log| spec.loads.iter().map(move |load| stamps(log, load)).fold(0.0, f64::max);
     let clocks_s = logs.iter().map(of_log).fold(0.0, f64::max);
@@ -129,6 +136,7 @@ pub(crate) fn identified<M: MotorDriven>(
     let chosen = record::chosen(&fits);
     let each = runs.iter().zip(&motions);
     findings.extend(each.flat_map(|(run, motion)| of_motion(run.id, motion, &spec.motion, cycles, harmonics)));
+    findings.extend(stills::page::findings(fitted[0].setup));
     findings.extend(fitted[0].setup.method.about_runs(&fitted[0]));
     findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
     let of_fits: Vec<Finding> = fitted.iter().flat_map(of_fit).collect();
@@ -175,7 +183,12 @@ pub fn of_fit<M: MotorDriven>(fitted: &Fitted<'_, M>) -> Vec<Finding> {
     }
     out.extend(undetermined(fit, spec.undetermined));
     let known = |c: &Constant| Some((c.unknown.as_ref()?.name.clone(), c.known?));
-    let declared: Vec<(String, Uncertain)> = setup.constants.iter().filter_map(known).collect();
+    let declared = setup.constants.iter().filter_map(known);
+    let still = setup.slopes.iter().filter_map(|slope| {
+        let unknown = setup.constants[slope.constant].unknown.as_ref()?;
+        Some((unknown.name.clone(), Uncertain::new(slope.value, slope.standard())))
+    });
+    let declared: Vec<(String, Uncertain)> = declared.chain(still).collect();
     let check = format!("signs and clocks of {} and {}", spec.motion.name, spec.loads[0].name);
     out.extend(contradicted(fit, &declared, &check));
     out.extend(setup.method.about_fit(fitted));

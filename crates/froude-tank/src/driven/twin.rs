@@ -17,6 +17,7 @@ use super::read::setups;
 use super::run::Run;
 use super::setup::Setup;
 use super::spec::{Channel, Condition, Constant, Enters, Factor, Point};
+use super::stills::is_still;
 use crate::error::{TankError, undeclared};
 use crate::matrix::of_configurations;
 use crate::sensors::{Senses, of_sensor, seed_and_sensors};
@@ -146,8 +147,16 @@ impl<M: MotorDriven> Twin<M> {
         }
         let loads = M::SPEC.loads;
         let read = |channel: &Channel, zero, gain| of_sensor(channel.sensor(sensors), zero, gain);
-        let zeros: Vec<Vec<f64>> =
+        let mut zeros: Vec<Vec<f64>> =
             self.planned.iter().map(|_| loads.iter().map(|load| load.zero * draws.normal()).collect()).collect();
+        // Still runs have one zero, but for its drift.
+        if let Some(first) = self.planned.iter().position(|run| is_still(&run.point)) {
+            let (common, drift) = (zeros[first].clone(), self.setup.zeroed.map_or(0.0, |zeroed| zeroed.drift));
+            for i in (0..zeros.len()).filter(|i| is_still(&self.planned[*i].point)) {
+                zeros[i].clone_from(&common);
+                zeros[i].iter_mut().take(1).for_each(|zero| *zero += drift * draws.normal());
+            }
+        }
         let gain = |enters: Enters| self.setup.enters(|e| e == enters).map_or(1.0, |k| constants[k]);
         let delay_s = self.setup.enters(|e| e == Enters::Delay).map_or(0.0, |k| constants[k]);
         let one = |(i, run): (usize, &Planned)| {

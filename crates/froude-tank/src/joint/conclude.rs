@@ -21,7 +21,7 @@ use froude_fit::propagate::effective_dof;
 use froude_fit::{self as ls, Status};
 
 use super::solve::{Solved, values};
-use super::{DeclaredError, Equation, JointFit, Problem, Unknown, part};
+use super::{DeclaredError, Equation, JointFit, Known, Problem, Unknown, part};
 use crate::between_runs::{BetweenRuns, between_runs};
 use crate::error::TankError;
 use crate::inverted::inverted;
@@ -34,18 +34,31 @@ impl<E: Equation> Problem<'_, E> {
         let fit = self.least_squares(&condensed, effective, false, &beta, None).map_err(|e| self.refused(e))?;
         let p = self.names.len();
         let mut errors = Vec::new();
-        for (k, (name, prior)) in self.known().into_iter().enumerate() {
+        let known = self.known();
+        for (k, Known { name, prior, dof, .. }) in known.iter().enumerate() {
             let moved =
                 self.least_squares(&condensed, effective, false, &beta, Some(k)).map_err(|e| self.refused(e))?;
             let (there, here) = (unbounded(&moved), unbounded(&fit));
             let sensitivity = (0..p).map(|j| (there[j] - here[j]) / prior.standard).collect();
-            errors.push(DeclaredError { name, standard: prior.standard, dof: f64::INFINITY, value: None, sensitivity });
+            errors.push(DeclaredError {
+                name: name.clone(),
+                standard: prior.standard,
+                dof: *dof,
+                value: None,
+                sensitivity,
+            });
         }
         let of_priors = errors.len();
-        for (input, column) in self.inputs.iter().zip(&condensed.errors) {
+        for (k, (input, column)) in self.inputs.iter().zip(&condensed.errors).enumerate() {
             let standard = input.declared.standard;
             let moved = |j: usize| column.iter().enumerate().map(|(i, e)| fit.sensitivity()[(j, i)] * e).sum::<f64>();
-            let sensitivity = (0..p).map(|j| moved(j) / standard).collect();
+            // What still runs found with it moves, too.
+            let by_prior = |j: usize| {
+                let each = known.iter().zip(&errors[..of_priors]);
+                let of = |(known, error): (&Known, &DeclaredError)| known.moved_by(k) * error.sensitivity[j];
+                each.map(of).sum::<f64>()
+            };
+            let sensitivity = (0..p).map(|j| moved(j) / standard + by_prior(j)).collect();
             let dof = input.declared.dof;
             errors.push(DeclaredError { name: input.name.clone(), standard, dof, value: None, sensitivity });
         }
@@ -115,7 +128,7 @@ impl<E: Equation> Problem<'_, E> {
         let left: Vec<f64> = (0..n).map(|i| problem.response[i] - sum(i, &all)).collect();
         // Held coefficients explain no part of a load, and priors pull towards zero.
         let held = self.held().into_iter().map(|(j, _)| j);
-        let about_zero = |(_, prior): (String, ls::Prior)| ls::Prior { value: 0.0, ..prior };
+        let about_zero = |known: Known| ls::Prior { value: 0.0, ..known.prior };
         let options = ls::Options {
             excluded: self.excluded().into_iter().chain(held).collect(),
             priors: self.known().into_iter().map(about_zero).collect(),
@@ -157,8 +170,8 @@ impl<E: Equation> Problem<'_, E> {
         }
         let variance = fit.components.first()?.sigma?.powi(2);
         let priors = self.known();
-        let prior =
-            |j: &usize| priors.iter().filter(|(_, p)| p.index == *j).map(|(_, p)| variance / p.standard.powi(2)).sum();
+        let of = |j: usize| priors.iter().map(|known| &known.prior).filter(move |prior| prior.index == j);
+        let prior = |j: &usize| of(*j).map(|prior| variance / prior.standard.powi(2)).sum();
         let found = at_equal_errors(&grams, &free.iter().map(prior).collect::<Vec<f64>>(), named)?;
         // What is held has no scatter, what is not determined no interval.
         let none = AtEqualErrors { ratio: 1.0, dof: f64::INFINITY };

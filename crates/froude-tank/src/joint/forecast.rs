@@ -18,7 +18,7 @@ use froude_fit::jackknife::{AtEqualErrors, at_equal_errors};
 use froude_records::campaign::SensorSpec;
 
 use super::solve::over_first;
-use super::{Equation, Problem, part};
+use super::{Equation, Known, Problem, part};
 use crate::error::TankError;
 use crate::inverted::inverted;
 use crate::noise::correlated;
@@ -111,12 +111,10 @@ pub(crate) fn forecast<E: Equation>(
     // As the fit weighs them; without noise nothing is left to weigh against what is declared.
     let variance = (0..zeros).map(|k| (weights[k] * sigmas[k]).powi(2) * taus[k]).fold(NO_NOISE, f64::max);
     let mut priors = problem.known();
-    for (_, prior) in &mut priors {
+    let mut whole = Mat::from_fn(p, p, |i, j| gram[(i, j)] / variance);
+    for Known { prior, .. } in &mut priors {
         // What is held is no prior any more, so that each stands among the free.
         prior.index = free.iter().position(|j| *j == prior.index).unwrap_or(0);
-    }
-    let mut whole = Mat::from_fn(p, p, |i, j| gram[(i, j)] / variance);
-    for (_, prior) in &priors {
         whole[(prior.index, prior.index)] += prior.standard.powi(-2);
     }
     let Some(inverse) = inverted(&whole) else { return Ok(None) };
@@ -126,9 +124,8 @@ pub(crate) fn forecast<E: Equation>(
     let spread =
         |small: Mat<f64>| Mat::from_fn(n, n, |i, j| place(i).zip(place(j)).map_or(0.0, |(i, j)| small[(i, j)]));
     let scatter = &inverse * Mat::from_fn(p, p, |i, j| noise[(i, j)] / (variance * variance)) * &inverse;
-    let weighed =
-        |i: usize| priors.iter().filter(|(_, p)| p.index == i).map(|(_, p)| variance / p.standard.powi(2)).sum::<f64>();
-    let weight: Vec<f64> = (0..p).map(weighed).collect();
+    let of = |i: usize| priors.iter().map(|known| &known.prior).filter(move |prior| prior.index == i);
+    let weight: Vec<f64> = (0..p).map(|i| of(i).map(|p| variance / p.standard.powi(2)).sum()).collect();
     let by_run = (problem.runs.len() >= FEWEST_CLUSTERS).then(|| of_runs(&cycles, p));
     let (clusters, at_equal) = match by_run.and_then(|runs| Some((runs.len(), at_equal_errors(&runs, &weight, p)?))) {
         Some((count, found)) => (count, Some(found)),
@@ -139,12 +136,16 @@ pub(crate) fn forecast<E: Equation>(
     let dof = |j: usize| at_equal.as_ref().zip(place(j)).map_or(equal, |(found, i)| found[i].dof);
     let scatter = Part { dof: (0..n).map(dof).collect(), ..part("scatter", Kind::A, spread(scatter), equal) };
     let mut parts = vec![scatter];
-    for (name, prior) in &priors {
+    for Known { name, prior, dof, .. } in &priors {
         let by = |i: usize| inverse[(i, prior.index)] / prior.standard;
-        parts.push(part(name, Kind::B, spread(Mat::from_fn(p, p, |i, j| by(i) * by(j))), f64::INFINITY));
+        parts.push(part(name, Kind::B, spread(Mat::from_fn(p, p, |i, j| by(i) * by(j))), *dof));
     }
-    let moved = &inverse * Mat::from_fn(p, q, |i, k| errors[(i, k)] / variance);
+    let mut moved = &inverse * Mat::from_fn(p, q, |i, k| errors[(i, k)] / variance);
     for (k, input) in problem.inputs.iter().enumerate() {
+        for known in &priors {
+            let by = known.moved_by(k) * input.declared.standard / known.prior.standard.powi(2);
+            (0..p).for_each(|i| moved[(i, k)] += inverse[(i, known.prior.index)] * by);
+        }
         let covariance = Mat::from_fn(p, p, |i, j| moved[(i, k)] * moved[(j, k)]);
         parts.push(part(&input.name, Kind::B, spread(covariance), input.declared.dof));
     }

@@ -124,7 +124,7 @@ impl<E: Equation> Problem<'_, E> {
     fn options(&self, effective: f64, held: Option<(usize, f64)>) -> ls::Options {
         let bounds: Vec<ls::Bound> = (0..self.names.len()).map(|j| self.bound(j)).collect();
         let held_delay = held.map(|(j, _)| j);
-        let priors = self.known().into_iter().map(|(_, prior)| prior).filter(|p| Some(p.index) != held_delay);
+        let priors = self.known().into_iter().map(|known| known.prior).filter(|p| Some(p.index) != held_delay);
         ls::Options {
             bounds: if bounds.iter().all(|b| *b == ls::Bound::FREE) { Vec::new() } else { bounds },
             priors: priors.collect(),

@@ -8,6 +8,7 @@
 //! buoyancy = { value = "3.0 N", standard = "0.02 N" }        # leave out what is to be found
 //! delay    = { value = "0 ms", standard = "5 ms" }           # of the force behind the angle; leave out what is to be found
 //! cycles   = { skip = 1, used = 5, fewest = 5 }
+//! stills   = { zeroed = "once", drift = "5 mN" }             # of the still runs, where there are some
 //!
 //! [[source.plan]]
 //! configurations = ["H1LT", "H2LT"]
@@ -15,10 +16,17 @@
 //! frequency      = ["60 deg/s", "70 deg/s", "80 deg/s"]      # Hz is a frequency, deg/s and rad/s are angular ones
 //! flow           = "0.2 m/s"
 //! periods        = 7
+//!
+//! [[source.plan]]
+//! configurations = ["H1LT", "H2LT"]
+//! medium         = "still"                                   # held fast in water, at these angles
+//! angle          = ["-20 deg", "-10 deg", "10 deg", "20 deg"]
+//! hold           = "60 s"
 //! ```
 
 use froude_hydro::swing::Pivot;
-use froude_identify::declare::{Key, Kind, Range, optional, required, usual};
+use froude_identify::declare::{IfMissing, Key, Kind, Range, Values, optional, required, usual};
+use froude_records::RecordError;
 use froude_records::units::Dimension;
 
 use crate::declared::{CYCLES, FREQUENCY, HARMONICS, PERIODS, RATE, REPEATS, STILL, amplitude};
@@ -55,7 +63,23 @@ pub const KEYS: &[Key] = &[
     ),
     CYCLES,
     HARMONICS,
+    optional(
+        "stills",
+        Kind::Table(&[
+            required("zeroed", Kind::Word(&ZEROED), "write zeroed = \"once\" if the load cell was zeroed once, before the first still run of all", "how the cell was zeroed"),
+            usual("drift", Kind::Quantity(Dimension::FORCE), "0 N", "standard deviation of what the zero drifts by from one still run to the next")
+                .within(Range::NotNegative("a standard deviation is not")),
+        ]),
+        "no still runs",
+        "how the load cell was zeroed for the still runs. `zeroed`: `once` for all of them, or `each run`, which is refused because each zero then hides what its run would show; `drift`: standard deviation of what the zero drifts by from one still run to the next",
+    ),
 ];
+
+/// How a load cell may have been zeroed for still runs.
+pub(super) const ZEROED: [&str; 2] = ["once", "each run"];
+
+/// Instead of what runs in motion have.
+const MOVES: IfMissing = IfMissing::Nothing("only of runs in motion, which must have it");
 
 /// The keys of a block of a plan.
 pub const PLAN: &[Key] = &[
@@ -65,12 +89,47 @@ pub const PLAN: &[Key] = &[
         "one unnamed body",
         "names of the configurations, as in `mass` and `buoyancy`",
     ),
-    usual("medium", Kind::Word(&["water", "air"]), "water", "`water`, or `air`, which determines only mass and delay"),
+    usual(
+        "medium",
+        Kind::Word(&["water", "air", "still"]),
+        "water",
+        "`water`; `air`, which determines only mass and delay; or `still`, held fast in water, which determines the net buoyancy",
+    ),
     usual("flow", Kind::Axis(Dimension::SPEED), "0 m/s", "speed of the stream"),
-    amplitude(Dimension::ANGLE, "write \"10 deg\", a list, or { start, stop, step }", "amplitude of the angle"),
-    FREQUENCY,
+    Key { default: MOVES, ..amplitude(Dimension::ANGLE, "", "amplitude of the angle") },
+    Key { default: MOVES, ..FREQUENCY },
+    optional(
+        "angle",
+        Kind::Axis(Dimension::ANGLE),
+        "only with medium = \"still\"",
+        "angles at which the body is held fast",
+    ),
+    usual("hold", Kind::Quantity(Dimension::TIME), "60 s", "length of a still run").within(Range::Positive),
     PERIODS,
     STILL,
     RATE,
     REPEATS,
 ];
+
+/// Refuses a block of a plan that mixes runs at rest with runs in motion.
+pub(super) fn check_plan(values: &Values) -> Result<(), RecordError> {
+    let is_still = values.word("medium", &[false, false, true]).unwrap_or(false);
+    let (moved, still): (&[(&str, &str)], _) =
+        (&[("amplitude", "10 deg"), ("frequency", "70 deg/s")], ("angle", "-10 deg"));
+    if is_still {
+        if let Some((key, _)) = moved.iter().find(|(key, _)| values.is_stated(key)) {
+            return Err(values.wrong(key, "stands with medium = \"still\", where nothing moves; leave it out, or give the runs in motion a [[source.plan]] of their own"));
+        }
+        if values.numbers(still.0).is_empty() {
+            return Err(values.missing(still.0, "write the angles at which the body is held fast, on both sides: angle = [\"-20 deg\", \"-10 deg\", \"10 deg\", \"20 deg\"]"));
+        }
+        return Ok(());
+    }
+    if let Some((key, write)) = moved.iter().find(|(key, _)| values.numbers(key).is_empty()) {
+        return Err(values.missing(key, &format!("write {key} = \"{write}\", a list, or {{ start, stop, step }}")));
+    }
+    if values.is_stated(still.0) {
+        return Err(values.wrong(still.0, "is where the body is held fast: write medium = \"still\", or leave it out"));
+    }
+    Ok(())
+}

@@ -3,12 +3,14 @@
 use froude_fit::coverage::Count;
 use froude_records::campaign::{Identify, SensorSpec};
 use froude_records::finding::{Finding, Severity};
+use froude_records::run::Role;
 use froude_tank::driven::fit::{fit, motions};
 use froude_tank::driven::fitted::Fitted;
-use froude_tank::driven::forecast::forecast;
+use froude_tank::driven::forecast::{forecast, still};
 use froude_tank::driven::lag::undeclared;
 use froude_tank::driven::run::Run;
 use froude_tank::driven::setup::Setup;
+use froude_tank::driven::stills::{Slope, shown};
 use froude_tank::driven::twin::{Simulated, Twin};
 use froude_tank::joint::JointFit;
 use froude_tank::oscillation::Oscillation;
@@ -326,4 +328,142 @@ fn a_lag_that_is_not_there_is_hardly_ever_reported() {
     let alarms = alarms.count();
     println!("{alarms} of 100");
     assert!(alarms <= 2, "{alarms} of 100");
+}
+
+/// Still runs of each configuration at four angles, and nothing known of the buoyancy.
+const STILLS: [(&str, &str); 2] = [
+    ("buoyancy = { value = \"3.0 N\", standard = \"0.02 N\" }", "stills = { zeroed = \"once\" }"),
+    (
+        "\n[simulate]",
+        "\n[[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nmedium = \"still\"\nangle = [\"-20 deg\", \"-10 deg\", \"10 deg\", \"20 deg\"]\nhold = \"60 s\"\n\n[simulate]",
+    ),
+];
+
+/// What the still runs of a twin show.
+fn from_stills(twin: &Twin<Oscillation>, logged: &[Simulated]) -> Vec<Slope> {
+    let runs: Vec<Run<'_>> = views(logged).into_iter().filter(|run| run.point.role == Role::Still).collect();
+    shown(&runs, &twin.setup).unwrap()
+}
+
+/// Σ sin² of 10 and 20 degrees on both sides is 0.294; a mean of 60 s of noise of 0.02 N that lasts 0.5 s has 0.02/√60 N. In motion alone B is known to 13 and
+/// 23 mN, and C_A to 2.4 % (95 %): figures computed beforehand.
+#[test]
+fn a_plan_states_what_still_runs_add() {
+    let noise = noise(0.02, Some(0.5));
+    let [with, without] = [&STILLS[..], &STILLS[..0]].map(|still| {
+        let free = if still.is_empty() { vec![EXACT[3]] } else { still.to_vec() };
+        let used = ("standard = \"5 ms\" }", "standard = \"5 ms\" }\ncycles = { skip = 1, used = 5 }");
+        let twin = twin(&[&free[..], &[used]].concat());
+        (forecast(&twin, &twin.setup, &noise, &Identify::default()).unwrap(), twin)
+    });
+    let of = |plan: &froude_tank::driven::forecast::Forecast, name: &str| {
+        plan.expected.iter().find(|e| e.name == name).unwrap().combined
+    };
+    for slope in still(&with.1, &noise).unwrap() {
+        assert!(
+            (slope.value - 3.0).abs() < 1e-9
+                && (slope.noise / (0.02 / 60.0_f64.sqrt() / 0.294_f64.sqrt()) - 1.0).abs() < 2e-3
+        );
+    }
+    let alone = ["B_buoyancy_H1LT", "B_buoyancy_H2LT"].map(|name| of(&without.0, name).standard);
+    assert!((alone[0] - 0.013).abs() < 5e-4 && (alone[1] - 0.023).abs() < 1e-3, "{alone:?}");
+    let relative = |plan| of(plan, "C_A").arms[1] / C_A;
+    let [with, without] = [relative(&with.0), relative(&without.0)];
+    assert!((without - 0.024).abs() < 1e-3 && (with - 0.011).abs() < 1e-3, "{without} {with}");
+}
+
+/// Angle and force that show too much move B as the derivatives say: by its own size, and by φ cos φ over sin φ.
+#[test]
+fn gains_move_the_buoyancy_of_still_runs_as_they_say() {
+    let twin = twin(&STILLS);
+    let logged = logged(&twin, &noise(0.02, None), 3);
+    let here = from_stills(&twin, &logged);
+    let by = |slope: &Slope, name: &str| {
+        let named = |(k, _): &&(usize, f64)| twin.setup.constants[*k].name == name;
+        slope.moves.iter().find(named).unwrap().1
+    };
+    let e = 1e-4;
+    for (name, of_angle, of_force) in [("gain of the angle", e, 0.0), ("gain of the force", 0.0, e)] {
+        let mut moved = logged.clone();
+        for run in &mut moved {
+            run.trace.motion.iter_mut().for_each(|x| *x *= 1.0 + of_angle);
+            run.trace.loads[0].iter_mut().for_each(|x| *x *= 1.0 + of_force);
+        }
+        for (there, here) in from_stills(&twin, &moved).iter().zip(&here) {
+            let found = (there.value - here.value) / e;
+            assert!((found / by(here, name) - 1.0).abs() < 2e-3, "{name}: {found} {}", by(here, name));
+        }
+    }
+}
+
+/// Noise, drift of the zero, and gains of angle and force are drawn; all are independent of the runs in motion. 95 %, less three deviations of so many campaigns.
+#[test]
+fn intervals_of_the_buoyancy_from_still_runs_hold_it() {
+    let seeds: u64 = std::env::var("FROUDE_SEEDS").ok().and_then(|n| n.parse().ok()).unwrap_or(400);
+    let drift = ("zeroed = \"once\"", "zeroed = \"once\", drift = \"3 mN\"");
+    let short = ("hold = \"60 s\"", "hold = \"30 s\"\nrate = \"50 Hz\"");
+    let mut twin = twin(&[&STILLS[..], &[drift, short]].concat());
+    twin.planned.retain(|run| run.point.role == Role::Still);
+    let gains = [("gain of the angle", 0.005), ("gain of the force", 0.002)];
+    for (name, standard) in gains {
+        let of = twin.setup.constants.iter_mut().find(|c| c.name == name).unwrap();
+        of.known.as_mut().unwrap().standard = standard;
+    }
+    let noise = noise(0.02, Some(0.5));
+    let held = |seed: u64| {
+        let logged = twin.simulated(&noise, 1 + seed).unwrap();
+        from_stills(&twin, &logged)
+            .iter()
+            .map(|slope| {
+                let gain = |(k, by): &(usize, f64)| by * twin.setup.constants[*k].known.unwrap().standard;
+                let variance = slope.standard().powi(2) + slope.moves.iter().map(|m| gain(m).powi(2)).sum::<f64>();
+                // The degrees of freedom of the noise exceed a hundred.
+                (slope.value - 3.0).abs() <= 1.98 * variance.sqrt()
+            })
+            .collect::<Vec<_>>()
+    };
+    let all: Vec<Vec<bool>> = (0..seeds).into_par_iter().map(held).collect();
+    for k in 0..2 {
+        let mut count = Count::default();
+        for held in &all {
+            count.add(held[k]);
+        }
+        println!("{:.2} % of {seeds}", 100.0 * count.rate());
+        assert!(count.z_score(0.95).abs() < 3.3, "{:.2} % of {seeds}", 100.0 * count.rate());
+    }
+}
+
+/// One position and its zero are two unknowns of one number; a swing is no still run; nothing is known of a cell of which nobody says how it was zeroed.
+#[test]
+fn still_runs_that_determine_nothing_are_refused() {
+    let message = |changes: &[(&str, &str)], cut: fn(&mut Vec<Simulated>)| {
+        let twin = twin(&[&STILLS[..], changes].concat());
+        let mut logged = logged(&twin, &noise(0.02, Some(0.1)), 3);
+        cut(&mut logged);
+        let runs: Vec<Run<'_>> = views(&logged).into_iter().filter(|run| run.point.role == Role::Still).collect();
+        shown(&runs, &twin.setup).unwrap_err().to_string()
+    };
+    let one = ("angle = [\"-20 deg\", \"-10 deg\", \"10 deg\", \"20 deg\"]", "angle = \"10 deg\"");
+    assert_eq!(
+        message(&[one], |_| ()),
+        "the still runs \"019\" stand at one position: the zero of the load cell is unknown, so two positions at least are needed, better one on each side"
+    );
+    assert_eq!(
+        message(&[("stills = { zeroed = \"once\" }", "")], |_| ()),
+        "8 still runs are there, and nobody says how the load cell was zeroed for them: write stills = { zeroed = \"once\" } in [source.forced_oscillation] if it was zeroed once, before the first of them"
+    );
+    let moves = message(&[], |logged| {
+        let swung = logged[0].trace.motion.clone();
+        let still = logged.iter_mut().find(|run| run.planned.point.role == Role::Still).unwrap();
+        still.trace.motion.iter_mut().zip(swung).for_each(|(x, swung)| *x += swung);
+    });
+    assert!(moves.starts_with("still run \"019\" moves: the standard deviation of its position is 0.10;"), "{moves}");
+    let short = ("hold = \"60 s\"", "hold = \"1 s\"");
+    let short = message(&[short], |_| ());
+    assert!(short.starts_with("still run \"019\" lasts 0.990 s, and its load is correlated over "), "{short}");
+    let exact = message(&[("stills =", "buoyancy = \"3 N\"\nstills =")], |_| ());
+    assert_eq!(
+        exact,
+        "buoyancy of H1LT is declared as exactly 3.000 and still runs determine it, too: leave it out, or write its standard uncertainty"
+    );
 }

@@ -12,10 +12,12 @@ use froude::methods::tank::driven::method::MotorDriven;
 use froude::methods::tank::driven::run::Run;
 use froude::methods::tank::driven::setup::Setup;
 use froude::methods::tank::driven::spec::Point;
+use froude::methods::tank::driven::stills::shown;
 use froude::methods::tank::driven::twin::{Simulated, Truth, Twin};
 use froude::methods::tank::joint::JointFit;
 use froude::records::campaign::{Campaign, Identify, SensorSpec};
 use froude::records::campaign_file::read_campaign;
+use froude::records::run::Role;
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
@@ -45,7 +47,11 @@ impl<M: MotorDriven> Case<M> {
         stated: &'static [&'static str],
         stream: u128,
     ) -> Result<Self, Box<dyn Error>> {
-        let campaign = read_campaign(&root.join("examples").join(example).join("campaign.toml"))?;
+        Self::of(&root.join("examples").join(example).join("campaign.toml"), stated, stream)
+    }
+
+    pub fn of(path: &Path, stated: &'static [&'static str], stream: u128) -> Result<Self, Box<dyn Error>> {
+        let campaign = read_campaign(path)?;
         let twin = Twin::of(&campaign, &campaign.sources[0])?;
         Ok(Self { campaign, twin, stated, stream })
     }
@@ -81,7 +87,9 @@ impl<M: MotorDriven> Case<M> {
             }
         }
         let logged = twin.simulated(sensors, 1 + seed)?;
-        let runs: Vec<Run<'_>> = logged.iter().map(Simulated::view).collect();
+        let (still, runs): (Vec<Run<'_>>, Vec<Run<'_>>) =
+            logged.iter().map(Simulated::view).partition(|run| run.point.role == Role::Still);
+        let setup = &Setup { slopes: shown(&still, setup)?, ..setup.clone() };
         let motions = motions(&runs, setup, &[])?;
         let fit = fit(&runs, &motions, setup, &Identify::default())?;
         let points: Vec<&Point> = runs.iter().map(|run| &run.point).collect();

@@ -5,22 +5,27 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use froude::fit::budget::Uncertain;
+use froude::fit::coverage::Count;
+use froude::fit::distribution::coverage_factor;
 use froude::hydro::swing::{Kinematics, Pivot};
 use froude::methods::tank::TankError;
 use froude::methods::tank::driven::fit::{fit, motions};
-use froude::methods::tank::driven::forecast::Forecast;
+use froude::methods::tank::driven::forecast::{Forecast, still};
 use froude::methods::tank::driven::matrix::Planned;
 use froude::methods::tank::driven::run::Run;
 use froude::methods::tank::driven::setup::Setup;
+use froude::methods::tank::driven::stills::{Slope, Zeroed, shown};
 use froude::methods::tank::driven::twin::{Simulated, Twin};
 use froude::methods::tank::joint::JointFit;
 use froude::methods::tank::motion::Cycles;
 use froude::methods::tank::oscillation::Oscillation;
 use froude::records::campaign::{Identify, SensorSpec};
+use froude::records::run::Role;
+use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 use crate::driven::{Case, Found};
-use crate::family::{answered, between_runs, factors};
+use crate::family::{Bar, answered, between_runs, covers, factors};
 
 const SECTION: &str = "Forced oscillation: Table 4 by its twin";
 const C_A: f64 = 1.277;
@@ -45,7 +50,100 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
     pivots(claims, &case)?;
     what_costs_what(claims, &case)?;
     delay(claims, &case)?;
-    coverage(claims, &case, seeds)
+    coverage(claims, &case, seeds)?;
+    still_runs(claims, root, seeds)
+}
+
+/// Net buoyancy from still runs: what it adds, and how often the intervals hold.
+fn still_runs(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn Error>> {
+    const SECTION: &str = "Forced oscillation: net buoyancy from still runs";
+    let path = root.join("examples/mamba-oscillation/still-runs.toml");
+    let mut case: Case<Oscillation> = Case::of(&path, &["delay"], 141)?;
+    let names = case.twin.setup.constants.iter().map(|c| c.name.starts_with("buoyancy"));
+    let truths = case.twin.truth.constants.iter_mut().zip(names);
+    truths.filter(|(_, is_stated)| !is_stated).for_each(|(truth, _)| *truth = None);
+    let mut moved = Case { twin: copy(&case.twin), campaign: case.campaign.clone(), ..case };
+    moved.twin.planned.retain(|run| run.point.role == Role::Test);
+    let plans = [&moved, &case].map(|case| case.forecast(&case.twin.setup, case.sensors()));
+    let [alone, both] = plans;
+    let (alone, both) = (alone?, both?);
+    let of = |plan: &Forecast, name: &str| plan.expected.iter().find(|e| e.name == name).map(|e| e.combined);
+    let standard = |name: &str| 1e3 * of(&alone, name).map_or(f64::NAN, |c| c.standard);
+    let in_motion = [standard("B_buoyancy_H1LT"), standard("B_buoyancy_H2LT")];
+    claims.holds(
+        SECTION,
+        "u(B) to expect from runs in motion alone, H1LT and H2LT",
+        "13 and 23 mN, computed beforehand",
+        format!("{:.1} and {:.1} mN", in_motion[0], in_motion[1]),
+        (in_motion[0] - 13.0).abs() < 0.5 && (in_motion[1] - 23.0).abs() < 0.5,
+    );
+    let noise = still(&case.twin, case.sensors())?.first().map_or(f64::NAN, |slope| 1e3 * slope.noise);
+    claims.holds(
+        SECTION,
+        "u(B) from the noise of four still runs of 60 s",
+        "4.7 mN, computed beforehand",
+        format!("{noise:.2} mN"),
+        (noise - 4.7).abs() < 0.1,
+    );
+    let percent = |plan: &Forecast| 100.0 * of(plan, "C_A").map_or(f64::NAN, |c| c.arms[1]) / C_A;
+    let widths = [percent(&alone), percent(&both)];
+    claims.holds(
+        SECTION,
+        "U95 of C_A to expect without and with them",
+        "2.4 and 1.1 %, computed beforehand",
+        format!("{:.2} and {:.2} %", widths[0], widths[1]),
+        (widths[0] - 2.4).abs() < 0.05 && (widths[1] - 1.1).abs() < 0.05,
+    );
+    case.coverage(claims, SECTION, ("0.02 N", 1.0), seeds, &[])?;
+    // The slope alone is linear in the loads: ten times as many campaigns.
+    for (name, standard) in [("gain of the angle", 0.005), ("gain of the force", 0.002)] {
+        let gains = case.twin.setup.constants.iter_mut().filter(|c| c.name == name);
+        gains.for_each(|c| c.known = Some(Uncertain::new(1.0, standard)));
+    }
+    case.twin.setup.zeroed = Some(Zeroed { drift: 3e-3 });
+    case.twin.planned.retain(|run| run.point.role == Role::Still);
+    let counts = slopes_hold(&case, 10 * seeds)?;
+    covers(
+        claims,
+        SECTION,
+        &format!(
+            "B from still runs alone, gains of 0.5 and 0.2 % and a drift of 3 mN drawn, {} campaigns: covers",
+            10 * seeds
+        ),
+        &counts,
+        (true, true),
+        Bar::Exactly,
+    );
+    Ok(())
+}
+
+fn copy(twin: &Twin<Oscillation>) -> Twin<Oscillation> {
+    Twin { setup: twin.setup.clone(), planned: twin.planned.clone(), truth: twin.truth.clone() }
+}
+
+/// How often B of each configuration, 3 N, lies in the interval of its budget.
+fn slopes_hold(case: &Case<Oscillation>, seeds: usize) -> Result<Vec<(String, Count)>, Box<dyn Error>> {
+    let twin = &case.twin;
+    let held = |seed: usize| -> Result<Vec<bool>, TankError> {
+        let logged = twin.simulated(case.sensors(), 1 + seed as u64)?;
+        let runs: Vec<Run<'_>> = logged.iter().map(Simulated::view).collect();
+        let holds = |slope: &Slope| {
+            let known = |k: usize| twin.setup.constants[k].known.map_or(0.0, |known| known.standard);
+            let gains: f64 = slope.moves.iter().map(|(k, by)| (by * known(*k)).powi(2)).sum();
+            let standard = (slope.standard().powi(2) + gains).sqrt();
+            (slope.value - 3.0).abs() <= coverage_factor(0.95, slope.dof) * standard
+        };
+        Ok(shown(&runs, &twin.setup)?.iter().map(holds).collect())
+    };
+    let all = (0..seeds).into_par_iter().map(held).collect::<Result<Vec<_>, _>>()?;
+    let of = |(k, name): (usize, &str)| {
+        let mut count = Count::default();
+        for held in &all {
+            count.add(held[k]);
+        }
+        (name.to_owned(), count)
+    };
+    Ok(["B_buoyancy_H1LT", "B_buoyancy_H2LT"].into_iter().enumerate().map(of).collect())
 }
 
 /// Everything exact, B and delay as they are declared or free.
