@@ -53,7 +53,7 @@ pub fn diagnostics(model: &ModelFit, data: &Dataset, score: &Score) -> Result<Di
         aicc: aicc(model, data).filter(|a| a.is_finite()),
         cross_validation_rmse: score.rmse.iter().filter(|(_, x)| x.is_finite()).cloned().collect(),
         cross_validation_note: score.note.clone(),
-        lack_of_fit_p: lack_of_fit(model, data),
+        lack_of_fit_p: lack_of_fit(&model.judged(), data),
         largest_power_w: if force_law {
             Some(dissipation::largest_power_w(&model.law, data, model.law_coefficients())?)
         } else {
@@ -90,11 +90,12 @@ fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f
 pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagnostics) -> Vec<Finding> {
     let name = &model.law.name;
     let mut out = Vec::new();
-    let (outlying, rows) = outlying_rows(model, data);
-    let scatter = scatter_tests::findings(model, data, &outlying);
+    let judged = model.judged();
+    let (outlying, rows) = outlying_rows(&judged, data);
+    let scatter = scatter_tests::findings(&judged, data, &outlying);
     let is_assumed = |finding: &Finding| finding.code != "uneven-scatter" || model.is_of_one_sigma();
     out.extend(scatter.iter().map(|(_, finding)| finding.clone()).filter(is_assumed));
-    out.extend(misfit::findings(model, data, d, (&scatter, &outlying)));
+    out.extend(misfit::findings(&judged, data, d, (&scatter, &outlying)));
     out.extend(decided_by_one(model, data));
     out.extend(lag::findings(campaign, model, data));
     out.extend(added_mass_sign(model, data));

@@ -516,6 +516,9 @@ fn kept(keep: &Keep, data: &Dataset, source: &Source) -> Result<Vec<usize>, Iden
                     "run" => &data.run,
                     _ => return Err(unknown()),
                 };
+                if column.iter().all(String::is_empty) {
+                    return Err(unknown());
+                }
                 rows.retain(|&i| match clause.comparison {
                     Comparison::Ne => &column[i] != wanted,
                     _ => &column[i] == wanted,

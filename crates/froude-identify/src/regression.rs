@@ -1,7 +1,7 @@
 //! One force law fitted to one source: problem, fit, combined uncertainty.
 
 mod fitted;
-mod fitted_weights;
+pub(crate) mod fitted_weights;
 mod generalised;
 mod held;
 mod job;
@@ -68,6 +68,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     }
     let in_variables = settings.identify.errors_in_variables
         && errors_in_variables(law, data, settings, &problem, &options, &mut fitted, &mut findings)?;
+    let of_rows = fitted.clone();
     let whitened = if in_variables || !options.inequalities.is_empty() {
         None
     } else {
@@ -90,6 +91,13 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     } else {
         directions(at, settings.budget, settings.shared_errors)?
     };
+    let plain = if generalised::has_one_group(data, settings.budget) && settings.condensed.is_none() {
+        let at = step(&of_rows);
+        let at = Linearised::about(law, data, &at, &of_rows);
+        Some(Box::new((of_rows.clone(), directions(at, settings.budget, settings.shared_errors)?)))
+    } else {
+        None
+    };
     let uncertainty = Uncertainty::of(law, data, settings, (&problem, &fitted), [in_variables, whitened.is_some()])?;
     let of_fit = fitted.components.iter().flat_map(|c| c.sigma.into_iter().chain([c.rss]));
     let numbers = coefficients.iter().copied().chain(of_fit).chain(uncertainty.variances()).chain(uncertainty.arms());
@@ -107,6 +115,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         options,
         fit: fitted,
         whitened,
+        plain,
         coefficients,
         combined: uncertainty.combined,
         covariance: uncertainty.covariance,

@@ -117,15 +117,9 @@ fn of_sample(model: &ModelFit, data: &Dataset) -> Vec<Residuals> {
     (0..model.law.responses.len()).map(of).collect()
 }
 
-/// Whether errors that rows of a run or a setup share are declared.
-pub(crate) fn declares_groups(model: &ModelFit) -> bool {
-    let is_group = |shared: &str| matches!(shared, "run" | "setup");
-    model.budget.iter().any(|part| part.kind.is_type_b() && !part.in_scatter && is_group(part.shared))
-}
-
-/// The same where the fit does not hold them.
+/// Whether errors of runs or setups are declared that the fit does not hold.
 fn has_declared_groups(model: &ModelFit) -> bool {
-    model.whitened.is_none() && declares_groups(model) && model.declared.ncols() == 0
+    model.whitened.is_none() && model.declares_groups() && model.declared.ncols() == 0
 }
 
 /// Residuals that are alike from one row to the next.

@@ -13,9 +13,10 @@ pub const LARGEST_M: f64 = 50.0;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "the mesh is {extent_m:.4} m long and encloses {volume_m3:.4e} m³ (doubtful above {LARGEST_M} m); drawn in millimetres it is {:.4} m \
-     and {:.4e} m³: give `--unit mm`, or `--unit m` if it is that large",
+     and {:.4e} m³, in inches {:.4} m: give `--unit mm` or `--unit in`, or `--unit m` if it is that large",
     1e-3 * extent_m,
-    1e-9 * volume_m3
+    1e-9 * volume_m3,
+    0.0254 * extent_m
 )]
 pub struct TooLarge {
     /// Largest side of the box around it, m.
@@ -82,7 +83,7 @@ mod tests {
     fn a_body_in_millimetres_is_doubted_with_both_numbers() {
         assert_eq!(too_large(&hull(5.0)), None);
         let told = "the mesh is 100.0000 m long and encloses 4.5346e3 m³ (doubtful above 50 m); drawn in millimetres it is 0.1000 m and \
-                    4.5346e-6 m³: give `--unit mm`, or `--unit m` if it is that large";
+                    4.5346e-6 m³, in inches 2.5400 m: give `--unit mm` or `--unit in`, or `--unit m` if it is that large";
         let volume_m3 = Measure::of(&hull(100.0)).volume_m3;
         let told = told
             .replace("4.5346e3", &format!("{volume_m3:.4e}"))

@@ -106,11 +106,16 @@ fn clause(text: &str) -> Result<KeepClause, KeepError> {
         Err(_) => parse_quantity(value),
     };
     let quantity = quantity.map_err(|e| {
-        let e = match expected(column) {
-            Some((dimension, _)) => e.expecting(value, dimension, &usual_unit_for(column, dimension)),
-            None => e,
-        };
-        refuse(e.to_string())
+        match expected(column) {
+            Some((dimension, _)) => {
+                refuse(e.expecting(value, dimension, &usual_unit_for(column, dimension)).to_string())
+            }
+            None if !value.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '+' | '.')) => refuse(format!(
+                "only configuration, setup and run are compared with a text; to leave out rows by another column, name them in a sidecar, leave_out = [\"131\"], \
+                 by their first cell"
+            )),
+            None => refuse(e.to_string()),
+        }
     })?;
     // Degrees and radians are both pure numbers: 39 would be 39 rad, which keeps every row.
     if matches!(column, "angle" | "std_angle") && quantity.value != 0.0 && value.parse::<f64>().is_ok() {

@@ -48,7 +48,7 @@ pub(crate) fn look(path: &Path, file: &FileWords) -> Result<(Vec<Row<'static>>, 
     let refuse = |e: froude_foreign::ForeignError| RecordError::syntax(Place::whole(path), format!("the file {e}"));
     let bytes = read::whole(path, LARGEST_BYTES, "a workbook")?;
     let mut book = Workbook::open(&bytes).map_err(refuse)?;
-    let name = chosen(path, &book, file)?;
+    let name = chosen(path, &mut book, file)?;
     let range: Option<Region> = file.range.as_deref().map(str::parse).transpose().map_err(refuse)?;
     let sheet = book.sheet(&name, range).map_err(refuse)?;
     let (rows, marks) = rows(&sheet, file);
@@ -59,20 +59,31 @@ pub(crate) fn look(path: &Path, file: &FileWords) -> Result<(Vec<Row<'static>>, 
     Ok((rows, reading))
 }
 
-/// The sheet that is declared, or the only one.
-fn chosen(path: &Path, book: &Workbook<'_>, file: &FileWords) -> Result<String, RecordError> {
+/// Sheets that a message names.
+const MOST_SHEETS: usize = 20;
+
+/// The sheet that is declared, or the only one; the message about others proposes the one with the most numbers.
+fn chosen(path: &Path, book: &mut Workbook<'_>, file: &FileWords) -> Result<String, RecordError> {
     if let Some(name) = &file.sheet {
         return Ok(name.clone());
     }
-    let shown: Vec<&str> =
-        book.sheets().iter().filter(|sheet| !sheet.is_hidden).map(|sheet| sheet.name.as_str()).collect();
+    let shown = book.sheets().iter().filter(|sheet| !sheet.is_hidden);
+    let shown: Vec<String> = shown.map(|sheet| sheet.name.clone()).collect();
     match shown.as_slice() {
-        [only] => Ok((*only).to_owned()),
+        [only] => Ok(only.clone()),
         all => {
-            let names: Vec<String> = all.iter().take(20).map(|name| format!("{name:?}")).collect();
-            let first = all.first().map_or("Sheet1", |name| name);
+            let numbers = |name: &String| {
+                let sheet = book.sheet(name, None).ok();
+                let cells = sheet.iter().flat_map(|sheet| sheet.rows.iter().flatten());
+                cells.filter(|cell| matches!(cell, Cell::Number(_) | Cell::Percent(_) | Cell::Shown(..))).count()
+            };
+            let counts: Vec<usize> = all.iter().take(MOST_SHEETS).map(numbers).collect();
+            // Of equal ones the first.
+            let most = (0..counts.len()).rev().max_by_key(|i| counts[*i]).and_then(|i| all.get(i));
+            let names: Vec<String> = all.iter().take(MOST_SHEETS).map(|name| format!("{name:?}")).collect();
+            let most = most.map_or("Sheet1", |name| name);
             let problem = format!(
-                "the workbook has {} sheets: {}; write in {} which one holds the table:\n  schema = 1\n  [file]\n  sheet = {first:?}",
+                "the workbook has {} sheets: {}; write in {} which one holds the table:\n  schema = 1\n  [file]\n  sheet = {most:?}",
                 all.len(),
                 names.join(", "),
                 sidecar_name(path)

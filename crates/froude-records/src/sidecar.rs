@@ -91,6 +91,8 @@ pub struct Mapping {
     pub undeclared: Vec<&'static str>,
     /// Factor that gives a dimensionless column its dimension.
     pub scale: Option<Scale>,
+    /// The number in the table where the quantity is zero, in the unit of the table; it is subtracted first.
+    pub offset: f64,
     /// What is stated about its sensor.
     pub sensor: Sensor,
     /// The message about it as a channel of a log.
@@ -109,10 +111,21 @@ pub(crate) fn is_sidecar(path: &Path) -> bool {
         squeezed.any(|line| heads.iter().any(|head| line.starts_with(head)))
     };
     // A campaign may state constants too.
-    let is_campaign = has(&["[[source", "[source", "[[identify", "[identify", "[fluid"]);
+    let is_campaign = has(&CAMPAIGN);
     // Without its last letter, so that [column] is reported as misspelt.
     let has_columns = has(&["[column", "[constant", "[file"]);
     !is_campaign && (has_columns || (has(&["[mounted", "[condition", "role="]) && !has(&["[[", "checksum"])))
+}
+
+/// Heads of sections that a campaign has and a sidecar has not.
+const CAMPAIGN: [&str; 5] = ["[[source", "[source", "[[identify", "[identify", "[fluid"];
+
+/// Whether a `.toml` is a campaign, or what Froude writes beside a run that it records.
+pub(crate) fn is_of_another_kind(path: &Path) -> bool {
+    let Ok(bytes) = read::whole(path, LARGEST_BYTES, "a sidecar") else { return true };
+    let text = String::from_utf8_lossy(&bytes);
+    let mut squeezed = text.lines().map(|line| line.split_whitespace().collect::<String>());
+    squeezed.any(|line| CAMPAIGN.iter().chain(&["checksum", "[log"]).any(|head| line.starts_with(head)))
 }
 
 /// Reads a sidecar.
@@ -278,7 +291,9 @@ fn mappings(columns: &Section<'_>, frames: &[&str]) -> Result<IndexMap<String, M
 }
 
 fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordError> {
-    section.only(&[&["name", "unit", "sign", "scale", "quantity", "frame", "clock"], &sensor::KEYS[..]].concat())?;
+    section.only(
+        &[&["name", "unit", "sign", "scale", "offset", "quantity", "frame", "clock"], &sensor::KEYS[..]].concat(),
+    )?;
     let name = section.need_text("name", "write name = \"f_x\", for example")?.to_owned();
     let place = section.place();
     let (unit, note) = match section.text("unit")? {
@@ -305,6 +320,17 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
             })
         })
         .transpose()?;
+    let offset = match (section.get("offset"), &unit) {
+        (None, _) => 0.0,
+        (Some(_), Some(unit)) if unit.offset != 0.0 => {
+            let problem =
+                format!("of a column in {} has two meanings; write a unit without a zero of its own", unit.text);
+            return Err(RecordError::value(place, "offset", problem));
+        }
+        (Some(_), Some(unit)) => section.quantity("offset", unit.dimension)?.map_or(0.0, |si| si / unit.factor),
+        // A scale gives numbers without a unit theirs.
+        (Some(_), None) => section.number("offset")?.unwrap_or(0.0),
+    };
     for key in ["range", "resolution"] {
         let problem = "is not used of a scaled column; leave it out, or write unit = \"…\" in the place of scale";
         section.refuse(key, scale.is_some(), problem)?;
@@ -315,7 +341,7 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
     // A scale gives the unit.
     let is_stated = |key: &'static str| section.get(key).is_some() || (key == "unit" && scale.is_some());
     let undeclared = ["unit", "sign", "frame", "clock"].into_iter().filter(|key| !is_stated(key)).collect();
-    Ok(Mapping { name, unit, note, sign, undeclared, scale, sensor, words, place })
+    Ok(Mapping { name, unit, note, sign, undeclared, scale, offset, sensor, words, place })
 }
 
 /// Part by which a constant is moved for its effect.
@@ -435,6 +461,7 @@ impl Sidecar {
                 return Err(RecordError::column(mapping.place.clone(), written, TEXT_FOR_NUMBERS));
             }
         };
+        let values: Vec<f64> = values.iter().map(|v| v - mapping.offset).collect();
         let data = match (&mapping.scale, &mapping.unit) {
             (None, Some(unit)) => ColumnData::Number {
                 dimension: unit.dimension,

@@ -21,7 +21,7 @@ use crate::measured::Measured;
 use crate::nearest::suggestion;
 use crate::read;
 use crate::run::meta::Role;
-use crate::sidecar::{Sidecar, is_sidecar, read_sidecar};
+use crate::sidecar::{Sidecar, is_of_another_kind, is_sidecar, read_sidecar};
 use crate::table::{ColumnData, Table};
 
 /// Most files of a folder that are looked at.
@@ -65,6 +65,12 @@ pub fn sidecar_path(table: &Path) -> Result<Option<PathBuf>, RecordError> {
     }
     found.sort();
     match found.as_slice() {
+        [one] if beside.is_file() && !is_of_another_kind(&beside) => Err(RecordError::Refused(format!(
+            "{}: it has no [columns], and {} describes the log beside it: write all that the log has in one of them, a sidecar of a log's own replaces the one of \
+             its folder",
+            beside.display(),
+            one.display()
+        ))),
         [one, other, ..] => Err(RecordError::Refused(format!(
             "{}: the `files` of {} and of {} both fit it; make one of them narrower",
             table.display(),
@@ -190,7 +196,10 @@ fn one_joined(
 
 /// A sidecar with what its list says of a table.
 fn listed(mut sidecar: Sidecar, list: &Path, table: &Path) -> Result<Sidecar, RecordError> {
-    let rows = read_csv(list, None)?;
+    // The list may have headers of its own, and a sidecar for them, which is not this one.
+    let own = Some(list.with_extension("toml")).filter(|own| *own != sidecar.path && own.is_file() && is_sidecar(own));
+    let own = own.map(|own| read_sidecar(&own)).transpose()?.filter(|own| own.files.is_none());
+    let rows = read_csv(list, own.as_ref())?;
     let name = table.file_name().unwrap_or_default().to_string_lossy();
     let files = rows.text("file")?;
     let folder = list.parent().unwrap_or(Path::new(""));

@@ -1,9 +1,11 @@
 //! All methods side by side over one campaign: the paper's Table IV with what it lacked.
 
 use froude_fit::budget::Kind;
+use froude_fit::distribution::coverage_factor;
 use froude_identify::IdentifyError;
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
+use froude_records::number::significant;
 use froude_records::text::counted;
 
 use super::added_mass::{AddedMass, added_mass};
@@ -257,10 +259,16 @@ fn few_pairs(c: &Coefficient) -> Option<Finding> {
     }
     let so = match (c.interval_95, scatter_dof.round() as usize) {
         (None, _) => "their scatter is not known, and no interval is stated".to_owned(),
-        (_, dof) => format!(
-            "the scatter has {} and the width of its interval is mostly due to Student's t",
-            counted(dof, "degree of freedom", "degrees of freedom")
-        ),
+        (_, dof) => {
+            let of = |pairs: f64, dof: f64| coverage_factor(0.95, dof) / pairs.sqrt();
+            let (pairs, known) = (c.pairs as f64, scatter_dof.max(1.0));
+            format!(
+                "the scatter has {} and the width of its interval is mostly due to Student's t: one more pair (every speed once more, wet and dry) makes it about {} \
+                 times narrower",
+                counted(dof, "degree of freedom", "degrees of freedom"),
+                significant(of(pairs, known) / of(pairs + 1.0, known + 1.0), 2)
+            )
+        }
     };
     let text = format!("{}: {}; {so}", c.method.name(), counted(c.pairs, "pair", "pairs"));
     Some(Finding::new(Severity::Warning, "few-pairs", text))

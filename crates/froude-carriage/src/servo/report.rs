@@ -184,14 +184,16 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
 }
 
 /// As [`of_runs`], from logs each of which should determine all coefficients. With two to four, or where one log alone decides a coefficient, the intervals are
-/// those of the scatter between fits of single logs, S/n with Student's t of n − 1 degrees of freedom, and of blocks within the logs; logs that cannot be
-/// fitted alone are named and not in S.
+/// those of the scatter between fits of single logs, Σ W_k S W_kᵀ with Student's t of n − 1 degrees of freedom, and of blocks within the logs: S is the covariance of
+/// those fits, W_k = (Σ X_lᵀX_l)⁻¹ X_kᵀX_k what log k has of the common fit, so that a vigorous log among calm ones counts as one. Logs that cannot be fitted
+/// alone are named and not in S.
 ///
 /// # Errors
 ///
 /// [`ServoError`].
 pub(crate) fn of_logs(logs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError> {
     let alone: Vec<Option<Vec<f64>>> = logs.iter().map(|log| Some(least_squares(log).ok()?.coefficients)).collect();
+    let grams: Vec<Mat<f64>> = logs.iter().map(gram).collect();
     let (all, ranges) = joined(logs)?;
     if ranges.len() == 1 {
         return of_rows(all, chain);
@@ -211,10 +213,15 @@ pub(crate) fn of_logs(logs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, Ser
         let mean = |j: usize| each.iter().map(|b| b[j]).sum::<f64>() / n as f64;
         let between = |i: usize, j: usize| {
             let products = each.iter().map(|b| (b[i] - mean(i)) * (b[j] - mean(j)));
-            products.sum::<f64>() / ((n - 1) * n) as f64
+            products.sum::<f64>() / (n - 1) as f64
         };
         let p = solution.coefficients.len();
-        spread.covariance += &Mat::from_fn(p, p, between);
+        let between = Mat::from_fn(p, p, between);
+        let inverse = Mat::from_fn(p, p, |i, j| solution.covariance[(i, j)] / solution.sigma.powi(2));
+        for gram in &grams {
+            let part = &inverse * gram;
+            spread.covariance += &part * &between * part.transpose();
+        }
         (spread.runs, spread.dof) = (Some(n), vec![(n - 1) as f64; p]);
         spread.pieces = format!("fits of {n} single logs");
     }
@@ -235,6 +242,23 @@ pub(crate) fn of_logs(logs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, Ser
         ));
     }
     Ok(report)
+}
+
+/// XᵀX of the regressors of a log.
+fn gram(rows: &Rows) -> Mat<f64> {
+    let product = |i: usize, j: usize| rows.columns[i].iter().zip(&rows.columns[j]).map(|(a, b)| a * b).sum();
+    Mat::from_fn(rows.columns.len(), rows.columns.len(), product)
+}
+
+/// What a motion in one direction leaves open.
+fn one_way(rows: &Rows) -> Option<String> {
+    let speed = rows.names.iter().position(|(name, _)| name == "F_v")?;
+    let [low, high] = widened(NO_RANGE, &rows.columns[speed]);
+    (low >= 0.0 || high <= 0.0).then(|| {
+        "all motion goes one way, so that F_c includes what the command reads where the axis needs none, the zero of a current sensor: log both directions, or \
+         declare that zero as `offset` of the column"
+            .to_owned()
+    })
 }
 
 /// Rows of runs behind each other, and which are of which.
@@ -318,7 +342,7 @@ fn reported(
     let blocks = diagonal_roots(&spread.covariance);
     let coefficients = coefficients(&rows.names, solution, [&spread.hac, &blocks, &spread.dof], &is_told);
     let fit = RigidFit {
-        findings: not_white.into_iter().chain(negative(&coefficients)).collect(),
+        findings: not_white.into_iter().chain(one_way(&rows)).chain(negative(&coefficients)).collect(),
         excitation: weak,
         coefficients,
         shape: chain.shape(),

@@ -123,8 +123,12 @@ fn matched(parts: &[Part], rest: &str) -> Option<Stated> {
     })
 }
 
-/// A decimal number with a point, as people write it in names; no exponent, whose letter may belong to the name.
+/// A decimal number as people write it in names, `1.5` or `1p5`; no exponent, whose letter may belong to the name.
 fn number(text: &str) -> Option<f64> {
+    let text = match text.split_once('p') {
+        Some((whole, part)) if part.starts_with(|c: char| c.is_ascii_digit()) => format!("{whole}.{part}"),
+        _ => text.to_owned(),
+    };
     let is_part = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
     text.chars().all(is_part).then(|| text.parse().ok()).flatten()
 }
@@ -145,7 +149,9 @@ mod tests {
         let found = read("{configuration}-{speed [kn]}kn", "H1LT-2-10kn").unwrap();
         assert_eq!(found.configuration.as_deref(), Some("H1LT-2"));
         assert!((found.speed_m_s.unwrap() - 5.1444).abs() < 1e-3);
-        for name in ["U1.5", "U1.5_b12x", "U_b12", "U1p5_b12", "u1.5_b12", "org", "Uinf_b1"] {
+        let found = read("case_U{speed [m/s]}_beta{angle [deg]}", "case_U1p5_beta-8").unwrap();
+        assert_eq!(found.speed_m_s, Some(1.5));
+        for name in ["U1.5", "U1.5_b12x", "U_b12", "U1p_b12", "U1p5p1_b12", "u1.5_b12", "org", "Uinf_b1"] {
             assert_eq!(read("U{speed [m/s]}_b{angle [deg]}", name), None, "{name}");
         }
     }

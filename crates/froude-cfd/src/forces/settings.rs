@@ -55,12 +55,13 @@ pub(super) fn settings(folder: &Path, spec: &ForcesSpec) -> Result<Settings, Met
         let found = if names.is_empty() {
             "no folder in it has postProcessing with force files".to_owned()
         } else {
-            format!("no folder with force files matches the pattern: {names}")
+            let pattern = spec.pattern.as_deref().unwrap_or_default();
+            format!("no folder with force files matches the pattern {pattern:?}: {names}")
         };
         return Err(MethodError::input(
             folder,
             format!(
-                "{found}; write the folder of the cases in `runs` and, in [source.openfoam_forces], pattern = \"U{{speed [m/s]}}_b{{angle [deg]}}\" or a list"
+                "{found}; write the folder of the cases in `runs` and, in [source.openfoam_forces], a pattern that fits the whole name of each (\"U{{speed [m/s]}}_b{{angle [deg]}}\" fits U1.5_b-8 and U1p5_b-8), or a list"
             ),
         ));
     }

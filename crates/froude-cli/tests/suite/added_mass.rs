@@ -1350,7 +1350,7 @@ fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_reported() {
     refuses(
         &[("m.obj", large.as_bytes())],
         &[&["m.obj"], &WATER[..]].concat(),
-        "m.obj: the mesh is 200.0000 m long and encloses 8.0000e6 m³ (doubtful above 50 m); drawn in millimetres it is 0.2000 m and 8.0000e-3 m³: give `--unit mm`, or `--unit m` if it is that large",
+        "m.obj: the mesh is 200.0000 m long and encloses 8.0000e6 m³ (doubtful above 50 m); drawn in millimetres it is 0.2000 m and 8.0000e-3 m³, in inches 5.0800 m: give `--unit mm` or `--unit in`, or `--unit m` if it is that large",
     );
     refuses(
         &small,

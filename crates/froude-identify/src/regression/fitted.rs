@@ -1,5 +1,7 @@
 //! A law fitted to observations, and how it was fitted.
 
+use std::borrow::Cow;
+
 use faer::Mat;
 use froude_fit as fit;
 use froude_fit::budget::{Combined, Part, rounded_dof};
@@ -20,6 +22,10 @@ const ROUNDING: f64 = 1e-9;
 /// Chance of calling a bound contradicted that holds, over all bounds of a law.
 const BOUND_ALARM: f64 = 0.01;
 
+fn is_group(shared: &str) -> bool {
+    matches!(shared, "run" | "setup")
+}
+
 /// A fitted law.
 #[derive(Debug, Clone)]
 pub struct ModelFit {
@@ -39,6 +45,8 @@ pub struct ModelFit {
     pub fit: fit::Fit,
     /// The problem with rows whitened by declared errors that runs or setups share, where it was fitted so.
     pub whitened: Option<Whitened>,
+    /// The same by least squares, with its declared errors, where all rows share every declared error of runs or setups.
+    pub plain: Option<Box<(fit::Fit, Mat<f64>)>>,
     /// Coefficient values, zero where undetermined, in the order of `specs`.
     pub coefficients: Vec<f64>,
     /// Combined uncertainty per coefficient, where it has one.
@@ -58,6 +66,28 @@ pub struct ModelFit {
 }
 
 impl ModelFit {
+    /// What rows and law are judged by. An error that all rows share is one of the campaign: of one setup the fit is that by least squares.
+    #[must_use]
+    pub fn judged(&self) -> Cow<'_, Self> {
+        let Some((fit, declared)) = self.plain.as_deref() else { return Cow::Borrowed(self) };
+        let of_all =
+            |part: &Part| Part { shared: if is_group(part.shared) { "campaign" } else { part.shared }, ..part.clone() };
+        Cow::Owned(Self {
+            fit: fit.clone(),
+            declared: declared.clone(),
+            whitened: None,
+            plain: None,
+            budget: self.budget.iter().map(of_all).collect(),
+            ..self.clone()
+        })
+    }
+
+    /// Whether errors that rows of a run or a setup share are declared.
+    #[must_use]
+    pub fn declares_groups(&self) -> bool {
+        self.budget.iter().any(|part| part.kind.is_type_b() && !part.in_scatter && is_group(part.shared))
+    }
+
     /// The law's own coefficients (without angle offsets).
     #[must_use]
     pub fn law_coefficients(&self) -> &[f64] {

@@ -81,6 +81,12 @@ pub(crate) fn generalised(
     Ok(Some(Whitened { problem: whitened, root: solved.root }))
 }
 
+/// Whether errors of runs or setups are declared, and all rows share each of them.
+pub(crate) fn has_one_group(data: &Dataset, budget: &[BudgetEntry]) -> bool {
+    let of_groups = || budget.iter().filter(|entry| matches!(entry.shared, Shared::Run | Shared::Setup));
+    of_groups().next().is_some() && of_groups().all(|entry| groups(data, entry.shared).iter().all(|g| *g == 0))
+}
+
 /// The error of each row by each group of each entry that runs or setups share: columns over all rows.
 fn declared(
     law: &ForceLaw,
