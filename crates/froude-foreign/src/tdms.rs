@@ -56,8 +56,8 @@ pub fn read(bytes: &[u8]) -> Result<Contents, ForeignError> {
             Ok(channel) => {
                 if let Some(stated) = scale::not_applied(&raw, own) {
                     notes.push(format!(
-                        "channel {group}/{} holds whole numbers and states {stated}, which is not applied; if they are counts, \
-                         declare `scale` for this column",
+                        "channel {group}/{} holds whole numbers; its properties {stated} are not applied: if they turn counts into the quantity, declare `scale` and \
+                         `offset` of this column, the offset being the count at zero (−Offset/Slope)",
                         channel.column.name
                     ));
                 }

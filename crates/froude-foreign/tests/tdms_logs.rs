@@ -216,8 +216,8 @@ fn waveforms_give_times_and_units_come_from_their_properties() {
         contents.notes,
         [
             "channel scaled/both is not read: it states two units, N and kN",
-            "channel plain/counts holds whole numbers and states Offset = 2, Slope = 0.005, which is not applied; if they are counts, \
-             declare `scale` for this column",
+            "channel plain/counts holds whole numbers; its properties Offset = 2, Slope = 0.005 are not applied: if they turn counts into the quantity, declare `scale` and \
+             `offset` of this column, the offset being the count at zero (−Offset/Slope)",
             "channel scaled/strain is not read: it has a scale of the kind Strain, which is not read; write scaled values",
             "times count from 1774951200.000000 s after 1970-01-01 00:00 UTC",
         ]

@@ -111,8 +111,7 @@ fn clause(text: &str) -> Result<KeepClause, KeepError> {
                 refuse(e.expecting(value, dimension, &usual_unit_for(column, dimension)).to_string())
             }
             None if !value.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '+' | '.')) => refuse(format!(
-                "only configuration, setup and run are compared with a text; to leave out rows by another column, name them in a sidecar, leave_out = [\"131\"], \
-                 by their first cell"
+                "only configuration, setup and run can be compared with a text; to leave out other rows, list their first cells in a sidecar, leave_out = [\"131\"]"
             )),
             None => refuse(e.to_string()),
         }

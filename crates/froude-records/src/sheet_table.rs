@@ -62,7 +62,7 @@ pub(crate) fn look(path: &Path, file: &FileWords) -> Result<(Vec<Row<'static>>, 
 /// Sheets that a message names.
 const MOST_SHEETS: usize = 20;
 
-/// The sheet that is declared, or the only one; the message about others proposes the one with the most numbers.
+/// The sheet that is declared, or the only one; otherwise the error proposes the sheet with the most numbers.
 fn chosen(path: &Path, book: &mut Workbook<'_>, file: &FileWords) -> Result<String, RecordError> {
     if let Some(name) = &file.sheet {
         return Ok(name.clone());

@@ -323,12 +323,11 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
     let offset = match (section.get("offset"), &unit) {
         (None, _) => 0.0,
         (Some(_), Some(unit)) if unit.offset != 0.0 => {
-            let problem =
-                format!("of a column in {} has two meanings; write a unit without a zero of its own", unit.text);
+            let problem = format!("is ambiguous for a column in {}; write an absolute unit such as K", unit.text);
             return Err(RecordError::value(place, "offset", problem));
         }
         (Some(_), Some(unit)) => section.quantity("offset", unit.dimension)?.map_or(0.0, |si| si / unit.factor),
-        // A scale gives numbers without a unit theirs.
+        // Without a unit it is in the numbers of the file.
         (Some(_), None) => section.number("offset")?.unwrap_or(0.0),
     };
     for key in ["range", "resolution"] {
@@ -337,7 +336,10 @@ fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordErro
     }
     let dimension = unit.as_ref().map(|unit| unit.dimension);
     let words = Words::read(section, dimension, frames)?;
-    let sensor = Sensor::read(section, dimension.filter(|_| scale.is_none()))?;
+    let mut sensor = Sensor::read(section, dimension.filter(|_| scale.is_none()))?;
+    // The range is that of the numbers in the file, from which the offset is subtracted.
+    let offset_si = offset * unit.as_ref().map_or(1.0, |unit| unit.factor);
+    sensor.range = sensor.range.map(|range| range.map(|end| end - offset_si));
     // A scale gives the unit.
     let is_stated = |key: &'static str| section.get(key).is_some() || (key == "unit" && scale.is_some());
     let undeclared = ["unit", "sign", "frame", "clock"].into_iter().filter(|key| !is_stated(key)).collect();

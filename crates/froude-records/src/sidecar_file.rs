@@ -66,9 +66,10 @@ pub fn sidecar_path(table: &Path) -> Result<Option<PathBuf>, RecordError> {
     found.sort();
     match found.as_slice() {
         [one] if beside.is_file() && !is_of_another_kind(&beside) => Err(RecordError::Refused(format!(
-            "{}: it has no [columns], and {} describes the log beside it: write all that the log has in one of them, a sidecar of a log's own replaces the one of \
-             its folder",
+            "{}: it is no sidecar (it has no [columns]), and {} describes {}: move its contents there, or make it a whole sidecar, which then replaces {} for this log",
             beside.display(),
+            one.display(),
+            table.display(),
             one.display()
         ))),
         [one, other, ..] => Err(RecordError::Refused(format!(

@@ -10,7 +10,7 @@
 //! | [`matrix`]                 | run matrix                                                        |
 //! | [`mod@fit`]                | unknowns, priors and declared errors of the joint fit ([`crate::joint`]) |
 //! | [`twin`]                   | truth, draws, logs and sidecars                                   |
-//! | [`stills`]                 | what the body held fast shows of a constant                       |
+//! | [`still_run`], [`still_fit`] | a constant from still runs                                      |
 //! | [`lag`]                    | a delay that the runs show and nobody declared                    |
 //! | [`mod@forecast`], [`plan`] | the intervals to expect                                           |
 //! | [`derived`]                | sums of coefficients with their uncertainty                       |
@@ -34,5 +34,7 @@ pub mod run;
 pub mod setup;
 pub mod source;
 pub mod spec;
-pub mod stills;
+pub mod still_fit;
+mod still_page;
+pub mod still_run;
 pub mod twin;

@@ -120,18 +120,18 @@ pub(crate) struct Known {
     pub prior: ls::Prior,
     /// Degrees of freedom of its standard uncertainty.
     pub dof: f64,
-    /// Inputs of the problem that it was found with, by their place, and what its value moves by with each.
-    pub moves: Vec<(usize, f64)>,
+    /// Inputs of the problem that its value depends on, by index, with the derivatives.
+    pub sensitivities: Vec<(usize, f64)>,
 }
 
 impl Known {
     pub fn declared(name: String, prior: ls::Prior) -> Self {
-        Self { name, prior, dof: f64::INFINITY, moves: Vec::new() }
+        Self { name, prior, dof: f64::INFINITY, sensitivities: Vec::new() }
     }
 
-    /// What its value moves by with an input.
-    pub fn moved_by(&self, input: usize) -> f64 {
-        self.moves.iter().filter(|(k, _)| *k == input).map(|(_, by)| by).sum()
+    /// The derivative of its value by an input.
+    pub fn sensitivity_to(&self, input: usize) -> f64 {
+        self.sensitivities.iter().filter(|(k, _)| *k == input).map(|(_, by)| by).sum()
     }
 }
 

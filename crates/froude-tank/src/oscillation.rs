@@ -49,7 +49,7 @@ use crate::driven::source;
 use crate::driven::spec::{
     Channel, Coefficient, Condition, Constant, Enters, Factor, Number, Point, Spec, Terms, Unknown,
 };
-use crate::driven::stills::Zeroed;
+use crate::driven::still_run::Zeroing;
 use crate::error::{TankError, undeclared};
 use crate::findings::{note, warning};
 use crate::joint::findings::are_whole;
@@ -177,9 +177,9 @@ impl MotorDriven for Oscillation {
             let problem = "stands with an upright pivot, about which it has no part across the body; leave it out, or write pivot = \"stream\"";
             return Err(values.wrong("buoyancy", problem));
         }
-        if pivot == Pivot::Upright && values.is_stated("stills") {
-            let problem = "stands with an upright pivot, about which the net buoyancy has no part across the body: still runs show nothing there";
-            return Err(values.wrong("stills", problem));
+        if pivot == Pivot::Upright && values.is_stated("still_runs") {
+            let problem = "cannot be used with an upright pivot, about which the net buoyancy has no component across the body: remove it and the still runs, or write pivot = \"stream\"";
+            return Err(values.wrong("still_runs", problem));
         }
         Ok(())
     }
@@ -188,13 +188,13 @@ impl MotorDriven for Oscillation {
         keys::check_plan(values)
     }
 
-    fn zeroed(values: &Values) -> Result<Option<Zeroed>, RecordError> {
-        let Some(stills) = values.table("stills") else { return Ok(None) };
+    fn zeroing(values: &Values) -> Result<Option<Zeroing>, RecordError> {
+        let Some(stills) = values.table("still_runs") else { return Ok(None) };
         if !stills.need("zeroed", stills.word("zeroed", &[true, false]))? {
-            let problem = "hides what its run would show, −B sin φ: hold the body at each angle again with the cell zeroed once, or leave the still runs out";
+            let problem = "removes what the still runs are for, −B sin φ: repeat them with the load cell zeroed once, or leave them out";
             return Err(stills.wrong("zeroed", problem));
         }
-        Ok(Some(Zeroed { drift: stills.number("drift").unwrap_or(0.0) }))
+        Ok(Some(Zeroing { drift: stills.number("drift").unwrap_or(0.0) }))
     }
 
     fn read(declared: &Declared<'_>, law: Option<&str>) -> Result<Vec<Self>, MethodError> {

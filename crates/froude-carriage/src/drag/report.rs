@@ -260,13 +260,21 @@ fn few_pairs(c: &Coefficient) -> Option<Finding> {
     let so = match (c.interval_95, scatter_dof.round() as usize) {
         (None, _) => "their scatter is not known, and no interval is stated".to_owned(),
         (_, dof) => {
-            let of = |pairs: f64, dof: f64| coverage_factor(0.95, dof) / pairs.sqrt();
+            let variance = |is_scatter: bool| {
+                let parts = c.budget.iter().filter(|part| (part.kind == Kind::A) == is_scatter);
+                parts.map(|part| part.covariance[(0, 0)]).sum::<f64>()
+            };
             let (pairs, known) = (c.pairs as f64, scatter_dof.max(1.0));
+            // What is declared keeps its width; the scatter shrinks with the pairs, and its factor with their degrees of freedom.
+            let width = |more: f64| {
+                let scatter = variance(true) * pairs / (pairs + more) * coverage_factor(0.95, known + more).powi(2);
+                (scatter + variance(false) * coverage_factor(0.95, f64::INFINITY).powi(2)).sqrt()
+            };
             format!(
-                "the scatter has {} and the width of its interval is mostly due to Student's t: one more pair (every speed once more, wet and dry) makes it about {} \
-                 times narrower",
+                "the scatter has {} and the width of its interval is mostly due to Student's t; one more pair (every speed again, wet and dry) would narrow it by a factor of \
+                 about {}",
                 counted(dof, "degree of freedom", "degrees of freedom"),
-                significant(of(pairs, known) / of(pairs + 1.0, known + 1.0), 2)
+                significant(width(0.0) / width(1.0), 2)
             )
         }
     };

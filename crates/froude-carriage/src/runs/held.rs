@@ -22,7 +22,7 @@ const LISTED_WITHIN: f64 = 0.1;
 /// Dropped at the end of a held speed, s: half of the span, and a margin for the corner of the profile.
 pub(super) const CORNER_S: f64 = 0.15;
 /// What to write where the rule finds nothing.
-const DECLARE: &str = "declare the stretch with [[segments]] name = \"steady\", from and to, in a sidecar of the log's own, with all that the one of the folder says";
+const DECLARE: &str = "declare the stretch with [[segments]] name = \"steady\", from and to, in a sidecar for this log alone, which replaces that of the folder: copy its contents";
 
 /// Where a log holds its speed.
 pub(super) struct Held {

@@ -16,7 +16,7 @@ use crate::servo::excitation::{Column, excitation};
 use crate::servo::interval::{CONFIDENCE, Spread, Whiteness, diagonal_roots, over_runs, spread, whiteness};
 use crate::servo::load::Shape;
 use crate::servo::motor::MotorSide;
-use crate::servo::regression::least_squares;
+use crate::servo::regression::{inverse_gram, least_squares};
 use crate::servo::rows::Rows;
 
 /// Fewest runs whose scatter is stated.
@@ -185,14 +185,14 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
 
 /// As [`of_runs`], from logs each of which should determine all coefficients. With two to four, or where one log alone decides a coefficient, the intervals are
 /// those of the scatter between fits of single logs, Σ W_k S W_kᵀ with Student's t of n − 1 degrees of freedom, and of blocks within the logs: S is the covariance of
-/// those fits, W_k = (Σ X_lᵀX_l)⁻¹ X_kᵀX_k what log k has of the common fit, so that a vigorous log among calm ones counts as one. Logs that cannot be fitted
-/// alone are named and not in S.
+/// those fits without the mean of what the noise within a log makes of it, W_k = (Σ X_lᵀX_l)⁻¹ X_kᵀX_k the weight of log k in the common fit, so that a log which
+/// dominates it is not averaged down by n. Logs that cannot be fitted alone are named and not in S.
 ///
 /// # Errors
 ///
 /// [`ServoError`].
 pub(crate) fn of_logs(logs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError> {
-    let alone: Vec<Option<Vec<f64>>> = logs.iter().map(|log| Some(least_squares(log).ok()?.coefficients)).collect();
+    let alone: Vec<Option<Solution>> = logs.iter().map(|log| least_squares(log).ok()).collect();
     let grams: Vec<Mat<f64>> = logs.iter().map(gram).collect();
     let (all, ranges) = joined(logs)?;
     if ranges.len() == 1 {
@@ -206,18 +206,24 @@ pub(crate) fn of_logs(logs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, Ser
             Err(error) => return Err(error),
         }
     }
-    let each: Vec<&Vec<f64>> = alone.iter().flatten().collect();
+    let each: Vec<&Solution> = alone.iter().flatten().collect();
     let mut spread = spread(&all, &solution, chain)?;
     let n = each.len();
     if n >= 2 {
-        let mean = |j: usize| each.iter().map(|b| b[j]).sum::<f64>() / n as f64;
+        let p = solution.coefficients.len();
+        let mean = |j: usize| each.iter().map(|fit| fit.coefficients[j]).sum::<f64>() / n as f64;
         let between = |i: usize, j: usize| {
-            let products = each.iter().map(|b| (b[i] - mean(i)) * (b[j] - mean(j)));
+            let products = each.iter().map(|fit| (fit.coefficients[i] - mean(i)) * (fit.coefficients[j] - mean(j)));
             products.sum::<f64>() / (n - 1) as f64
         };
-        let p = solution.coefficients.len();
-        let between = Mat::from_fn(p, p, between);
-        let inverse = Mat::from_fn(p, p, |i, j| solution.covariance[(i, j)] / solution.sigma.powi(2));
+        let within = |j: usize| {
+            // Residuals are correlated within a log as they are within all.
+            let correlated = spread.covariance[(j, j)] / solution.standard[j].powi(2);
+            correlated * each.iter().map(|fit| fit.standard[j].powi(2)).sum::<f64>() / n as f64
+        };
+        let left: Vec<f64> = (0..p).map(|j| (1.0 - within(j) / between(j, j)).max(0.0).sqrt()).collect();
+        let between = Mat::from_fn(p, p, |i, j| left[i] * left[j] * between(i, j));
+        let inverse = inverse_gram(&solution);
         for gram in &grams {
             let part = &inverse * gram;
             spread.covariance += &part * &between * part.transpose();
@@ -250,13 +256,17 @@ fn gram(rows: &Rows) -> Mat<f64> {
     Mat::from_fn(rows.columns.len(), rows.columns.len(), product)
 }
 
-/// What a motion in one direction leaves open.
+/// Part of the largest speed that the other direction has at least.
+const BOTH_WAYS: f64 = 0.05;
+
+/// What motion in one direction leaves open: the sign of the speed is then a constant.
 fn one_way(rows: &Rows) -> Option<String> {
-    let speed = rows.names.iter().position(|(name, _)| name == "F_v")?;
+    let column = |of: &str| rows.names.iter().position(|(name, _)| name == of);
+    let (speed, _) = column("F_v").zip(column("F_c"))?;
     let [low, high] = widened(NO_RANGE, &rows.columns[speed]);
-    (low >= 0.0 || high <= 0.0).then(|| {
-        "all motion goes one way, so that F_c includes what the command reads where the axis needs none, the zero of a current sensor: log both directions, or \
-         declare that zero as `offset` of the column"
+    (low.abs().min(high.abs()) < BOTH_WAYS * low.abs().max(high.abs()) || low > 0.0 || high < 0.0).then(|| {
+        "all motion is in one direction, so that F_c cannot be told from a zero error of the command, as of a current sensor: log both directions, or declare its zero \
+         as `offset` of the column"
             .to_owned()
     })
 }

@@ -280,7 +280,7 @@ fn what_is_not_stated_is_asked_and_what_cannot_be_is_refused() {
         ("none", "x = 0", "is \"x = 0\", a plane across the body's axis forward"),
         ("up = \"-z\"", "up = \"-x\"", "they lie along one axis of the mesh"),
         ("{speed [m/s]}", "{speed}", "{speed} has no unit: write {speed [m/s]}"),
-        ("pattern = \"U", "pattern = \"V", "matches the pattern: U1.5_b0, U1.5_b12"),
+        ("pattern = \"U", "pattern = \"V", "matches the pattern \"V{speed [m/s]}_b{angle [deg]}\": U1.5_b0, U1.5_b12"),
         ("pattern = \"U{speed [m/s]}_b{angle [deg]}\"\n", "", "0/U has no line `internalField uniform"),
         ("none\"", "none\"\nobject = \"bow\"", "no force files of the function object \"bow\"; it has forces"),
         ("none\"", "none\"\norigin = \"1, 0, 0\"", "write three lengths: \"0 m, 0 m, -0.2 m\""),

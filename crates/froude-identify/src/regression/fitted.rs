@@ -66,7 +66,7 @@ pub struct ModelFit {
 }
 
 impl ModelFit {
-    /// What rows and law are judged by. An error that all rows share is one of the campaign: of one setup the fit is that by least squares.
+    /// The fit for the tests of rows and law: that by least squares where all rows share every declared error of runs or setups, which is then one of the campaign.
     #[must_use]
     pub fn judged(&self) -> Cow<'_, Self> {
         let Some((fit, declared)) = self.plain.as_deref() else { return Cow::Borrowed(self) };

@@ -202,6 +202,36 @@ pub fn longest_free(time_s: &[f64], within: Range<usize>, marks: &[Mark]) -> Opt
     parts.into_iter().find(|rows| rows.len() == most)
 }
 
+/// The part of a still run that is used: the one that is named, without marks.
+pub(crate) fn still_part(log: &TankLog) -> Result<Range<usize>, MethodError> {
+    let (time_s, declared) = (&log.log.time_s, &log.declared);
+    let named = declared.segments.iter().find(|segment| segment.kind == SegmentKind::Still);
+    let whole = named.map_or(0..time_s.len(), |segment| rows(time_s, segment.from_s, segment.to_s));
+    longest_free(time_s, whole, &declared.marks).filter(|rows| rows.len() >= FEWEST).ok_or_else(|| {
+        let what = format!("nothing is left of this still run: {}; take another", in_words(&declared.marks));
+        MethodError::input(&log.log.path, what)
+    })
+}
+
+/// Keeps that part of a still run.
+///
+/// # Errors
+///
+/// A sensor stood at the end of its range: what is left would be the lower part of its noise.
+pub(crate) fn keep_still_part(log: &mut TankLog) -> Result<(), MethodError> {
+    if let Some(mark) = log.declared.marks.iter().find(|mark| mark.why == "clipped") {
+        let what = format!(
+            "a channel of this still run is clipped from {} s to {} s: hold the body where the load cell does not reach its end",
+            plain(mark.from_s, 4),
+            plain(mark.to_s, 4)
+        );
+        return Err(MethodError::input(&log.log.path, what));
+    }
+    let rows = still_part(log)?;
+    keep_rows(&mut log.log, rows);
+    Ok(())
+}
+
 /// Keeps rows of a log.
 pub(super) fn keep_rows(log: &mut RunLog, rows: Range<usize>) {
     let (Some(&from_s), Some(&to_s)) = (log.time_s.get(rows.start), log.time_s.get(rows.end.saturating_sub(1))) else {

@@ -11,6 +11,7 @@ use super::method::MotorDriven;
 use super::run::Run;
 use super::setup::Setup;
 use super::spec::{Enters, Factor, Point};
+use super::still_run::StillFit;
 use crate::error::TankError;
 use crate::joint::{self, Equation, Input, JointFit, Known, Problem, Terms};
 use crate::motion::{Logged, Motion, Sampled, motion};
@@ -166,11 +167,11 @@ pub(super) fn problem<'a, M: MotorDriven>(
     };
     let (errs, inputs): (Vec<usize>, _) = (0..constants.len()).filter_map(|k| input(&k)).unzip();
     let place = |constant: usize| errs.iter().position(|k| *k == constant);
-    priors.extend(setup.slopes.iter().filter_map(|slope| {
-        let known = ls::Prior::new(constants[slope.constant]?, slope.value, slope.standard());
-        let moves = slope.moves.iter().filter_map(|(constant, by)| Some((place(*constant)?, *by)));
-        let name = format!("{} from still runs", setup.constants[slope.constant].name);
-        Some(Known { name, prior: known, dof: slope.dof, moves: moves.collect() })
+    priors.extend(setup.still_fits.iter().filter_map(|fit| {
+        let prior = ls::Prior::new(constants[fit.constant]?, fit.value, fit.standard());
+        let of_inputs = fit.gain_sensitivities.iter().filter_map(|(constant, by)| Some((place(*constant)?, *by)));
+        let name = StillFit::name_of_prior(&setup.constants[fit.constant].name);
+        Some(Known { name, prior, dof: fit.dof, sensitivities: of_inputs.collect() })
     }));
     Ok(Problem {
         law: setup.method.law().to_owned(),

@@ -4,10 +4,12 @@ use froude_fit::budget::Uncertain;
 use froude_records::campaign::{Identify, SensorSpec};
 
 use super::fit::{motions, problem};
+use super::matrix::Planned;
 use super::method::MotorDriven;
 use super::run::Run;
 use super::setup::Setup;
-use super::stills::{Noise, Slope, Still, is_still, slopes};
+use super::still_fit::{self, is_still};
+use super::still_run::StillFit;
 use super::twin::{Simulated, Twin};
 use crate::error::TankError;
 
@@ -31,11 +33,8 @@ pub fn forecast<M: MotorDriven>(
 ) -> Result<Forecast, TankError> {
     let exact = Twin { planned: twin.planned.clone(), setup: exactly(setup), truth: twin.truth.clone() };
     let logged = exact.simulated(&[], 0)?;
-    let (at_rest, runs): (Vec<Run<'_>>, Vec<Run<'_>>) =
-        logged.iter().map(Simulated::view).partition(|run| is_still(&run.point));
-    let mut setup = setup.clone();
-    setup.slopes = at_rest_of(twin, &at_rest, &setup, sensors)?;
-    let setup = &setup;
+    let runs: Vec<Run<'_>> = logged.iter().map(Simulated::view).filter(|run| !is_still(&run.point)).collect();
+    let setup = &Setup { still_fits: planned_still_fits(twin, sensors)?, ..setup.clone() };
     let motions = motions(&runs, setup, &[])?;
     let problem = problem(&runs, &motions, setup, identify)?;
     let beta: Vec<f64> = problem.names.iter().map(|(name, _)| twin.truth.value(name, setup)).collect();
@@ -45,32 +44,17 @@ pub fn forecast<M: MotorDriven>(
     found.ok_or_else(|| TankError::new(format!("{}: {}", problem.law, M::SPEC.unplanned)))
 }
 
-/// What the planned still runs will show.
+/// What the planned still runs will show of the constants.
 ///
 /// # Errors
 ///
-/// [`TankError`]: fewer than two positions.
-pub fn still<M: MotorDriven>(twin: &Twin<M>, sensors: &[SensorSpec]) -> Result<Vec<Slope>, TankError> {
-    let exact = Twin { planned: twin.planned.clone(), setup: exactly(&twin.setup), truth: twin.truth.clone() };
+/// [`TankError`]: still runs that a fit refuses.
+pub fn planned_still_fits<M: MotorDriven>(twin: &Twin<M>, sensors: &[SensorSpec]) -> Result<Vec<StillFit>, TankError> {
+    let planned: Vec<Planned> = twin.planned.iter().filter(|run| is_still(&run.point)).cloned().collect();
+    let exact = Twin { planned, setup: exactly(&twin.setup), truth: twin.truth.clone() };
     let logged = exact.simulated(&[], 0)?;
-    let runs: Vec<Run<'_>> = logged.iter().map(Simulated::view).filter(|run| is_still(&run.point)).collect();
-    at_rest_of(twin, &runs, &twin.setup, sensors)
-}
-
-/// What still runs without noise show, with that of the sensor.
-fn at_rest_of<M: MotorDriven>(
-    twin: &Twin<M>,
-    runs: &[Run<'_>],
-    setup: &Setup<M>,
-    sensors: &[SensorSpec],
-) -> Result<Vec<Slope>, TankError> {
-    let Some(rate_hz) = twin.planned.iter().find(|run| is_still(&run.point)).map(|run| run.rate_hz) else {
-        return Ok(Vec::new());
-    };
-    let stills = runs.iter().map(Still::of).collect::<Result<Vec<_>, _>>()?;
-    let samples = runs.iter().map(|run| run.time_s.len() as f64).sum();
-    let sensor = sensors_of::<M>(sensors).first().copied().flatten();
-    slopes(&stills, Noise::of_sensor(sensor, rate_hz, samples), setup)
+    let runs: Vec<Run<'_>> = logged.iter().map(Simulated::view).collect();
+    still_fit::planned(&runs, &twin.setup, sensors_of::<M>(sensors).first().copied().flatten())
 }
 
 /// Everything as declared, without errors: what the plan is linearised at.

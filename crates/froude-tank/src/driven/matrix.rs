@@ -8,7 +8,7 @@ use froude_rig::swung::Swing;
 
 use super::method::MotorDriven;
 use super::spec::Point;
-use super::stills::is_still;
+use super::still_fit::is_still;
 use crate::matrix::Plan;
 
 /// One planned run.

@@ -13,7 +13,7 @@ use super::derived::Sum;
 use super::fitted::Fitted;
 use super::setup::Setup;
 use super::spec::{Coefficient, Constant, Number, Point, Spec, Terms};
-use super::stills::Zeroed;
+use super::still_run::Zeroing;
 use crate::error::TankError;
 use crate::joint::forecast::Forecast;
 
@@ -53,12 +53,12 @@ pub trait MotorDriven: Clone + std::fmt::Debug + Send + Sync + 'static {
         Ok(())
     }
 
-    /// How the cell was zeroed for still runs; `None` where that is not declared, or the method uses none.
+    /// How the load cell was zeroed for still runs; `None` where that is not declared, or the method uses no still runs.
     ///
     /// # Errors
     ///
     /// A cell that was zeroed for each run.
-    fn zeroed(_: &Values) -> Result<Option<Zeroed>, RecordError> {
+    fn zeroing(_: &Values) -> Result<Option<Zeroing>, RecordError> {
         Ok(None)
     }
 

@@ -10,7 +10,7 @@ use super::method::MotorDriven;
 use super::record::criteria;
 use super::setup::Setup;
 use super::spec::Point;
-use super::stills;
+use super::still_page;
 use crate::joint::JointFit;
 use crate::joint::forecast::total;
 use crate::joint::page::{self, Timed};
@@ -29,7 +29,7 @@ pub fn results<M: MotorDriven>(fits: &[(Setup<M>, JointFit)], chosen: &Fitted<'_
         blocks.push(meanings(chosen.derived).into());
     }
     blocks.push(correlations(chosen.fit).into());
-    blocks.extend(stills::page::blocks(chosen.setup));
+    blocks.extend(still_page::blocks(chosen.setup));
     blocks.extend(chosen.setup.method.blocks(chosen));
     if fits.len() > 1 {
         let sentence = format!(

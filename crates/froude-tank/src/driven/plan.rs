@@ -7,11 +7,13 @@ use froude_records::block::{ResultTable, TableBuilder};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::run::Role;
 
-use super::forecast::{Forecast, forecast, sensors_of, still};
+use super::forecast::{Forecast, forecast, planned_still_fits, sensors_of};
 use super::matrix::Planned;
 use super::method::MotorDriven;
+use super::setup::Setup;
 use super::spec::{Number, Point};
-use super::stills::{self, is_still};
+use super::still_fit::is_still;
+use super::still_page;
 use super::twin::{Twin, senses};
 use crate::plan;
 use crate::sensors::seed_and_sensors;
@@ -48,20 +50,19 @@ pub fn prospect<M: MotorDriven>(campaign: &Campaign, source: &Source) -> Result<
     paragraphs.extend(twin.setup.method.about_plan(&found, rates));
     let law = twin.setup.method.law();
     let law = if law == M::SPEC.law { String::new() } else { format!(", with the law {law} of [simulate]") };
-    let mut setup = twin.setup.clone();
-    setup.slopes = still(&twin, sensors).map_err(MethodError::refused)?;
-    let (stills, setup) = (twin.planned.iter().filter(|run| is_still(&run.point)).collect::<Vec<_>>(), &setup);
-    let of_stills = || [held::<M>(&stills), stills::page::found(setup)];
+    let still_fits = planned_still_fits(&twin, sensors).map_err(MethodError::refused)?;
+    let setup = Setup { still_fits, ..twin.setup.clone() };
+    let stills: Vec<&Planned> = twin.planned.iter().filter(|run| is_still(&run.point)).collect();
+    let of_stills = || [still_runs::<M>(&stills), still_page::constants(&setup)];
     let tables = [matrix(&twin, &found)];
     let tables = tables.into_iter().chain((!stills.is_empty()).then(of_stills).into_iter().flatten());
     let tables = tables.chain([plan::intervals(&found.expected, &law)]);
     Ok(plan::prospect(source, (twin.planned.len(), duration_s), tables, paragraphs))
 }
 
-/// The still runs.
-fn held<M: MotorDriven>(runs: &[&Planned]) -> ResultTable {
+fn still_runs<M: MotorDriven>(runs: &[&Planned]) -> ResultTable {
     let motion = M::SPEC.motion;
-    let t = TableBuilder::new("stills", "Still runs.", runs);
+    let t = TableBuilder::new("still_runs", "Still runs.", runs);
     t.build(vec![
         t.text("run", "run", |run| run.id.clone()),
         t.text("configuration", "configuration", |run| run.point.configuration.clone()),

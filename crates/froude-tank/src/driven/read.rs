@@ -18,7 +18,7 @@ use crate::logs;
 pub(super) fn section<M: MotorDriven>(s: &Section<'_>) -> Result<Values, RecordError> {
     let values = Values::read(s, M::SPEC.keys)?;
     M::check(&values)?;
-    M::zeroed(&values)?;
+    M::zeroing(&values)?;
     Ok(values)
 }
 
@@ -64,7 +64,7 @@ pub fn setups<M: MotorDriven>(
                 known.standard = if entry.relative { part * known.value } else { part };
             }
         }
-        Ok(Setup { method, constants, cycles, harmonics, zeroed: M::zeroed(&values)?, slopes: Vec::new() })
+        Ok(Setup { method, constants, cycles, harmonics, zeroing: M::zeroing(&values)?, still_fits: Vec::new() })
     };
     M::read(&declared, law)?.into_iter().map(one).collect()
 }

@@ -11,7 +11,7 @@ use super::fitted::Fitted;
 use super::method::MotorDriven;
 use super::setup::Setup;
 use super::spec::{Channel, Point};
-use super::stills;
+use super::still_page;
 use crate::joint::{JointFit, record};
 
 /// Differences of AICc below this do not favour a law.
@@ -74,7 +74,7 @@ pub fn estimate<M: MotorDriven>(
         }
     });
     let mut notes = record::notes(fit, spec.loads);
-    notes.extend(stills::page::notes(setup));
+    notes.extend(still_page::notes(setup));
     notes.extend(setup.method.notes(fitted));
     let names: Vec<&str> = fit.unknowns.iter().map(|u| u.name.as_str()).collect();
     let words = record::words(fit, setup.cycles, setup.harmonics, (&spec.motion, spec.loads), &setup.method.held());

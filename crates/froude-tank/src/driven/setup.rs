@@ -3,7 +3,7 @@
 use froude_fit::budget::Uncertain;
 
 use super::spec::{Constant, Enters, Point};
-use super::stills::{Slope, Zeroed};
+use super::still_run::{StillFit, Zeroing};
 use crate::error::TankError;
 use crate::motion::Cycles;
 
@@ -19,9 +19,9 @@ pub struct Setup<M> {
     /// Harmonics of the motion.
     pub harmonics: usize,
     /// How the cell was zeroed for still runs, where that is declared.
-    pub zeroed: Option<Zeroed>,
-    /// What still runs showed of the constants.
-    pub slopes: Vec<Slope>,
+    pub zeroing: Option<Zeroing>,
+    /// Constants from still runs.
+    pub still_fits: Vec<StillFit>,
 }
 
 impl<M> Setup<M> {

@@ -18,7 +18,9 @@ use super::read::{check, setups};
 use super::run::Run;
 use super::setup::Setup;
 use super::spec::{Channel, Constant, Enters, Point};
-use super::{page, plan, record, stills, twin};
+use super::still_fit::fit_still_runs;
+use super::{page, plan, record, still_page, twin};
+use crate::conditioning::stretches::keep_still_part;
 use crate::findings::warning;
 use crate::joint::JointFit;
 use crate::joint::findings::{contradicted, few_runs, misfit, of_motion, undetermined};
@@ -70,11 +72,12 @@ pub(crate) fn identified<M: MotorDriven>(
         logs::one_body(&logs)?;
     }
     let mut setups = setups::<M>(campaign, source, &logs::configurations(&logs), None)?;
-    let (still, logs): (Vec<TankLog>, Vec<TankLog>) =
+    let (mut still, logs): (Vec<TankLog>, Vec<TankLog>) =
         logs.into_iter().partition(|log| log.log.meta.role == Role::Still);
-    let at_rest = still.iter().map(run::<M>).collect::<Result<Vec<_>, _>>()?;
+    still.iter_mut().try_for_each(keep_still_part)?;
+    let still_runs = still.iter().map(run::<M>).collect::<Result<Vec<_>, _>>()?;
     for setup in &mut setups {
-        setup.slopes = stills::shown(&at_rest, setup).map_err(MethodError::refused)?;
+        setup.still_fits = fit_still_runs(&still_runs, setup).map_err(MethodError::refused)?;
     }
     let stamps = |log, load: &Channel| logs::stamps_standard_s(log, [spec.motion.name, load.name]);
     let of_log = |log| spec.loads.iter().map(move |load| stamps(log, load)).fold(0.0, f64::max);
@@ -136,7 +139,7 @@ pub(crate) fn identified<M: MotorDriven>(
     let chosen = record::chosen(&fits);
     let each = runs.iter().zip(&motions);
     findings.extend(each.flat_map(|(run, motion)| of_motion(run.id, motion, &spec.motion, cycles, harmonics)));
-    findings.extend(stills::page::findings(fitted[0].setup));
+    findings.extend(still_page::findings(fitted[0].setup));
     findings.extend(fitted[0].setup.method.about_runs(&fitted[0]));
     findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
     let of_fits: Vec<Finding> = fitted.iter().flat_map(of_fit).collect();
@@ -183,14 +186,10 @@ pub fn of_fit<M: MotorDriven>(fitted: &Fitted<'_, M>) -> Vec<Finding> {
     }
     out.extend(undetermined(fit, spec.undetermined));
     let known = |c: &Constant| Some((c.unknown.as_ref()?.name.clone(), c.known?));
-    let declared = setup.constants.iter().filter_map(known);
-    let still = setup.slopes.iter().filter_map(|slope| {
-        let unknown = setup.constants[slope.constant].unknown.as_ref()?;
-        Some((unknown.name.clone(), Uncertain::new(slope.value, slope.standard())))
-    });
-    let declared: Vec<(String, Uncertain)> = declared.chain(still).collect();
+    let declared: Vec<(String, Uncertain)> = setup.constants.iter().filter_map(known).collect();
     let check = format!("signs and clocks of {} and {}", spec.motion.name, spec.loads[0].name);
     out.extend(contradicted(fit, &declared, &check));
+    out.extend(still_page::contradicted(fit, setup));
     out.extend(setup.method.about_fit(fitted));
     out.extend(few_runs(fit));
     out

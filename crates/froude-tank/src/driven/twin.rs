@@ -17,7 +17,7 @@ use super::read::setups;
 use super::run::Run;
 use super::setup::Setup;
 use super::spec::{Channel, Condition, Constant, Enters, Factor, Point};
-use super::stills::is_still;
+use super::still_fit::is_still;
 use crate::error::{TankError, undeclared};
 use crate::matrix::of_configurations;
 use crate::sensors::{Senses, of_sensor, seed_and_sensors};
@@ -149,13 +149,15 @@ impl<M: MotorDriven> Twin<M> {
         let read = |channel: &Channel, zero, gain| of_sensor(channel.sensor(sensors), zero, gain);
         let mut zeros: Vec<Vec<f64>> =
             self.planned.iter().map(|_| loads.iter().map(|load| load.zero * draws.normal()).collect()).collect();
-        // Still runs have one zero, but for its drift.
-        if let Some(first) = self.planned.iter().position(|run| is_still(&run.point)) {
-            let (common, drift) = (zeros[first].clone(), self.setup.zeroed.map_or(0.0, |zeroed| zeroed.drift));
-            for i in (0..zeros.len()).filter(|i| is_still(&self.planned[*i].point)) {
-                zeros[i].clone_from(&common);
-                zeros[i].iter_mut().take(1).for_each(|zero| *zero += drift * draws.normal());
+        // The zero of still runs walks from run to run of a configuration.
+        let drift = self.setup.zeroing.map_or(0.0, |zeroing| zeroing.drift);
+        let mut last: IndexMap<&str, Vec<f64>> = IndexMap::new();
+        for (zero, run) in zeros.iter_mut().zip(&self.planned).filter(|(_, run)| is_still(&run.point)) {
+            if let Some(before) = last.get(run.point.configuration.as_str()) {
+                zero.clone_from(before);
+                zero.iter_mut().take(1).for_each(|zero| *zero += drift * draws.normal());
             }
+            last.insert(&run.point.configuration, zero.clone());
         }
         let gain = |enters: Enters| self.setup.enters(|e| e == enters).map_or(1.0, |k| constants[k]);
         let delay_s = self.setup.enters(|e| e == Enters::Delay).map_or(0.0, |k| constants[k]);

@@ -52,10 +52,10 @@ impl<E: Equation> Problem<'_, E> {
         for (k, (input, column)) in self.inputs.iter().zip(&condensed.errors).enumerate() {
             let standard = input.declared.standard;
             let moved = |j: usize| column.iter().enumerate().map(|(i, e)| fit.sensitivity()[(j, i)] * e).sum::<f64>();
-            // What still runs found with it moves, too.
+            // A value from still runs depends on this input, too.
             let by_prior = |j: usize| {
                 let each = known.iter().zip(&errors[..of_priors]);
-                let of = |(known, error): (&Known, &DeclaredError)| known.moved_by(k) * error.sensitivity[j];
+                let of = |(known, error): (&Known, &DeclaredError)| known.sensitivity_to(k) * error.sensitivity[j];
                 each.map(of).sum::<f64>()
             };
             let sensitivity = (0..p).map(|j| moved(j) / standard + by_prior(j)).collect();

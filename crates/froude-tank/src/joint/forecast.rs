@@ -143,7 +143,7 @@ pub(crate) fn forecast<E: Equation>(
     let mut moved = &inverse * Mat::from_fn(p, q, |i, k| errors[(i, k)] / variance);
     for (k, input) in problem.inputs.iter().enumerate() {
         for known in &priors {
-            let by = known.moved_by(k) * input.declared.standard / known.prior.standard.powi(2);
+            let by = known.sensitivity_to(k) * input.declared.standard / known.prior.standard.powi(2);
             (0..p).for_each(|i| moved[(i, k)] += inverse[(i, known.prior.index)] * by);
         }
         let covariance = Mat::from_fn(p, p, |i, j| moved[(i, k)] * moved[(j, k)]);

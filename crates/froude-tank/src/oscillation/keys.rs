@@ -8,7 +8,7 @@
 //! buoyancy = { value = "3.0 N", standard = "0.02 N" }        # leave out what is to be found
 //! delay    = { value = "0 ms", standard = "5 ms" }           # of the force behind the angle; leave out what is to be found
 //! cycles   = { skip = 1, used = 5, fewest = 5 }
-//! stills   = { zeroed = "once", drift = "5 mN" }             # of the still runs, where there are some
+//! still_runs = { zeroed = "once", drift = "5 mN" }           # required with still runs
 //!
 //! [[source.plan]]
 //! configurations = ["H1LT", "H2LT"]
@@ -20,7 +20,7 @@
 //! [[source.plan]]
 //! configurations = ["H1LT", "H2LT"]
 //! medium         = "still"                                   # held fast in water, at these angles
-//! angle          = ["-20 deg", "-10 deg", "10 deg", "20 deg"]
+//! angle          = ["20 deg", "-20 deg", "10 deg", "-10 deg"]
 //! hold           = "60 s"
 //! ```
 
@@ -64,22 +64,22 @@ pub const KEYS: &[Key] = &[
     CYCLES,
     HARMONICS,
     optional(
-        "stills",
+        "still_runs",
         Kind::Table(&[
-            required("zeroed", Kind::Word(&ZEROED), "write zeroed = \"once\" if the load cell was zeroed once, before the first still run of all", "how the cell was zeroed"),
-            usual("drift", Kind::Quantity(Dimension::FORCE), "0 N", "standard deviation of what the zero drifts by from one still run to the next")
+            required("zeroed", Kind::Word(&ZEROED), "write zeroed = \"once\" if the load cell was zeroed once for each configuration, before its first still run", "when the load cell was zeroed"),
+            usual("drift", Kind::Quantity(Dimension::FORCE), "0 N", "standard deviation of the change of the zero from one still run to the next")
                 .within(Range::NotNegative("a standard deviation is not")),
         ]),
-        "no still runs",
-        "how the load cell was zeroed for the still runs. `zeroed`: `once` for all of them, or `each run`, which is refused because each zero then hides what its run would show; `drift`: standard deviation of what the zero drifts by from one still run to the next",
+        "required with still runs",
+        "`zeroed`: must be `once` for each configuration, before its first still run; zeroing before each run (`each run`) removes the signal and is refused. `drift`: standard deviation of the change of the zero from one still run to the next, in the order of their names; without it the zero counts as constant",
     ),
 ];
 
 /// How a load cell may have been zeroed for still runs.
 pub(super) const ZEROED: [&str; 2] = ["once", "each run"];
 
-/// Instead of what runs in motion have.
-const MOVES: IfMissing = IfMissing::Nothing("only of runs in motion, which must have it");
+/// Of a key that runs in motion must have.
+const OF_MOTION: IfMissing = IfMissing::Nothing("required, except for still runs");
 
 /// The keys of a block of a plan.
 pub const PLAN: &[Key] = &[
@@ -93,11 +93,11 @@ pub const PLAN: &[Key] = &[
         "medium",
         Kind::Word(&["water", "air", "still"]),
         "water",
-        "`water`; `air`, which determines only mass and delay; or `still`, held fast in water, which determines the net buoyancy",
+        "`water` or `air` (which determines only mass and delay) for runs in motion; `still` for the body held still in water",
     ),
     usual("flow", Kind::Axis(Dimension::SPEED), "0 m/s", "speed of the stream"),
-    Key { default: MOVES, ..amplitude(Dimension::ANGLE, "", "amplitude of the angle") },
-    Key { default: MOVES, ..FREQUENCY },
+    Key { default: OF_MOTION, ..amplitude(Dimension::ANGLE, "", "amplitude of the angle") },
+    Key { default: OF_MOTION, ..FREQUENCY },
     optional(
         "angle",
         Kind::Axis(Dimension::ANGLE),
@@ -118,10 +118,10 @@ pub(super) fn check_plan(values: &Values) -> Result<(), RecordError> {
         (&[("amplitude", "10 deg"), ("frequency", "70 deg/s")], ("angle", "-10 deg"));
     if is_still {
         if let Some((key, _)) = moved.iter().find(|(key, _)| values.is_stated(key)) {
-            return Err(values.wrong(key, "stands with medium = \"still\", where nothing moves; leave it out, or give the runs in motion a [[source.plan]] of their own"));
+            return Err(values.wrong(key, "does not apply to medium = \"still\"; leave it out, or give the runs in motion a [[source.plan]] of their own"));
         }
         if values.numbers(still.0).is_empty() {
-            return Err(values.missing(still.0, "write the angles at which the body is held fast, on both sides: angle = [\"-20 deg\", \"-10 deg\", \"10 deg\", \"20 deg\"]"));
+            return Err(values.missing(still.0, "write the angles at which the body is held, on both sides in turn: angle = [\"20 deg\", \"-20 deg\", \"10 deg\", \"-10 deg\"]"));
         }
         return Ok(());
     }
@@ -129,7 +129,7 @@ pub(super) fn check_plan(values: &Values) -> Result<(), RecordError> {
         return Err(values.missing(key, &format!("write {key} = \"{write}\", a list, or {{ start, stop, step }}")));
     }
     if values.is_stated(still.0) {
-        return Err(values.wrong(still.0, "is where the body is held fast: write medium = \"still\", or leave it out"));
+        return Err(values.wrong(still.0, "applies only to still runs: write medium = \"still\", or leave it out"));
     }
     Ok(())
 }

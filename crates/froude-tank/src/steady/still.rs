@@ -2,13 +2,12 @@
 
 use froude_identify::method::MethodError;
 use froude_records::run::Role;
-use froude_records::run::marks::SegmentKind;
 use froude_records::units::Dimension;
 
 use super::channels::LOADS;
 use super::point::{Run, Zero};
 use super::section::SteadySpec;
-use crate::conditioning::stretches::{in_words, longest_free, rows};
+use crate::conditioning::stretches::still_part;
 use crate::error::TankError;
 use crate::log::TankLog;
 use crate::logs;
@@ -18,17 +17,6 @@ use crate::logs;
 pub(super) struct Still {
     at_s: f64,
     loads: Vec<(String, Zero)>,
-}
-
-/// The part of a still run that is used: the one that is named, without marks.
-fn at_rest(log: &TankLog) -> Result<std::ops::Range<usize>, MethodError> {
-    let (time_s, declared) = (&log.log.time_s, &log.declared);
-    let named = declared.segments.iter().find(|segment| segment.kind == SegmentKind::Still);
-    let whole = named.map_or(0..time_s.len(), |segment| rows(time_s, segment.from_s, segment.to_s));
-    longest_free(time_s, whole, &declared.marks).filter(|rows| rows.len() >= 4).ok_or_else(|| {
-        let what = format!("nothing is left of this still run: {}; take another", in_words(&declared.marks));
-        MethodError::input(&log.log.path, what)
-    })
 }
 
 /// The still runs, in the order in which they were.
@@ -42,7 +30,7 @@ pub(super) fn stills(logs: &[TankLog]) -> Result<Vec<Still>, MethodError> {
             )
         })?;
         let step_s = log.steps.median_s;
-        let rows = at_rest(log)?;
+        let rows = still_part(log)?;
         let of = |name: &str| {
             let mean = log.log.channels.get(name).map(|c| froude_fit::series::mean(&c.values[rows.clone()], step_s));
             mean.map(|m| (name.to_owned(), Zero { value: m.value, standard: m.standard }))

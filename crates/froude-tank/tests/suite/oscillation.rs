@@ -6,11 +6,12 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::run::Role;
 use froude_tank::driven::fit::{fit, motions};
 use froude_tank::driven::fitted::Fitted;
-use froude_tank::driven::forecast::{forecast, still};
+use froude_tank::driven::forecast::{forecast, planned_still_fits};
 use froude_tank::driven::lag::undeclared;
 use froude_tank::driven::run::Run;
 use froude_tank::driven::setup::Setup;
-use froude_tank::driven::stills::{Slope, shown};
+use froude_tank::driven::still_fit::fit_still_runs;
+use froude_tank::driven::still_run::StillFit;
 use froude_tank::driven::twin::{Simulated, Twin};
 use froude_tank::joint::JointFit;
 use froude_tank::oscillation::Oscillation;
@@ -332,17 +333,17 @@ fn a_lag_that_is_not_there_is_hardly_ever_reported() {
 
 /// Still runs of each configuration at four angles, and nothing known of the buoyancy.
 const STILLS: [(&str, &str); 2] = [
-    ("buoyancy = { value = \"3.0 N\", standard = \"0.02 N\" }", "stills = { zeroed = \"once\" }"),
+    ("buoyancy = { value = \"3.0 N\", standard = \"0.02 N\" }", "still_runs = { zeroed = \"once\" }"),
     (
         "\n[simulate]",
-        "\n[[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nmedium = \"still\"\nangle = [\"-20 deg\", \"-10 deg\", \"10 deg\", \"20 deg\"]\nhold = \"60 s\"\n\n[simulate]",
+        "\n[[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nmedium = \"still\"\nangle = [\"20 deg\", \"-20 deg\", \"10 deg\", \"-10 deg\"]\nhold = \"60 s\"\n\n[simulate]",
     ),
 ];
 
 /// What the still runs of a twin show.
-fn from_stills(twin: &Twin<Oscillation>, logged: &[Simulated]) -> Vec<Slope> {
+fn from_stills(twin: &Twin<Oscillation>, logged: &[Simulated]) -> Vec<StillFit> {
     let runs: Vec<Run<'_>> = views(logged).into_iter().filter(|run| run.point.role == Role::Still).collect();
-    shown(&runs, &twin.setup).unwrap()
+    fit_still_runs(&runs, &twin.setup).unwrap()
 }
 
 /// Σ sin² of 10 and 20 degrees on both sides is 0.294; a mean of 60 s of noise of 0.02 N that lasts 0.5 s has 0.02/√60 N. In motion alone B is known to 13 and
@@ -359,7 +360,7 @@ fn a_plan_states_what_still_runs_add() {
     let of = |plan: &froude_tank::driven::forecast::Forecast, name: &str| {
         plan.expected.iter().find(|e| e.name == name).unwrap().combined
     };
-    for slope in still(&with.1, &noise).unwrap() {
+    for slope in planned_still_fits(&with.1, &noise).unwrap() {
         assert!(
             (slope.value - 3.0).abs() < 1e-9
                 && (slope.noise / (0.02 / 60.0_f64.sqrt() / 0.294_f64.sqrt()) - 1.0).abs() < 2e-3
@@ -374,13 +375,13 @@ fn a_plan_states_what_still_runs_add() {
 
 /// Angle and force that show too much move B as the derivatives say: by its own size, and by φ cos φ over sin φ.
 #[test]
-fn gains_move_the_buoyancy_of_still_runs_as_they_say() {
+fn gain_sensitivities_of_the_still_run_buoyancy_match_differences() {
     let twin = twin(&STILLS);
     let logged = logged(&twin, &noise(0.02, None), 3);
     let here = from_stills(&twin, &logged);
-    let by = |slope: &Slope, name: &str| {
+    let by = |fit: &StillFit, name: &str| {
         let named = |(k, _): &&(usize, f64)| twin.setup.constants[*k].name == name;
-        slope.moves.iter().find(named).unwrap().1
+        fit.gain_sensitivities.iter().find(named).unwrap().1
     };
     let e = 1e-4;
     for (name, of_angle, of_force) in [("gain of the angle", e, 0.0), ("gain of the force", 0.0, e)] {
@@ -398,7 +399,7 @@ fn gains_move_the_buoyancy_of_still_runs_as_they_say() {
 
 /// Noise, drift of the zero, and gains of angle and force are drawn; all are independent of the runs in motion. 95 %, less three deviations of so many campaigns.
 #[test]
-fn intervals_of_the_buoyancy_from_still_runs_hold_it() {
+fn still_run_intervals_cover_the_true_buoyancy() {
     let seeds: u64 = std::env::var("FROUDE_SEEDS").ok().and_then(|n| n.parse().ok()).unwrap_or(400);
     let drift = ("zeroed = \"once\"", "zeroed = \"once\", drift = \"3 mN\"");
     let short = ("hold = \"60 s\"", "hold = \"30 s\"\nrate = \"50 Hz\"");
@@ -416,7 +417,8 @@ fn intervals_of_the_buoyancy_from_still_runs_hold_it() {
             .iter()
             .map(|slope| {
                 let gain = |(k, by): &(usize, f64)| by * twin.setup.constants[*k].known.unwrap().standard;
-                let variance = slope.standard().powi(2) + slope.moves.iter().map(|m| gain(m).powi(2)).sum::<f64>();
+                let variance =
+                    slope.standard().powi(2) + slope.gain_sensitivities.iter().map(|m| gain(m).powi(2)).sum::<f64>();
                 // The degrees of freedom of the noise exceed a hundred.
                 (slope.value - 3.0).abs() <= 1.98 * variance.sqrt()
             })
@@ -433,7 +435,6 @@ fn intervals_of_the_buoyancy_from_still_runs_hold_it() {
     }
 }
 
-/// One position and its zero are two unknowns of one number; a swing is no still run; nothing is known of a cell of which nobody says how it was zeroed.
 #[test]
 fn still_runs_that_determine_nothing_are_refused() {
     let message = |changes: &[(&str, &str)], cut: fn(&mut Vec<Simulated>)| {
@@ -441,29 +442,65 @@ fn still_runs_that_determine_nothing_are_refused() {
         let mut logged = logged(&twin, &noise(0.02, Some(0.1)), 3);
         cut(&mut logged);
         let runs: Vec<Run<'_>> = views(&logged).into_iter().filter(|run| run.point.role == Role::Still).collect();
-        shown(&runs, &twin.setup).unwrap_err().to_string()
+        fit_still_runs(&runs, &twin.setup).unwrap_err().to_string()
     };
-    let one = ("angle = [\"-20 deg\", \"-10 deg\", \"10 deg\", \"20 deg\"]", "angle = \"10 deg\"");
+    let one = ("angle = [\"20 deg\", \"-20 deg\", \"10 deg\", \"-10 deg\"]", "angle = \"10 deg\"");
     assert_eq!(
         message(&[one], |_| ()),
-        "the still runs \"019\" stand at one position: the zero of the load cell is unknown, so two positions at least are needed, better one on each side"
+        "there is one still run, \"019\": the zero of the load cell is unknown, too, so that two positions are needed at least, better on both sides of zero"
     );
     assert_eq!(
-        message(&[("stills = { zeroed = \"once\" }", "")], |_| ()),
-        "8 still runs are there, and nobody says how the load cell was zeroed for them: write stills = { zeroed = \"once\" } in [source.forced_oscillation] if it was zeroed once, before the first of them"
+        message(&[("still_runs = { zeroed = \"once\" }", "")], |_| ()),
+        "found 4 still runs, and nothing states how the load cell was zeroed for them: write still_runs = { zeroed = \"once\" } in [source.forced_oscillation] if it was zeroed once, before the first of them"
     );
     let moves = message(&[], |logged| {
         let swung = logged[0].trace.motion.clone();
         let still = logged.iter_mut().find(|run| run.planned.point.role == Role::Still).unwrap();
         still.trace.motion.iter_mut().zip(swung).for_each(|(x, swung)| *x += swung);
     });
-    assert!(moves.starts_with("still run \"019\" moves: the standard deviation of its position is 0.10;"), "{moves}");
+    assert!(
+        moves.starts_with("still run \"019\" moves: the standard deviation of the angle is 0.10 rad, and "),
+        "{moves}"
+    );
     let short = ("hold = \"60 s\"", "hold = \"1 s\"");
     let short = message(&[short], |_| ());
     assert!(short.starts_with("still run \"019\" lasts 0.990 s, and its load is correlated over "), "{short}");
-    let exact = message(&[("stills =", "buoyancy = \"3 N\"\nstills =")], |_| ());
+    let exact = message(&[("still_runs =", "buoyancy = \"3 N\"\nstill_runs =")], |_| ());
     assert_eq!(
         exact,
-        "buoyancy of H1LT is declared as exactly 3.000 and still runs determine it, too: leave it out, or write its standard uncertainty"
+        "buoyancy of H1LT is declared as exactly 3.000 N, and still runs also determine it: remove the declaration, or add its standard uncertainty"
     );
+}
+
+/// A walk of step d along 20, −20, 10 and −10 degrees moves the slope by 1.30 d, along −20, −10, 10 and 20 degrees by 2.40 d, where the noise weighs the runs alike.
+#[test]
+fn the_order_of_the_angles_decides_what_a_drift_does() {
+    let drift = |angles: &str| {
+        let order = ("[\"20 deg\", \"-20 deg\", \"10 deg\", \"-10 deg\"]", angles);
+        let twin =
+            twin(&[&STILLS[..], &[order, ("zeroed = \"once\"", "zeroed = \"once\", drift = \"0.1 mN\"")]].concat());
+        planned_still_fits(&twin, &noise(0.02, Some(0.5))).unwrap()[0].drift / 1e-4
+    };
+    let [alternating, ascending] = [
+        drift("[\"20 deg\", \"-20 deg\", \"10 deg\", \"-10 deg\"]"),
+        drift("[\"-20 deg\", \"-10 deg\", \"10 deg\", \"20 deg\"]"),
+    ];
+    assert!((alternating - 1.30).abs() < 0.02 && (ascending - 2.40).abs() < 0.02, "{alternating} {ascending}");
+}
+
+/// Readings of 0.01 N of a load with a hundredth of that noise: a mean is known to 0.01/√12 N, and not better.
+#[test]
+fn a_coarse_cell_is_known_to_its_step() {
+    let twin = twin(&STILLS);
+    let mut logged = logged(&twin, &noise(1e-4, None), 3);
+    for run in &mut logged {
+        run.trace.loads[0].iter_mut().for_each(|f| *f = (*f / 0.01).round() * 0.01);
+        // One reading next to the others, as of a cell between two steps.
+        run.trace.loads[0][7] += 0.01;
+    }
+    for fit in from_stills(&twin, &logged) {
+        let expected = 0.01 / 12.0_f64.sqrt() / 0.294_f64.sqrt();
+        assert!((fit.noise / expected - 1.0).abs() < 0.05, "{} {expected}", fit.noise);
+        assert!((fit.value - 3.0).abs() < 3.0 * fit.noise);
+    }
 }

@@ -12,7 +12,7 @@ use froude::methods::tank::driven::method::MotorDriven;
 use froude::methods::tank::driven::run::Run;
 use froude::methods::tank::driven::setup::Setup;
 use froude::methods::tank::driven::spec::Point;
-use froude::methods::tank::driven::stills::shown;
+use froude::methods::tank::driven::still_fit::fit_still_runs;
 use froude::methods::tank::driven::twin::{Simulated, Truth, Twin};
 use froude::methods::tank::joint::JointFit;
 use froude::records::campaign::{Campaign, Identify, SensorSpec};
@@ -89,7 +89,7 @@ impl<M: MotorDriven> Case<M> {
         let logged = twin.simulated(sensors, 1 + seed)?;
         let (still, runs): (Vec<Run<'_>>, Vec<Run<'_>>) =
             logged.iter().map(Simulated::view).partition(|run| run.point.role == Role::Still);
-        let setup = &Setup { slopes: shown(&still, setup)?, ..setup.clone() };
+        let setup = &Setup { still_fits: fit_still_runs(&still, setup)?, ..setup.clone() };
         let motions = motions(&runs, setup, &[])?;
         let fit = fit(&runs, &motions, setup, &Identify::default())?;
         let points: Vec<&Point> = runs.iter().map(|run| &run.point).collect();

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 
-/// Intervals that a whole page judges: oscillation 8, with still runs 10, rotation 5, sway 5, decay 6, steady tows 10, weights 10, accelerated tows 6, excited response 6.
+/// Intervals that a whole page judges: oscillation 8, still runs 10, rotation 5, sway 5, decay 6, steady tows 10, weights 10, accelerated tows 6, excited response 6.
 const INTERVALS: usize = 66;
 
 /// How intervals of 95 % are judged.
