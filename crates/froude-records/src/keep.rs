@@ -110,9 +110,10 @@ fn clause(text: &str) -> Result<KeepClause, KeepError> {
             Some((dimension, _)) => {
                 refuse(e.expecting(value, dimension, &usual_unit_for(column, dimension)).to_string())
             }
-            None if !value.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '+' | '.')) => refuse(format!(
+            None if !value.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '+' | '.')) => refuse(
                 "only configuration, setup and run can be compared with a text; to leave out other rows, list their first cells in a sidecar, leave_out = [\"131\"]"
-            )),
+                    .to_owned(),
+            ),
             None => refuse(e.to_string()),
         }
     })?;
