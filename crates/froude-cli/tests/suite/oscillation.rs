@@ -210,3 +210,72 @@ fn one_frequency_does_not_tell_added_mass_from_buoyancy() {
     let c_a = plan["sources"][0]["expected"].as_array().unwrap().iter().find(|e| e["coefficient"] == "C_A").unwrap();
     assert!(c_a["half_width_95"].as_f64().unwrap() > 0.25 * 1.277, "{c_a}");
 }
+
+/// Still runs at four angles in place of a declared buoyancy, and a gain of the angle.
+const STILL: [(&str, &str); 3] = [
+    (
+        "buoyancy = { value = \"3.0 N\", standard = \"0.02 N\" }           # from still runs\n",
+        "still_runs = { zeroed = \"once\" }\n",
+    ),
+    (
+        "[simulate]\n",
+        "[[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nmedium = \"still\"\nangle = [\"20 deg\", \"-20 deg\", \"10 deg\", \"-10 deg\"]\n\n\
+         [[source.uncertainty]]\nquantity = \"angle\"\nstandard = \"0.5 %\"\nshared = \"campaign\"\n\n[simulate]\n",
+    ),
+    ("C_A      = 1.277\n", "C_A      = 1.277\nB_buoyancy_H1LT = \"3 N\"\nB_buoyancy_H2LT = \"3 N\"\n"),
+];
+
+/// 4.76 mN of noise and 14.6 mN of the gain: 3 N · 0.005 · ⟨φ cos φ sin φ⟩/⟨sin² φ⟩.
+#[test]
+fn still_runs_determine_the_buoyancy_and_wrong_ones_are_found() {
+    let folder = simulated(EXAMPLE, &[&SMALL[..], &STILL].concat());
+    let identify = || json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
+    let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
+    let number = |value: &serde_json::Value, key: &str| value[key].as_f64().unwrap();
+    let planned = plan["sources"][0]["from_still_runs"].as_array().unwrap();
+    assert_eq!((plan["sources"][0]["runs"].as_u64(), planned.len()), (Some(16), 2));
+    for of in planned {
+        assert!((number(of, "noise_N") - 4.76e-3).abs() < 2e-5, "{of}");
+        assert!((number(of, "gain_of_the_angle_N") - 14.4e-3).abs() < 2e-4, "{of}");
+    }
+    let record = identify();
+    let estimates = record["estimates"].as_array().unwrap();
+    let f4 = &estimates.iter().find(|e| e["law"]["name"] == "added_mass_f4").unwrap()["coefficients"];
+    for (name, truth) in [("C_A", 1.277), ("B_buoyancy_H1LT", 3.0), ("B_buoyancy_H2LT", 3.0)] {
+        let [low, high] = [0, 1].map(|i| f4[name]["interval_95"][i].as_f64().unwrap());
+        assert!((low..=high).contains(&truth), "{name}: {low} {high}");
+    }
+    let width = 0.5
+        * [1, 0]
+            .map(|i| f4["B_buoyancy_H1LT"]["interval_95"][i].as_f64().unwrap())
+            .into_iter()
+            .reduce(|a, b| a - b)
+            .unwrap();
+    assert!((0.025..0.035).contains(&width), "{width}");
+    let page = std::fs::read_to_string(folder.path().join("campaign-results/report.html")).unwrap();
+    assert!(page.contains("Each still run: means over it.") && page.contains("gain of the angle"));
+    let codes = |record: &serde_json::Value| -> Vec<String> {
+        record["findings"].as_array().unwrap().iter().map(|f| f["code"].as_str().unwrap().to_owned()).collect()
+    };
+    assert!(codes(&record).iter().all(|code| !code.starts_with("still-runs")), "{:?}", codes(&record));
+    // The angle the wrong way round in the still runs alone, then those of one side alone.
+    let stills = || (9..=16).map(|i| folder.path().join(format!("runs/{i:03}.toml")));
+    stills().for_each(|path| {
+        replace_in(&path, "name = \"angle\", unit = \"rad\", sign = 1", "name = \"angle\", unit = \"rad\", sign = -1")
+    });
+    let wrong = codes(&identify());
+    assert!(wrong.iter().any(|code| code == "still-runs-contradicted"), "{wrong:?}");
+    stills().for_each(|path| replace_in(&path, "unit = \"rad\", sign = -1", "unit = \"rad\", sign = 1"));
+    for (i, ending) in [10, 12, 14, 16].into_iter().flat_map(|i| [(i, "csv"), (i, "toml")]) {
+        std::fs::remove_file(folder.path().join(format!("runs/{i:03}.{ending}"))).unwrap();
+    }
+    let one_sided = codes(&identify());
+    assert!(one_sided.iter().any(|code| code == "still-runs-on-one-side"), "{one_sided:?}");
+    let campaign = folder.path().join("campaign.toml");
+    replace_in(&campaign, "zeroed = \"once\"", "zeroed = \"each run\"");
+    let text = refused(folder.path(), &["identify", "campaign.toml"]);
+    assert!(text.contains("campaign.toml:") && text.contains("removes what the still runs are for"), "{text}");
+    replace_in(&campaign, "still_runs = { zeroed = \"each run\" }", "# no still_runs");
+    let text = refused(folder.path(), &["identify", "campaign.toml"]);
+    assert!(text.contains("nothing states how the load cell was zeroed for them: write still_runs"), "{text}");
+}

@@ -140,6 +140,7 @@ pub(crate) fn identified<M: MotorDriven>(
     let each = runs.iter().zip(&motions);
     findings.extend(each.flat_map(|(run, motion)| of_motion(run.id, motion, &spec.motion, cycles, harmonics)));
     findings.extend(still_page::findings(fitted[0].setup));
+    findings.extend(still_page::contradicted(&fitted[chosen]));
     findings.extend(fitted[0].setup.method.about_runs(&fitted[0]));
     findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
     let of_fits: Vec<Finding> = fitted.iter().flat_map(of_fit).collect();
@@ -189,7 +190,6 @@ pub fn of_fit<M: MotorDriven>(fitted: &Fitted<'_, M>) -> Vec<Finding> {
     let declared: Vec<(String, Uncertain)> = setup.constants.iter().filter_map(known).collect();
     let check = format!("signs and clocks of {} and {}", spec.motion.name, spec.loads[0].name);
     out.extend(contradicted(fit, &declared, &check));
-    out.extend(still_page::contradicted(fit, setup));
     out.extend(setup.method.about_fit(fitted));
     out.extend(few_runs(fit));
     out

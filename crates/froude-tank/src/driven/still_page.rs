@@ -6,12 +6,14 @@ use froude_records::finding::Finding;
 use froude_records::number::{p_equation, significant};
 use froude_records::page::{Chart, Mark};
 
+use super::fit::fit;
+use super::fitted::Fitted;
 use super::method::MotorDriven;
 use super::setup::Setup;
-use super::still_run::{Fitted, StillFit};
+use super::still_run::{self, StillFit};
 use crate::drawn::{panel, series};
 use crate::findings::{note, warning};
-use crate::joint::JointFit;
+use crate::joint::DeclaredError;
 
 /// False-alarm probability of a finding.
 const ALARM: f64 = 0.004;
@@ -60,7 +62,7 @@ fn combined<M>(fit: &StillFit, setup: &Setup<M>) -> f64 {
 
 fn runs<M: MotorDriven>(fits: &[StillFit]) -> ResultTable {
     let (motion, load) = (&M::SPEC.motion, &M::SPEC.loads[0]);
-    let rows: Vec<&Fitted> = fits.iter().flat_map(|fit| &fit.runs).collect();
+    let rows: Vec<&still_run::Fitted> = fits.iter().flat_map(|fit| &fit.runs).collect();
     let t = TableBuilder::new("still_runs", "Each still run: means over it.", &rows);
     let of = |key: &str| format!("{key}_{}", load.key());
     let (key, head) = (format!("{}_{}", motion.name, motion.unit), format!("{} [{}]", motion.name, motion.shown));
@@ -132,32 +134,39 @@ pub(super) fn findings<M: MotorDriven>(setup: &Setup<M>) -> Vec<Finding> {
     out
 }
 
-/// Runs in motion that contradict the still runs.
+/// Runs in motion that contradict the still runs: those are fitted again without what the still runs showed.
 ///
-/// What separates the two, β − B, has the scatter of β, (∂β/∂B − 1) u(B), and of each other error (∂β/∂e − ∂B/∂e) u(e): what both share cancels.
-pub(super) fn contradicted<M: MotorDriven>(fit: &JointFit, setup: &Setup<M>) -> Vec<Finding> {
+/// The difference β − B has the scatter of β, the noise and the drift of B, and of each other error (∂β/∂e − ∂B/∂e) u(e): what both share cancels.
+pub(super) fn contradicted<M: MotorDriven>(fitted: &Fitted<'_, M>) -> Vec<Finding> {
+    let setup = fitted.setup;
+    if setup.still_fits.is_empty() {
+        return Vec::new();
+    }
+    let of_motion = Setup { still_fits: Vec::new(), ..setup.clone() };
+    let Ok(alone) = fit(fitted.runs, fitted.motions, &of_motion, &fitted.campaign.identify) else { return Vec::new() };
     let one = |still: &StillFit| {
         let constant = &setup.constants[still.constant];
-        let j = fit.position(&constant.unknown.as_ref()?.name)?;
-        let found = fit.unknowns[j].value?;
-        let own = StillFit::name_of_prior(&constant.name);
-        let of_error = |error: &crate::joint::DeclaredError| {
+        let j = alone.position(&constant.unknown.as_ref()?.name)?;
+        let found = alone.unknowns[j].value?;
+        let of_error = |error: &DeclaredError| {
             let gain = still.gain_sensitivities.iter().find(|(k, _)| setup.constants[*k].name == error.name);
-            let shared = if error.name == own { 1.0 } else { gain.map_or(0.0, |(_, by)| *by) };
-            ((error.sensitivity[j] - shared) * error.standard).powi(2)
+            ((error.sensitivity[j] - gain.map_or(0.0, |(_, by)| *by)) * error.standard).powi(2)
         };
-        let scatter = fit.parts.first()?;
-        let variance = scatter.covariance[(j, j)] + fit.errors.iter().map(of_error).sum::<f64>();
-        let p = t_two_sided((found - still.value).abs() / variance.sqrt(), scatter.dof.get(j).copied()?);
-        (variance > 0.0 && p * (setup.still_fits.len() as f64) < ALARM).then(|| {
+        let scatter = alone.parts.first()?;
+        let variance = scatter.covariance[(j, j)] + alone.errors.iter().map(of_error).sum::<f64>();
+        let standard = variance.max(0.0).sqrt().hypot(still.standard());
+        let p = t_two_sided((found - still.value).abs() / standard, scatter.dof.get(j).copied()?);
+        (p * (setup.still_fits.len() as f64) < ALARM).then(|| {
             let text = format!(
-                "{}: {} is {} ± {} {unit} from the still runs (standard uncertainty), and the runs in motion move it to {} {unit}: check the zero of the load cell, what was \
-                 mounted, and the sign of the {}",
-                fit.law,
+                "{}: {} is {} ± {} {unit} by the still runs and {} ± {} {unit} by the runs in motion (standard uncertainties, {}): check the zero of the load cell, what was mounted, \
+                 and the sign of the {}",
+                alone.law,
                 constant.name,
                 significant(still.value, 4),
                 significant(still.standard(), 2),
                 significant(found, 4),
+                significant(variance.max(0.0).sqrt(), 2),
+                p_equation(p),
                 M::SPEC.motion.name,
                 unit = M::SPEC.loads[0].unit
             );

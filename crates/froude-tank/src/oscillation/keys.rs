@@ -101,8 +101,8 @@ pub const PLAN: &[Key] = &[
     optional(
         "angle",
         Kind::Axis(Dimension::ANGLE),
-        "only with medium = \"still\"",
-        "angles at which the body is held fast",
+        "required for still runs, not allowed otherwise",
+        "angles at which the body is held; alternate the sides, so that a drift of the zero does not lie along the slope",
     ),
     usual("hold", Kind::Quantity(Dimension::TIME), "60 s", "length of a still run").within(Range::Positive),
     PERIODS,
