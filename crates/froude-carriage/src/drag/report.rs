@@ -252,6 +252,9 @@ fn is_impossible(c: &Coefficient, setup: &DragSetup) -> bool {
     unphysical(c, setup).is_some() && ends.into_iter().all(|end| unphysical(&end, setup).is_some())
 }
 
+/// A pair that narrows an interval by less than this factor is no remedy.
+const LITTLE: f64 = 1.1;
+
 fn few_pairs(c: &Coefficient) -> Option<Finding> {
     let scatter_dof = c.budget.iter().find(|p| p.kind == Kind::A).map_or(0.0, |p| p.dof[0]);
     if c.pairs >= FEW_PAIRS || scatter_dof >= FEW_PAIRS as f64 {
@@ -270,12 +273,19 @@ fn few_pairs(c: &Coefficient) -> Option<Finding> {
                 let scatter = variance(true) * pairs / (pairs + more) * coverage_factor(0.95, known + more).powi(2);
                 (scatter + variance(false) * coverage_factor(0.95, f64::INFINITY).powi(2)).sqrt()
             };
-            format!(
-                "the scatter has {} and the width of its interval is mostly due to Student's t; one more pair (every speed again, wet and dry) would narrow it by a factor of \
-                 about {}",
-                counted(dof, "degree of freedom", "degrees of freedom"),
-                significant(width(0.0) / width(1.0), 2)
-            )
+            let (narrower, of_scatter) =
+                (width(0.0) / width(1.0), counted(dof, "degree of freedom", "degrees of freedom"));
+            if narrower < LITTLE {
+                format!(
+                    "the scatter has {of_scatter}, and most of the interval is due to declared errors, which more pairs leave"
+                )
+            } else {
+                format!(
+                    "the scatter has {of_scatter} and the width of its interval is mostly due to Student's t; one more pair (every speed again, wet and dry) would narrow it \
+                     by a factor of about {}",
+                    significant(narrower, 2)
+                )
+            }
         }
     };
     let text = format!("{}: {}; {so}", c.method.name(), counted(c.pairs, "pair", "pairs"));

@@ -265,8 +265,8 @@ fn one_way(rows: &Rows) -> Option<String> {
     let (speed, _) = column("F_v").zip(column("F_c"))?;
     let [low, high] = widened(NO_RANGE, &rows.columns[speed]);
     (low.abs().min(high.abs()) < BOTH_WAYS * low.abs().max(high.abs()) || low > 0.0 || high < 0.0).then(|| {
-        "all motion is in one direction, so that F_c cannot be told from a zero error of the command, as of a current sensor: log both directions, or declare its zero \
-         as `offset` of the column"
+        "all motion is in one direction, so F_c includes any zero error of the command (a current sensor's, for example): log both directions, or check that the zero is \
+         declared as `offset` of the column"
             .to_owned()
     })
 }

@@ -179,7 +179,7 @@ fn goes_back(table: &Table, stamps_s: &[f64], back: &[usize]) -> RecordError {
 #[must_use]
 pub fn clock_back(place: Place, before_s: f64, now_s: f64, usual_s: f64) -> RecordError {
     let sidecar = format!(
-        "at the head of the sidecar whose `files` fits this log, or of {} (where there is none: schema = 1, this line, and [columns] with each header)",
+        "at the head of its sidecar, {} or the one of the folder whose `files` covers it (to create one: schema = 1, this line, and [columns] with each header)",
         place.path.with_extension("toml").display()
     );
     let fits = |(period_s, _): &&(f64, &str)| {

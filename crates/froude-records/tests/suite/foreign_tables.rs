@@ -508,3 +508,31 @@ fn a_converted_table_keeps_what_was_not_measured() {
         assert_eq!(si(&table, "f_x"), [-1.62, 0.0, -10.1], "{name}");
     }
 }
+
+/// A current sensor that reads 2.5 V at zero, one behind a converter of ten bits, and one that counts the other way: (x − offset) · unit or scale · sign.
+#[test]
+fn the_reading_at_zero_is_subtracted_before_scale_and_sign() {
+    let head = "schema = 1\n[constants]\ngain = \"2 N/V\"\nlsb = \"0.5 N\"\n[columns]\n";
+    let columns = "u = { name = \"f_x\", unit = \"V\", scale = \"gain\", offset = \"2500 mV\" }\n\
+                   n = { name = \"f_y\", scale = \"lsb\", offset = 512 }\n\
+                   f = { name = \"f_z\", unit = \"N\", sign = -1, offset = \"12 N\" }\n";
+    let text = format!("{head}{columns}");
+    let table = read(b"u,n,f\n2.5,512,12\n3.5,514,-38\n", &text).unwrap();
+    assert_eq!(
+        (si(&table, "f_x"), si(&table, "f_y"), si(&table, "f_z")),
+        (vec![0.0, 2.0], vec![0.0, 1.0], vec![-0.0, 50.0])
+    );
+    // The cell still ends at ± 50 N of what it shows.
+    let of_run = text.replace("offset = \"12 N\" }", "offset = \"12 N\", range = \"±50 N\" }");
+    let of_run = of_run.replace("schema = 1\n", "schema = 1\nmethod = \"steady\"\nrole = \"test\"\n");
+    let sidecar = parse_sidecar(Path::new("t.toml"), &of_run).unwrap();
+    assert_eq!(sidecar.columns["f"].sensor.range, Some([-62.0, 38.0]));
+    for (column, said) in [
+        ("t = { name = \"temperature\", unit = \"degC\", offset = \"1 K\" }", "is ambiguous for a column in degC"),
+        ("u = { name = \"f_x\", unit = \"N\", offset = \"1 V\" }", "offset"),
+        ("u = { name = \"f_x\", unit = \"N\", offset = 1 }", "offset"),
+    ] {
+        let found = parse_sidecar(Path::new("t.toml"), &format!("{head}{column}\n")).unwrap_err().to_string();
+        assert!(found.contains(said), "{column}: {found}");
+    }
+}

@@ -171,7 +171,7 @@ fn a_clock_that_goes_back_says_what_it_may_be_and_what_to_declare() {
         import_run(&path, None).unwrap_err().to_string(),
         format!(
             "{}:310: `time` is 0.004 s after 65.535 s: a counter of 16 bits in milliseconds wraps around there, and goes on by 0.005 s as usual. Write \
-             clock_wraps = \"65.536 s\" at the head of the sidecar whose `files` fits this log, or of {} (where there is none: schema = 1, this line, and [columns] with each header); do not sort the rows",
+             clock_wraps = \"65.536 s\" at the head of its sidecar, {} or the one of the folder whose `files` covers it (to create one: schema = 1, this line, and [columns] with each header); do not sort the rows",
             path.display(),
             path.with_extension("toml").display()
         )

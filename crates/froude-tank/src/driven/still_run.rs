@@ -29,7 +29,7 @@ pub struct Noise {
     pub variance_times_s: f64,
     /// Variance of every mean from the resolution of the cell, where its noise does not average it out.
     pub of_resolution: f64,
-    /// Correlation time of the load, s: the mean over T has the variance of T divided by this independent readings.
+    /// Time per independent reading, s: twice the integrated correlation time.
     pub correlated_s: f64,
     /// Degrees of freedom.
     pub dof: f64,

@@ -19,7 +19,7 @@
 //!
 //! [[source.plan]]
 //! configurations = ["H1LT", "H2LT"]
-//! medium         = "still"                                   # held fast in water, at these angles
+//! medium         = "still"                                   # held still in water, at these angles
 //! angle          = ["20 deg", "-20 deg", "10 deg", "-10 deg"]
 //! hold           = "60 s"
 //! ```
